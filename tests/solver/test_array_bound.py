@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Array, Scenario
-from nullpose.solver import solve
 from nullpose.solver.array_bound import array_bound
 from nullpose.solver.array_task import ArrayTask
 
@@ -46,21 +45,3 @@ def test_it_reaches_the_gap(random_scene: Callable) -> None:
     assert level > math.log(1e-3)
     again = array_bound(task, math.log(first.value), gap=1e-2)
     assert math.log(first.value) <= math.log(again.value) <= math.log(first.value) + 1e-2
-
-
-def test_without_jammers_it_is_k_times_the_vertical_case(random_scene: Callable) -> None:
-    """K times what the vertical case is certified to reach."""
-    scenario = random_scene(np.random.default_rng(3), 3, 0)
-    vertical = solve(scenario, "vertical")
-    for elements in (2, 5):
-        level = math.log(elements * vertical.objective.value)
-        bound = array_bound(_task(scenario, elements), level, gap=1e-5)
-        assert bound.value == pytest.approx(elements * vertical.objective.value, rel=2e-5)
-        assert bound.boxes > 0
-
-
-def test_one_element_has_the_bound_of_the_vertical_case(paper: Callable) -> None:
-    """For one element the bound is the certified vertical case's own."""
-    vertical = solve(paper(1.0), "vertical")
-    bound = array_bound(_task(paper(1.0), 1), math.log(vertical.objective.value), gap=1e-6)
-    assert bound.value == pytest.approx(vertical.objective.upper_bound, rel=2e-6)

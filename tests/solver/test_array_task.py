@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from nullpose.scenario import Array, Scenario
-from nullpose.solver.array_task import ArrayTask, silent
+from nullpose.solver.array_task import ArrayTask
 
 
 def _task(scenario: Scenario) -> ArrayTask:
@@ -27,20 +26,6 @@ def test_turning_by_the_symmetry_changes_nothing(random_scene: Callable) -> None
         assert task.value(turned) == pytest.approx(task.value(state), abs=1e-9)
 
 
-def test_calmer_and_silent(paper: Callable) -> None:
-    """Jammers can be made weaker, or left out of the ratios, the nodes being what they were."""
-    task = _task(paper(100.0))
-    assert task.jamming == pytest.approx(100.0)
-    assert task.calmed(3.0).jamming == pytest.approx(3.0)
-    assert task.calmed(1e3).jamming == pytest.approx(100.0)
-    state = np.array([5.0, 20.0, 9.0, 0.4])
-    assert task.calmed(3.0).value(state) > task.value(state)
-    quiet = silent(task.family)
-    assert len(quiet.denominator_weight) == 0
-    np.testing.assert_array_equal(quiet.numerator_weight, task.family.numerator_weight)
-    np.testing.assert_array_equal(quiet.keep_out_points_m, task.family.keep_out_points_m)
-
-
 def test_nothing_out_of_reach_is_as_good(random_scene: Callable) -> None:
     """Every state with a value has its position in the box that is said to hold all such positions."""
     rng = np.random.default_rng(1)
@@ -50,15 +35,6 @@ def test_nothing_out_of_reach_is_as_good(random_scene: Callable) -> None:
             state = rng.uniform([-200, -200, 8, 0], [300, 300, 30, 6])
             low_m, high_m = task.reach(task.value(state))
             assert np.all((low_m <= state[:3]) & (state[:3] <= high_m))
-
-
-def test_the_reach_is_finite_without_a_value(paper: Callable) -> None:
-    """Before anything is known the search looks around the points, within the airspace."""
-    low_m, high_m = _task(paper(1.0, x_m=(-7.0, 500.0))).reach(-math.inf)
-    assert np.all(np.isfinite([low_m, high_m]))
-    assert (low_m[0], high_m[0]) == (-7.0, 500.0)
-    assert low_m[1] < 0.0
-    assert high_m[1] > 50.0
 
 
 def test_walls_are_distances(paper: Callable) -> None:
@@ -91,12 +67,3 @@ def test_a_position_a_little_outside_is_put_right(paper: Callable) -> None:
         assert np.linalg.norm(right - wrong) < 1.0
     untouched = np.array([3.0, 3.0, 9.0])
     np.testing.assert_array_equal(task.repaired(untouched), untouched)
-
-
-def test_no_way_out_is_said(paper: Callable) -> None:
-    """A position is not reported as put right where a ball covers all that the box leaves."""
-    task = _task(paper(1.0, x_m=(17.0, 17.0), y_m=(15.0, 15.0), altitude_m=(5.5, 6.0)))
-    position_m = np.array([17.0, 15.0, 5.7])
-    np.testing.assert_array_equal(task.repaired(position_m), position_m)
-    covered = task.family.changed(keep_out_points_m=np.array([[17.0, 15.0, 4.0]]), keep_out_m=2.5)
-    assert replace(task, family=covered).repaired(position_m) is None

@@ -88,13 +88,6 @@ def test_compiling_does_not_count() -> None:
     assert working_clock() - began < 0.5 * (time.perf_counter() - wall_s)
 
 
-def test_other_work_counts() -> None:
-    """Without compiling, it goes as any clock."""
-    began = working_clock()
-    time.sleep(0.05)
-    assert 0.05 <= working_clock() - began < 5.0
-
-
 def test_the_time_of_a_solve_is_no_more_than_the_wall_has() -> None:
     """A solve states less time than passed around it."""
     began = time.perf_counter()

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, OFF_BAND, TOWARDS, WORLD
+from nullpose.certificate.certificate import FAR, WORLD
 from nullpose.solver.kernels import node
 from nullpose.solver.leaves_from_proof import leaves_of
 
@@ -42,13 +42,6 @@ def test_boxes_become_dyadic() -> None:
     assert leaves_of(proof, "free").box.tolist() == [list(box) for box in boxes]
 
 
-def test_flat_rooms_have_no_depth() -> None:
-    """Where the root has no width, its boxes have depth and index 0."""
-    proof = proof_of(np.empty(0), low=(-8.0, 5.0, 8.0), high=(8.0, 5.0, 8.0))
-    proof.leaves = np.array([row_of((3, 5, 0, 0, 0, 0), proof)])
-    assert leaves_of(proof, "free").box.tolist() == [[3, 5, 0, 0, 0, 0]]
-
-
 def test_cells_become_dyadic() -> None:
     """Face, depth and index of a cell's sides are found back; without a cell they are -1 and 0."""
     proof = proof_of(np.empty(0))
@@ -80,35 +73,3 @@ def test_equal_mixes_are_shared() -> None:
     assert leaves.mix.tolist() == [0, 1, 0, -1]
     assert leaves.mixes == ({0: 1.0}, {0: 0.25, 3: 0.75})
     assert leaves.point.tolist() == [-1, -1, -1, 2]
-
-
-def test_points_are_those_of_the_tests() -> None:
-    """The frame's anchor, the node out of reach, the ball around; none for other tests."""
-    proof = proof_of(np.empty(0))
-    kinds = [WORLD, TOWARDS, AFFINE, FAR, KEPT_OUT]
-    proof.leaves = np.array([row_of((0,) * 6, proof, KIND=kind, ANCHOR=7) for kind in kinds])
-    assert leaves_of(proof, "free").point.tolist() == [-1, 7, -1, 7, 7]
-    assert leaves_of(proof, "free").test.tolist() == kinds
-
-
-def test_balls_count_only_with_a_multiplier() -> None:
-    """A ball that is near but not used is left out; so are sides without a cell."""
-    proof = proof_of(np.empty(0))
-    rows = [row_of((0,) * 6, proof, BALL=2), row_of((0,) * 6, proof, BALL=2, NU=0.5, SIDE=3.0)]
-    proof.leaves = np.array(rows)
-    leaves = leaves_of(proof, "free")
-    assert leaves.ball.tolist() == [-1, 2]
-    assert leaves.ball_multiplier.tolist() == [0.0, 0.5]
-    assert not np.any(leaves.sides)
-
-
-def test_bands_count_where_they_are_used() -> None:
-    """Tests of free axes keep the band's multiplier, of either sign; others have none."""
-    proof = proof_of(np.empty(0))
-    kinds = [WORLD, TOWARDS, AFFINE, FAR, KEPT_OUT, OFF_BAND]
-    proof.leaves = np.array([row_of((0,) * 6, proof, KIND=kind, ANCHOR=3, BAND=-0.5) for kind in kinds])
-    leaves = leaves_of(proof, "free")
-    assert leaves.band.tolist() == [-0.5, -0.5, 0.0, 0.0, 0.0, 0.0]
-    assert leaves.test.tolist() == kinds
-    assert leaves.point.tolist() == [-1, 3, -1, 3, 3, -1]
-    assert leaves.mix.tolist() == [0, 0, 0, -1, -1, -1]

@@ -10,7 +10,7 @@ from nullpose.errors import SolveError
 from nullpose.physics import sinr
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
-from nullpose.solver.multistart import SearchSettings, landmarks, multistart
+from nullpose.solver.multistart import multistart
 
 VERTICAL = AxisField.affine([0.0, 0.0, 1.0], np.zeros((3, 3)))
 
@@ -40,23 +40,6 @@ def test_seeds_agree_and_repeat(random_scene: Callable) -> None:
             again.evaluations,
         )
         assert other.log_value == pytest.approx(first.log_value, abs=1e-9)
-
-
-def test_settings_bound_the_work(paper: Callable) -> None:
-    """One round of few positions makes few starts, and patience ends the rounds early."""
-    family = build_family(paper(1.0))
-    frugal = SearchSettings(coarse=16, polished=2, rounds=1, patience=1)
-    few = multistart(family, AxisField.free(), seed=0, settings=frugal)
-    assert few.starts <= len(landmarks(family)) + 2
-    patient = frugal._replace(rounds=50, patience=1)
-    assert multistart(family, AxisField.free(), seed=0, settings=patient).starts <= len(landmarks(family)) + 6
-
-
-def test_landmarks_stand_over_what_matters(scene: Callable) -> None:
-    """There is a start over the nodes' centre, over each jammer and over each node, all on the floor."""
-    family = build_family(scene([(0, 0, 0), (20, 0, 1)], [(5, 5, 0), (7, -3, 2)], altitude_m=(6.0, 9.0)))
-    places = {tuple(float(x) for x in place) for place in landmarks(family)}
-    assert {(10.0, 0.0, 6.0), (5.0, 5.0, 6.0), (7.0, -3.0, 6.0), (0.0, 0.0, 6.0), (20.0, 0.0, 6.0)} <= places
 
 
 def test_the_needle_over_the_jammer_is_found(scene: Callable) -> None:

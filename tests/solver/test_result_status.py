@@ -11,7 +11,7 @@ import pytest
 from nullpose import Airframe, Array, Scenario, Scheme, SolveError, Status, solve, solve_many, sweep
 from nullpose.objectives import RECORDS
 from nullpose.solver import Result
-from nullpose.solver.result import Objective, status_of
+from nullpose.solver.objective import Objective, status_of
 
 
 def scene(rng: np.random.Generator, jammers: int = 1, **more: Any) -> Scenario:

@@ -65,14 +65,6 @@ def test_the_order_of_the_fields_does_not_matter(family: Family, fields: list[Ax
     assert back.incumbent.log_value == pytest.approx(there.incumbent.log_value, abs=1e-3)
 
 
-def test_searches_are_counted_once(family: Family, fields: list[AxisField]) -> None:
-    """Starts and evaluations are those of all fields together."""
-    each = [solve_and_prove(family, [field], SEARCH).incumbent for field in fields]
-    both = solve_and_prove(family, fields, SEARCH).incumbent
-    assert both.starts == sum(found.starts for found in each)
-    assert both.evaluations == sum(found.evaluations for found in each)
-
-
 def test_limits_are_shared_by_the_fields(family: Family, fields: list[AxisField]) -> None:
     """A limit on nodes is one for all fields; what was not closed is told, and the bound holds."""
     effort = SolveOptions(gap=1e-8, node_limit=200, time_limit_s=ENOUGH_S)

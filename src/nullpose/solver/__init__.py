@@ -5,6 +5,7 @@ from nullpose.solver.api import best_axis, compare, solve
 from nullpose.solver.array import ArrayDetails
 from nullpose.solver.compiling import announce_compiling
 from nullpose.solver.many import ManySolutions, solve_many
+from nullpose.solver.objective import Objective
 from nullpose.solver.options import (
     NODE_LIMIT,
     TIME_LIMIT_S,
@@ -13,8 +14,8 @@ from nullpose.solver.options import (
     default_gap,
     default_gap_of,
 )
-from nullpose.solver.result import Objective, Result, Results, Stats, Status
-from nullpose.solver.rigour import Rigour
+from nullpose.solver.result import Result, Results, Stats
+from nullpose.solver.rigour import Rigour, Status
 from nullpose.solver.sensitivity import ErrorSizes, Sensitivity, sensitivity
 
 __all__ = [

@@ -77,9 +77,9 @@ def solve(
     if not robust and scenario.array is None:
         return solve_by_scheme(scenario, scheme, null_jammer, limits)
     if scheme is not Scheme.OPTIMUM or null_jammer is not None:
-        given = f"scheme {scheme.value}" if null_jammer is None else f"null jammer {null_jammer!r}"
+        refused = f"scheme {scheme.value}" if null_jammer is None else f"null jammer {null_jammer!r}"
         kind = "a robust pose" if robust else "a scenario with an [array]"
-        raise UsageError(f"solve: given {given} for {kind}; allowed: the scheme {Scheme.OPTIMUM.value}")
+        raise UsageError(f"solve: given {refused} for {kind}; allowed: the scheme {Scheme.OPTIMUM.value}")
     return solve_robust(scenario, limits) if robust else solve_array(scenario, limits)
 
 
@@ -130,7 +130,7 @@ def compare(
 
 
 def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
-    """Return the pose with the best axis at a given position, of those that the airframe reaches.
+    """Find the best axis at a position, of those that the airframe reaches.
 
     Maximises what the scenario asks for over the axis alone: by enumeration of the active sets of one, two
     and three ratios, exact for a smallest SINR or margin; within an airframe's reach by a search and a proof,
@@ -159,9 +159,9 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     if band == (0.0, 1.0):
         kernel(family.arrays, position, axis)
     else:
-        here = family.at(position)
+        fixed = family.at(position)
         options = SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)
-        axis = solve_and_prove(here, [AxisField.within(*band)], options).incumbent.axis
+        axis = solve_and_prove(fixed, [AxisField.within(*band)], options).incumbent.axis
     return Pose.of_airframe(scenario, position, axis)
 
 

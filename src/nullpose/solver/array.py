@@ -18,9 +18,9 @@ from nullpose.solver.array_bound import ArrayBound, array_bound
 from nullpose.solver.array_search import ArrayHunt
 from nullpose.solver.array_task import ArrayTask
 from nullpose.solver.compiling import working_clock
+from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
-from nullpose.solver.provenance import provenance
-from nullpose.solver.result import Result, Stats, objective_of, status_of
+from nullpose.solver.result import Result, Stats, provenance
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -45,7 +45,7 @@ class ArrayDetails:
         return f"array of {self.array.elements}, digital"
 
     def to_dict(self, objective: object) -> dict[str, Any]:
-        """Return the array as plain data for JSON; a weight is [real part, imaginary part].
+        """Write the array as plain data for JSON; a weight is [real part, imaginary part].
 
         Args:
             objective: of the result, which has it already.

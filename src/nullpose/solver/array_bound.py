@@ -37,7 +37,7 @@ class ArrayBound:
 
 
 def array_bound(task: ArrayTask, log_value: float, *, gap: float) -> ArrayBound:
-    """Return a bound on what any position, yaw and weights of each node's own reach.
+    """Bound the smallest ratio over all positions, yaws and weights, by branch and bound.
 
     A branch and bound over positions and yaws, the best first
     (:mod:`nullpose.solver.kernels.array_enclosure` bounds a box): it stops at the gap asked for or
@@ -51,9 +51,9 @@ def array_bound(task: ArrayTask, log_value: float, *, gap: float) -> ArrayBound:
         gap: relative gap to that at which it is done.
     """
     value = math.exp(log_value)
-    one = _vertical_bound(task, gap)
-    if task.elements == 1 or one.value <= value * (1.0 + gap):
-        return one
+    upright = _vertical_bound(task, gap)
+    if task.elements == 1 or upright.value <= value * (1.0 + gap):
+        return upright
     from nullpose.solver.kernels.array_branch import branch_array
 
     nodes, jammers = task.problem.nodes, len(task.problem.points_m) - task.problem.nodes
@@ -71,14 +71,14 @@ def array_bound(task: ArrayTask, log_value: float, *, gap: float) -> ArrayBound:
         state,
     )
     return ArrayBound(
-        value=min(one.value, float(bound) * (1.0 + _ROUNDING)),
-        boxes=one.boxes + int(boxes),
+        value=min(upright.value, float(bound) * (1.0 + _ROUNDING)),
+        boxes=upright.boxes + int(boxes),
         state=state if np.all(np.isfinite(state)) else None,
     )
 
 
 def _vertical_bound(task: ArrayTask, gap: float) -> ArrayBound:
-    """Return K times the bound of one vertical dipole with the jammers silent; for K = 1, not silent.
+    """Bound by K times one vertical dipole with the jammers silent; for K = 1, not silent.
 
     With ``R >= sigma^2 I``, ``h_k^H R^-1 h_k <= |h_k|^2 / sigma^2``, and ``|h_k|^2`` is K times what one
     vertical dipole receives at the same position. Where the jammers can be nulled for nothing, the optimum

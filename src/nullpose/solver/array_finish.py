@@ -16,7 +16,7 @@ _LEAST = -1e3  # log ratio that counts for a node which is not heard
 
 
 def finished(task: ArrayTask, state: FloatArray) -> tuple[float, FloatArray]:
-    """Return the local optimum next to a state, inside the domain, and its smallest log ratio.
+    """Find the local optimum next to a state, inside the domain, and its smallest log ratio.
 
     ``maximise t`` subject to ``f_k(x) >= t`` and the walls, by SLSQP in the variables (x, t). Minus infinity
     if the position cannot be brought into the domain.
@@ -34,14 +34,14 @@ def finished(task: ArrayTask, state: FloatArray) -> tuple[float, FloatArray]:
 
     @lru_cache(maxsize=1)
     def constraints(variables: bytes) -> tuple[FloatArray, FloatArray]:
-        """Return what must not be negative, and its slopes."""
+        """Evaluate the constraints, none of which may be negative, and their slopes."""
         z = np.frombuffer(variables)
         logs, by_state = np.empty(nodes), np.empty((nodes, n))
         respond(task.problem, z[:n].copy(), logs, by_state)
-        distance, ways = task.walls(z[:3].copy())
+        distance, slopes_out = task.walls(z[:3].copy())
         slopes = np.zeros((nodes + len(distance), n + 1))
         slopes[:nodes, :n], slopes[:nodes, n] = by_state, -1.0
-        slopes[nodes:, :3] = scale * ways
+        slopes[nodes:, :3] = scale * slopes_out
         return np.concatenate([np.maximum(logs, _LEAST) - z[n], scale * distance]), slopes
 
     start = state.copy()
@@ -69,7 +69,7 @@ def finished(task: ArrayTask, state: FloatArray) -> tuple[float, FloatArray]:
 
 
 def _inside(task: ArrayTask, state: FloatArray) -> tuple[float, FloatArray]:
-    """Return the state with its position in the domain, and its value there."""
+    """Move a state's position into the domain, and evaluate it there."""
     position_m = task.repaired(state[:3].copy())
     if position_m is None:
         return -math.inf, state

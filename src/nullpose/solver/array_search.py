@@ -22,7 +22,7 @@ from nullpose.solver.multistart import NOT_RECEIVED, landmarks, multistart
 _BETAS = np.array([4.0, 16.0, 64.0])
 _HOP_BETAS = _BETAS[1:]
 _STEPS = 60
-_SAME = 1e-4
+_SAME_VALUE = 1e-4
 _BETTER = 1e-6
 _BATCH = 50  # starts between two looks at how far an optimum can be
 _HOPS = np.array(  # east, north and up (m), shorter as the optimum is often on the floor, and yaw (rad)
@@ -62,16 +62,18 @@ class Pool:
 
     def offer(self, value: float, state: FloatArray) -> None:
         """Keep a state if it is among the best, and better than one with the same value."""
-        known = next((i for i, (other, _) in enumerate(self.entries) if abs(value - other) < _SAME), None)
-        if known is None and value > -math.inf:
+        place = next(
+            (i for i, (other, _) in enumerate(self.entries) if abs(value - other) < _SAME_VALUE), None
+        )
+        if place is None and value > -math.inf:
             self.entries.append((value, state))
-        elif known is not None and value > self.entries[known][0]:
-            self.entries[known] = (value, state)
+        elif place is not None and value > self.entries[place][0]:
+            self.entries[place] = (value, state)
         self.entries = sorted(self.entries, key=lambda entry: -entry[0])[: self.size]
 
 
 class ArraySearch:
-    """One search: known places first, then everywhere, then around the best.
+    """One search: places worth a start first, then everywhere, then around the best.
 
     Positions may end a little outside the domain, and values a little short: see
     :func:`nullpose.solver.array_finish.finished`.
@@ -101,7 +103,7 @@ class ArraySearch:
             before = self.pool.best
             self._hop()
             hops += 1
-            idle = 0 if self.pool.best > before + _SAME else idle + 1
+            idle = 0 if self.pool.best > before + _SAME_VALUE else idle + 1
 
     @property
     def states(self) -> list[FloatArray]:
@@ -118,7 +120,7 @@ class ArraySearch:
         return float(value), state
 
     def _placed(self, position_m: FloatArray) -> bool:
-        """Move a position into the domain; return whether it got there."""
+        """Move a position into the domain; false if that failed."""
         from nullpose.solver.kernels.search import push_out
 
         return bool(push_out(position_m, self.task.family.domain))
@@ -174,10 +176,10 @@ class ArrayHunt:
     @property
     def agreeing(self) -> int:
         """How many searches ended at the best value."""
-        return sum(end > self.best - _SAME for end in self.ends)
+        return sum(end > self.best - _SAME_VALUE for end in self.ends)
 
     def reaches(self, bound: float, gap: float) -> bool:
-        """Return whether the best value is within a relative gap of a bound."""
+        """Test if the best value is within a relative gap of a bound."""
         return bound <= math.exp(self.best) * (1.0 + gap)
 
     def search_on(self) -> None:
@@ -210,7 +212,7 @@ class ArrayHunt:
         return value
 
     def _hardened(self, state: FloatArray) -> FloatArray:
-        """Return a state found with little jamming, carried along as that grows to what it is."""
+        """Carry a state found with little jamming along as the jamming grows to its full strength."""
         jamming = _HARSH
         while jamming < self.task.jamming:
             state = finished(self.task.calmed(jamming), state)[1]

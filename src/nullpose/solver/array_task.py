@@ -34,7 +34,7 @@ class ArrayTask:
 
     @classmethod
     def of(cls, scenario: Scenario, array: Array) -> ArrayTask:
-        """Return the task of an array in a scenario.
+        """Prepare the task of an array in a scenario.
 
         Args:
             scenario: nodes, jammers, receiver and airspace; the drone receives.
@@ -51,7 +51,7 @@ class ArrayTask:
         )
 
     def calmed(self, most: float) -> ArrayTask:
-        """Return the task with every jammer at most so many times as strong as the strongest node.
+        """Weaken jammers to at most so many times the strongest node.
 
         Args:
             most: ratio of the strengths.
@@ -72,13 +72,13 @@ class ArrayTask:
         return len(self.problem.base)
 
     def value(self, state: FloatArray) -> float:
-        """Return the smallest log ratio at a state, wherever it is; minus infinity if a node is not heard."""
+        """Evaluate the smallest log ratio at any state; minus infinity if a node is not heard."""
         from nullpose.solver.kernels.array_response import respond
 
         return float(respond(self.problem, state, np.empty(self.problem.nodes), np.empty((0, len(state)))))
 
     def reach(self, level: float) -> tuple[FloatArray, FloatArray]:
-        """Return a finite box around every position whose smallest log ratio can reach a level.
+        """Bound the positions whose smallest log ratio can reach a level by a finite box.
 
         ``|s_k - p|^2 <= K g0 P_k / (sigma^2 t)``, since no combining exceeds K times one dipole's gain
         without jamming. Where neither that nor the airspace bounds it, a box around the points.
@@ -97,7 +97,7 @@ class ArrayTask:
         return low_m, np.maximum(low_m, high_m)
 
     def walls(self, position_m: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return how far a position is outside each keep-out ball and forbidden piece, and the ways out.
+        """Measure how far a position is outside each keep-out ball and forbidden piece.
 
         Args:
             position_m: (3,).
@@ -107,11 +107,11 @@ class ArrayTask:
         """
         from nullpose.solver.kernels.array_climb import walls
 
-        distance_m, ways = walls(self.family.domain, position_m)
-        return distance_m, ways
+        distance_m, slopes = walls(self.family.domain, position_m)
+        return distance_m, slopes
 
     def repaired(self, position_m: FloatArray) -> FloatArray | None:
-        """Return the position moved into the domain if it was a little outside, or None if that failed.
+        """Move a position into the domain if it is a little outside; None if that failed.
 
         Args:
             position_m: (3,).
@@ -119,17 +119,17 @@ class ArrayTask:
         low_m, high_m = self.family.low_m, self.family.high_m
         position_m = np.clip(position_m, low_m, high_m)
         for _ in range(_REPAIRS):
-            distance, ways = self.walls(position_m)
+            distance, slopes = self.walls(position_m)
             if not np.any(distance < 0.0):
                 return position_m
             worst = int(np.argmin(distance))
-            way = ways[worst] if np.any(ways[worst]) else np.array([0.0, 0.0, 1.0])
-            position_m = np.clip(position_m + (_CLEAR_M - distance[worst]) * way, low_m, high_m)
+            outward = slopes[worst] if np.any(slopes[worst]) else np.array([0.0, 0.0, 1.0])
+            position_m = np.clip(position_m + (_CLEAR_M - distance[worst]) * outward, low_m, high_m)
         return None
 
 
 def silent(family: Family) -> Family:
-    """Return the family without what is in the denominators but noise; its points are still kept clear of.
+    """Leave only noise in a family's denominators; its points are still kept clear of.
 
     Args:
         family: ratios over interferers.

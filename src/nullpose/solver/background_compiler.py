@@ -22,7 +22,7 @@ _LOOK_S = 0.1  # between two looks at the processes
 _QUIET_S = 3.0  # nobody is told of what takes no longer
 _LONGEST_S = 300.0  # then they are no longer waited for, and this process compiles
 _LONGEST_WITHOUT_S = 5.0  # likewise where no folder keeps kernels, so that no process can help
-_ROOM = 2_000_000  # bytes that a folder must have room for
+_SPACE = 2_000_000  # bytes that must be free on the disk
 _MOST = 2  # processes once this one has little to do: search and proof are the two long parts
 _STARTED: list[subprocess.Popen[bytes]] = []
 """All processes: one that is still running may not be forgotten."""
@@ -67,7 +67,7 @@ class BackgroundCompiler:
                 self._unlock()
 
     def takes(self, kernel: Any, signature: Any) -> bool:
-        """Return whether Python is to run a kernel here while it is compiled elsewhere.
+        """Request a kernel; true if Python is to run it while it is compiled elsewhere.
 
         Args:
             kernel: one that no folder holds.
@@ -83,7 +83,7 @@ class BackgroundCompiler:
         return self.is_busy()
 
     def is_busy(self) -> bool:
-        """Return whether there is anything left to compile."""
+        """Test if anything is left to compile."""
         with self._asking:
             now = time.monotonic()
             if now >= self._looked + _LOOK_S:
@@ -95,7 +95,7 @@ class BackgroundCompiler:
             return self._is_busy()
 
     def busy_s(self) -> float:
-        """Return how long there was, seconds."""
+        """Sum up the time in which there was, seconds."""
         with self._asking:
             return self._busy_until(time.monotonic())
 
@@ -142,7 +142,7 @@ class BackgroundCompiler:
             self._processes.append(_STARTED[-1])
 
     def _has_lock(self) -> bool:
-        """Return whether there is a folder with room for kernels that no other command fills."""
+        """Lock the folder of kernels; false if it has no space, or another command fills it."""
         if self._folder is None or self._lock >= 0:
             return self._lock >= 0
         path = Path(self._folder) / "compiling.lock"
@@ -151,7 +151,7 @@ class BackgroundCompiler:
             if _is_locked_elsewhere(self._lock):
                 self._unlock()
             else:
-                path.write_bytes(bytes(_ROOM))
+                path.write_bytes(bytes(_SPACE))
                 path.write_bytes(b"")
         except OSError as error:
             self._unlock()
@@ -167,7 +167,7 @@ class BackgroundCompiler:
 
 
 def _is_locked_elsewhere(file: int) -> bool:
-    """Return whether another process has locked a file; lock it here if not.
+    """Test if another process has locked a file; lock it for this one if not.
 
     Where the system or the folder has no such locks, several commands may compile the same kernels.
     """

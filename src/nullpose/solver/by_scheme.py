@@ -17,10 +17,10 @@ from nullpose.problem.schemes import Scheme, SchemeRecord
 from nullpose.scenario import Scenario
 from nullpose.solver.compiling import working_clock
 from nullpose.solver.incumbent import Incumbent
+from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.position_search import search_positions
-from nullpose.solver.provenance import provenance
-from nullpose.solver.result import Result, Stats, objective_of, status_of
+from nullpose.solver.result import Result, Stats, provenance
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
@@ -79,7 +79,7 @@ def solve_by_scheme(
 def solve_scheme(
     scenario: Scenario, record: SchemeRecord, options: SolveOptions, null_jammer: str | None
 ) -> tuple[Outcome, Mapping[str, AxisField] | None]:
-    """Return the best pose under a scheme, with a proof if one is asked for, and the fields it is over.
+    """Search under a scheme and prove the result if asked to; also name the axis fields.
 
     Args:
         scenario: what to solve; one in which the scheme has a meaning.
@@ -91,9 +91,9 @@ def solve_scheme(
         UsageError: no jammer has that name.
         SolveError: no pose reaches every node.
     """
-    known = scenario.jammer_names
-    if null_jammer is not None and null_jammer not in known:
-        raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(known)}")
+    names = scenario.jammer_names
+    if null_jammer is not None and null_jammer not in names:
+        raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
     if not scenario.antenna_record.is_quadratic:
         from nullpose.solver.pattern import solve_pattern  # and SciPy's optimisers with it
 
@@ -105,7 +105,7 @@ def solve_scheme(
 
 
 def _by_values(record: SchemeRecord, family: Family, options: SolveOptions) -> Outcome:
-    """Return what a search by values finds, the axis serving the nodes best, and the bound of a free axis."""
+    """Search by values, the axis serving the nodes best, and take the bound of a free axis."""
     from nullpose.solver.kernels.maximum_gain import maximum_gain_value
 
     axis = np.empty(3)

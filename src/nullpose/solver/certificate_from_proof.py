@@ -20,7 +20,7 @@ from nullpose.solver.rigour import Rigour, bound_above
 
 
 def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None) -> Mapping[str, AxisField]:
-    """Return the axis fields that a certificate of a scheme needs a tree for, by name.
+    """Name the axis fields that a certificate of a scheme needs a tree for.
 
     Args:
         scenario: what is solved.
@@ -46,7 +46,7 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
 
 
 def certificate_of(solution: Result) -> Certificate:
-    """Return the certificate of a solution: everything that a verifier needs to check its bound.
+    """Write the certificate of a result: everything that a verifier needs to check its bound.
 
     Args:
         solution: one with a proof.
@@ -89,7 +89,7 @@ def certificate_of(solution: Result) -> Certificate:
 
 
 def verified(solution: Result, on_progress: Callable[[int, int], None] | None = None) -> Result:
-    """Return a solution after the verifier has checked its certificate: its rigour is the verdict.
+    """Check a result's certificate by the verifier: its rigour is the verdict.
 
     It is ``verified``; or, should the verifier reject what the solver proved in floating point,
     ``floating-point`` with the verifier's reason.
@@ -111,7 +111,7 @@ def verified(solution: Result, on_progress: Callable[[int, int], None] | None = 
 
 
 def _ratios(solution: Result, fields: Mapping[str, AxisField]) -> tuple[float, float]:
-    """Return the smallest ratio of a solution's family at its pose, and the bound on it."""
+    """Evaluate the smallest ratio of a result's family at its pose, and the bound on it."""
     objective = solution.objective
     if not objective.quantity.is_rate:
         assert objective.upper_bound is not None

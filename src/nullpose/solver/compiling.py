@@ -1,14 +1,23 @@
-"""Telling the user about the one slow moment: the first compilation of the kernels."""
+"""The kernels made ready, by loading or compiling them, and the clocks that stand still meanwhile."""
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from types import FunctionType
 from typing import Any
 
+import numpy as np
+
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.family import Family
+from nullpose.solver.background_compiler import BackgroundCompiler
 from nullpose.solver.kernels import interpreted
+
+_ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
 
 PREPARING = "nullpose:prepare"
 """The event that kernels are made ready, by compiling them or by waiting for another process to do so."""
@@ -37,7 +46,7 @@ def announce_compiling(announce: Callable[[], None]) -> Iterator[None]:
 
 
 def working_clock() -> float:
-    """Return the seconds of a clock that stands still while kernels are compiled.
+    """Read a clock, in seconds, that stands still while kernels are compiled.
 
     Only differences between two calls mean something.
 
@@ -51,7 +60,7 @@ def working_clock() -> float:
 
 
 def limit_clock() -> float:
-    """Return the seconds of the clock of time limits, which stands still until all kernels are compiled.
+    """Read the clock of time limits, in seconds, which stands still until all kernels are compiled.
 
     While other processes compile them and Python runs them here, a proof gets on a hundred times slower.
     """
@@ -61,10 +70,98 @@ def limit_clock() -> float:
 
 @cache
 def _compiling() -> Any:
-    """Return what adds up, from the first call on, the time in which kernels are compiled in this process."""
+    """Start adding up, at the first call, the time in which this process compiles kernels."""
     from numba.core import event
 
     total = event.TimingListener()  # type: ignore[no-untyped-call]
     for kind in ("numba:compile", PREPARING):
         event.register(kind, total)  # type: ignore[no-untyped-call]
     return total
+
+
+def precompile(dipoles: bool) -> None:
+    """Compile search and proof if this process has not, or load them from the cache.
+
+    Two other processes compile them where a folder keeps what they make; otherwise this one does.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles, whose kernels are others.
+    """
+    from numba.core import event
+
+    from nullpose.solver.kernels.branch import branch
+
+    if _is_compiled(branch, dipoles):
+        return
+    with _ONE_AT_A_TIME, event.trigger_event(PREPARING):
+        if interpreted.compiler is None and branch.stats.cache_path is not None:
+            elsewhere = BackgroundCompiler()
+            with elsewhere.in_use():
+                compile_proof(dipoles)
+                compile_search(dipoles)
+                elsewhere.wait()
+        compile_proof(dipoles)
+        compile_search(dipoles)
+
+
+def _is_compiled(kernel: Any, dipoles: bool) -> bool:
+    """Test if nothing is to be compiled in this process: done, or switched off."""
+    return isinstance(kernel, FunctionType) or dipoles in getattr(kernel, "entries", ())
+
+
+def compile_proof(dipoles: bool) -> None:
+    """Compile the branch and bound by giving it no box to work off.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles.
+    """
+    from nullpose.solver.kernels import branch, node
+    from nullpose.solver.kernels.records import Goal
+
+    family, field = _smallest_family(dipoles), AxisField.free()
+    row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
+    problem = family.arrays, family.domain, field.arrays
+    branch.branch(*problem, 1.0, Goal(1.0, row, 1.0), rows, 0, rows, 0, 1, none, none)
+
+
+def compile_search(dipoles: bool) -> None:
+    """Compile what is needed beside that, by a search of no round and a climb of no step.
+
+    Args:
+        dipoles: whether for ratios of points with dipoles.
+    """
+    from nullpose.solver.kernels.links import min_log_ratio
+    from nullpose.solver.kernels.multistart import search_and_climb
+    from nullpose.solver.kernels.node import COLUMNS, keep_largest
+    from nullpose.solver.kernels.root import fill_root
+    from nullpose.solver.multistart import climb
+
+    if _is_compiled(search_and_climb, dipoles):
+        return
+    family, weight = _smallest_family(dipoles), np.ones(1)
+    up, high_m, row = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0]), np.zeros(COLUMNS)
+    climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
+    fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, row)
+    min_log_ratio(family.arrays, high_m, up, weight, weight)
+    keep_largest(weight, 1, row)
+
+
+def _smallest_family(dipoles: bool) -> Family:
+    """Build a family of one ratio: its arrays have the types of any other's."""
+    return Family(
+        ground_axes=np.zeros((1, 3)) if dipoles else None,
+        ground_leaks=np.zeros(1) if dipoles else None,
+        points_m=np.zeros((1, 3)),
+        numerator_isotropic=np.zeros(1),
+        numerator_weight=np.ones(1),
+        numerator_point=np.zeros(1, dtype=np.int64),
+        denominator_of=np.zeros(1, dtype=np.int64),
+        denominator_isotropic=np.ones(1),
+        denominator_start=np.zeros(2, dtype=np.int64),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+        low_m=np.zeros(3),
+        high_m=np.ones(3),
+        keep_out_points_m=np.zeros((0, 3)),
+        keep_out_m=1.0,
+    )

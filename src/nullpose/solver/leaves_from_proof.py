@@ -16,7 +16,7 @@ IntArray = NDArray[np.int64]
 
 
 def leaves_of(proof: Proof, axis: str) -> Leaves:
-    """Return a proof's leaves with their boxes as dyadic parts of the root.
+    """Convert a proof's leaves, their boxes as dyadic parts of the root.
 
     Args:
         proof: with its root and leaves.
@@ -57,7 +57,7 @@ def _of_dipole(proof: Proof) -> Leaves:
 
 
 def _of_profile(proof: Proof) -> Leaves:
-    """Return leaves of an antenna that is the same all round; they all hold at the bound."""
+    """Convert leaves of an antenna that is the same all round; they all hold at the bound."""
     from nullpose.solver.kernels.attitude import ANCHOR, CHART, HALF, WARM
 
     rows, none = proof.leaves, np.zeros(len(proof.leaves))
@@ -86,7 +86,7 @@ def _of_profile(proof: Proof) -> Leaves:
 
 
 def _parts(low: FloatArray, high: FloatArray, centre: FloatArray, half: FloatArray) -> IntArray:
-    """Return depth and index of boxes along each coordinate in turn, (l, 2 n)."""
+    """Locate boxes by depth and index along each coordinate in turn, (l, 2 n)."""
     flat = high <= low
     with np.errstate(divide="ignore", invalid="ignore"):
         depth = np.where(flat, 0, np.rint(np.log2(0.5 * (high - low) / half)))
@@ -97,7 +97,7 @@ def _parts(low: FloatArray, high: FloatArray, centre: FloatArray, half: FloatArr
 def _mixes(
     ratios: IntArray, weights: FloatArray, used: IntArray
 ) -> tuple[IntArray, tuple[dict[int, float], ...]]:
-    """Return each leaf's multipliers as an index, -1 for none, into those that differ.
+    """Index each leaf's multipliers, -1 for none, into those that differ.
 
     Args:
         ratios: (l, n) ratios of each leaf, those that count first.

@@ -19,9 +19,9 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Airframe, Scenario
+from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.proof import INTERRUPT
-from nullpose.solver.result import objective_of, status_of
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
@@ -81,7 +81,7 @@ class ManySolutions:
         return html_table(self._rows())
 
     def frame(self) -> Any:
-        """Return the answers in dB, metres and degrees as a data frame of pandas, a row for each pose.
+        """Tabulate the answers in dB, metres and degrees as a data frame of pandas, a row for each pose.
 
         Raises:
             UsageError: pandas is not installed.
@@ -89,7 +89,7 @@ class ManySolutions:
         return imported("pandas").DataFrame(self._rows())
 
     def _rows(self) -> list[dict[str, object]]:
-        """Return a row for each scene and vehicle; what is not known is not a number."""
+        """List a row for each scene and vehicle; a missing number is not a number."""
         columns = {
             **dict(zip(("scene", "vehicle"), np.indices(self.value.shape), strict=True)),
             "value_db": to_db(self.value),
@@ -108,7 +108,7 @@ class ManySolutions:
 
     @classmethod
     def blank(cls, scenes: int, airframes: int) -> ManySolutions:
-        """Return one to be filled.
+        """Make one to be filled.
 
         Args:
             scenes: how many.
@@ -136,7 +136,7 @@ def solve_many(
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> ManySolutions:
-    """Return the best poses of many scenes, each for one airframe or for several, with their bounds.
+    """Find the best poses of many scenes, each for one airframe or for several, with their bounds.
 
     What :func:`solve` does for one scene with the scheme optimum, without what it tells of each. Airframes
     are solved from the one with most freedom down: what bounds a vehicle bounds any that reaches fewer axes,
@@ -147,7 +147,7 @@ def solve_many(
         scenarios: what to solve; the smallest SINR or margin, not a secrecy rate, and one dipole each.
         airframes: the vehicles to try in every scene, None for an omnidirectional one; each scenario's own
             without them.
-        on_progress: called now and then with how many scenes are done and how many there are.
+        on_progress: called now and then with the number of scenes done and of all.
         options: as for :func:`solve`.
 
     Raises:
@@ -164,7 +164,7 @@ def solve_many(
         array([[1.254, 0.608],
                [1.206, 0.608]])
     """
-    asked = SolveOptions(**options)
+    limits = SolveOptions(**options)
     _check(scenarios)
     if airframes is not None and not len(airframes):
         raise UsageError("airframes: given none; allowed: one or more")
@@ -172,14 +172,14 @@ def solve_many(
     for first in range(0, len(scenarios), _BLOCK):
         block = scenarios[first : first + _BLOCK]
         vehicles = [[scenario.airframe] if airframes is None else list(airframes) for scenario in block]
-        outcomes = [_by_vehicle(*each, asked) for each in zip(block, vehicles, strict=True)]
+        outcomes = [_by_vehicle(*each, limits) for each in zip(block, vehicles, strict=True)]
         for column in range(results.value.shape[1]):
             alike = defaultdict(list)  # what is evaluated together has so many nodes and jammers
             for row, scenario in enumerate(block):
                 kind = (vehicles[row][column], len(scenario.nodes), len(scenario.jammers))
                 alike[kind].append((first + row, scenario, outcomes[row][column]))
             for (airframe, *_), answers in alike.items():
-                _fill(results, column, airframe, answers, asked)
+                _fill(results, column, airframe, answers, limits)
         if on_progress is not None:
             on_progress(first + len(block), len(scenarios))
     return results
@@ -198,27 +198,29 @@ def _check(scenarios: Sequence[Scenario]) -> None:
 
 
 def _by_vehicle(
-    scenario: Scenario, vehicles: Sequence[Airframe | None], asked: SolveOptions
+    scenario: Scenario, vehicles: Sequence[Airframe | None], limits: SolveOptions
 ) -> list[Outcome | None]:
-    """Return what each vehicle reaches, that with most freedom solved first; None where no pose was found."""
-    family, options = build_family(scenario), asked.of(scenario)
+    """Solve for each vehicle, that with most freedom first; None where no pose was found."""
+    family, options = build_family(scenario), limits.of(scenario)
     bands = [(0.0, 1.0) if vehicle is None else vehicle.axis_band for vehicle in vehicles]
     solved: dict[tuple[float, float], Outcome | None] = {}
     for band in sorted(dict.fromkeys(bands), key=lambda band: band[0] - band[1]):
-        wider = [known for (low, high), known in solved.items() if low <= band[0] and band[1] <= high]
-        solved[band] = _solve_band(family, band, [known for known in wider if known is not None], options)
+        wider = [outcome for (low, high), outcome in solved.items() if low <= band[0] and band[1] <= high]
+        solved[band] = _solve_band(
+            family, band, [outcome for outcome in wider if outcome is not None], options
+        )
     return [solved[band] for band in bands]
 
 
 def _solve_band(
     family: Family, band: tuple[float, float], wider: list[Outcome], options: SolveOptions
 ) -> Outcome | None:
-    """Return the best pose under a band of axes, given what wider bands reach: bounds, and poses."""
+    """Solve for a band of axes, using the bounds and poses of wider bands."""
     bound = min((each.upper_bound for each in wider if each.upper_bound is not None), default=math.inf)
     shared = [each.incumbent for each in wider if band[0] <= _upright(each.incumbent.axis) <= band[1]]
-    known = max(shared, key=lambda incumbent: incumbent.log_value, default=None)
+    start = max(shared, key=lambda incumbent: incumbent.log_value, default=None)
     try:
-        outcome = solve_and_prove(family, [AxisField.within(*band)], options, known=known, bound=bound)
+        outcome = solve_and_prove(family, [AxisField.within(*band)], options, known=start, bound=bound)
     except SolveError:
         return None
     if outcome.reason == INTERRUPT:
@@ -227,7 +229,7 @@ def _solve_band(
 
 
 def _upright(axis: FloatArray) -> float:
-    """Return ``u_z^2`` of an axis of any length."""
+    """Evaluate ``u_z^2`` of an axis of any length."""
     return float(axis[2] ** 2 / (axis @ axis))
 
 
@@ -236,14 +238,14 @@ def _fill(
     column: int,
     airframe: Airframe | None,
     answers: list[tuple[int, Scenario, Outcome | None]],
-    asked: SolveOptions,
+    limits: SolveOptions,
 ) -> None:
     """Put one airframe's answers into the results, their values evaluated at the poses."""
     results.reason[[row for row, _, outcome in answers if outcome is None], column] = NOWHERE
     placed = [(row, scenario, outcome) for row, scenario, outcome in answers if outcome is not None]
     if not placed:
         return
-    some = np.array([row for row, _, _ in placed])
+    rows = np.array([row for row, _, _ in placed])
     outcomes = [outcome for _, _, outcome in placed]
     position_m = np.array([each.incumbent.position_m for each in outcomes])
     axes = np.array([each.incumbent.axis for each in outcomes])
@@ -260,7 +262,7 @@ def _fill(
     for least, (_, scenario, outcome) in zip(value.tolist(), placed, strict=True):
         objective = objective_of(scenario, least, outcome.upper_bound)
         bound = math.inf if objective.upper_bound is None else objective.upper_bound
-        ends.append((bound, *status_of(objective, asked.of(scenario).target, outcome.reason)))
+        ends.append((bound, *status_of(objective, limits.of(scenario).target, outcome.reason)))
     bounds, statuses, reasons = zip(*ends, strict=True)
     found: dict[str, ArrayLike] = {
         "value": value,
@@ -275,4 +277,4 @@ def _fill(
         "boxes": [each.nodes for each in outcomes],
     }
     for name, values in found.items():
-        getattr(results, name)[some, column] = values
+        getattr(results, name)[rows, column] = values

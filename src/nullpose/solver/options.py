@@ -16,7 +16,7 @@ NODE_LIMIT = 10**9
 
 
 def default_gap(n_nodes: int) -> float:
-    """Return the relative gap asked for unless another is given: 1e-6 to 3 nodes, 1e-4 to 20, then 1e-3.
+    """Choose the relative gap unless another is given: 1e-6 to 3 nodes, 1e-4 to 20, then 1e-3.
 
     Args:
         n_nodes: how many nodes the scenario has.
@@ -27,7 +27,7 @@ def default_gap(n_nodes: int) -> float:
 
 
 def default_gap_of(scenario: Scenario) -> float:
-    """Return the default gap of a scenario, by its nodes, each counted once for every eavesdropper.
+    """Choose the default gap of a scenario, by its nodes, each counted once for every eavesdropper.
 
     For an antenna with a pattern 1e-3 to 3 nodes, and 2e-2 beyond.
 
@@ -91,7 +91,7 @@ class SolveOptions:
             _require_whole("threads", self.threads, 1)
 
     def of(self, scenario: Scenario, gap: float | None = None) -> SolveOptions:
-        """Return the options with what they leave to a scenario: the gap, and whether it is one of a rate.
+        """Fill in what the options leave to a scenario: the gap, and whether it is one of a rate.
 
         Args:
             scenario: what is to be solved.
@@ -108,7 +108,7 @@ class SolveOptions:
         return self.gap
 
     def ratio_gap(self, value: float) -> float:
-        """Return the relative gap of the smallest ratio that closes the gap asked for.
+        """Convert the gap asked for into a relative gap of the smallest ratio.
 
         Of a rate it is relative to a rate between ``LEAST_RATE_BPS_HZ`` and 1 bit/s/Hz, and to those beyond.
 

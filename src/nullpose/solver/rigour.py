@@ -1,4 +1,4 @@
-"""How sure a bound is, apart from how near it is: what checked it, or could."""
+"""How a solve ended and how sure its bound is: the words that users read, each with its sentence."""
 
 from __future__ import annotations
 
@@ -10,6 +10,28 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.errors import SolveError
 
 _ROUNDING = 1e-9  # relative: far more than the rounding of a value and of its bound
+
+
+class Status(StrEnum):
+    """How a solve ended."""
+
+    CERTIFIED = "certified"
+    GAP_NOT_REACHED = "gap-not-reached"
+    BEST_FOUND = "best-found"
+    GIVEN = "given"
+
+    @property
+    def message(self) -> str:
+        """The status as a sentence."""
+        return _ENDS[self]
+
+
+_ENDS = {
+    Status.CERTIFIED: "certified optimal within the requested gap",
+    Status.GAP_NOT_REACHED: "the upper bound is valid, but the requested gap was not reached",
+    Status.BEST_FOUND: "best of many local optima, not proved to be global",
+    Status.GIVEN: "the pose was given, not searched for",
+}
 
 
 class Rigour(StrEnum):

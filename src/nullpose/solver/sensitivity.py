@@ -89,7 +89,7 @@ class Sensitivity:
     all: float
 
     def loss_db(self, kind: str = "all") -> float:
-        """Return the loss of the ratio behind the value, dB; 1 bit/s/Hz of a rate is 3 dB.
+        """Evaluate the loss of the ratio behind the value, dB; 1 bit/s/Hz of a rate is 3 dB.
 
         Args:
             kind: attitude, position, jammers or all.
@@ -100,7 +100,7 @@ class Sensitivity:
         return 0.0 if before == after else self.quantity.in_unit(before) - self.quantity.in_unit(after)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return sizes and values as plain data for JSON; None for minus infinity, and for dB of a rate."""
+        """Write sizes and values as plain data for JSON; None for minus infinity, and for dB of a rate."""
         unit = {"attitude": "deg", "position": "m", "jammers": "m"}
         kinds = {
             kind: {unit[kind]: size} for kind, size in zip(unit, asdict(self.sizes).values(), strict=True)
@@ -219,7 +219,7 @@ class _Search:
         return lowest, [points[order[of_set[order] == each]] for each in range(len(sets))]
 
     def _steps(self, points: FloatArray, slope: FloatArray, before: FloatArray) -> FloatArray:
-        """Return where each point goes by several steps, (n, steps, d).
+        """Step from each point in several ways, (n, steps, d).
 
         Steps against the slope g, the step ``-2 g / |g|^2`` that takes a ratio with the shape of a squared
         cone to its zero, and more of the last two rounds.
@@ -231,7 +231,7 @@ class _Search:
         return self._projected(points[:, None] - np.concatenate(steps, axis=1))
 
     def _slope(self, points: FloatArray, ratio: Any, values: FloatArray, free: Any) -> FloatArray:
-        """Return the slope of a ratio's logarithm at each point, zero where nothing is free, (n, d)."""
+        """Evaluate the slope of a ratio's logarithm at each point, zero where nothing is free, (n, d)."""
         slope = np.zeros(points.shape)
         row, column = np.nonzero(free)
         shifted = points[row]
@@ -241,7 +241,7 @@ class _Search:
         return slope
 
     def _ratios(self, points: FloatArray) -> FloatArray:
-        """Return every ratio at every point, (n, r)."""
+        """Evaluate every ratio at every point, (n, r)."""
         offsets_m = np.zeros((len(points), len(self.points_m), 3))
         offsets_m[..., :2] = self.sizes.jammers_m * points[:, 6:].reshape(*offsets_m.shape[:2], 2)
         errors: dict[str, Any] = {
@@ -287,17 +287,17 @@ class _Search:
         return np.asarray(points[row] + np.sum(worst - points[row, None], axis=1))
 
     def _projected(self, points: FloatArray) -> FloatArray:
-        """Return points with the part in each ball moved to its border if it is beyond."""
+        """Move the part in each ball to its border if it is beyond."""
         return np.asarray(points / np.maximum(1.0, self._lengths(points)))
 
     def _lengths(self, points: FloatArray) -> FloatArray:
-        """Return the length of the part in each ball, at each of its coordinates, (..., d)."""
+        """Measure the part in each ball, at each of its coordinates, (..., d)."""
         squares = np.add.reduceat(points * points, self.first, axis=-1)
         return np.asarray(np.sqrt(squares)[..., self.ball])
 
 
 def _on_cones(scenario: Scenario, pose: Pose, away_m: FloatArray, reach_m: float) -> FloatArray:
-    """Return places in whose direction a linear array hears a node, east + i north of the drone, (k, places).
+    """List places in whose direction a linear array hears a node, east + i north of the drone, (k, places).
 
     They lie on the cone about the array through the node; the node's own direction is among them, in which
     any array hears it.
@@ -324,7 +324,7 @@ def _on_cones(scenario: Scenario, pose: Pose, away_m: FloatArray, reach_m: float
 
 
 def _starts(ratios: FloatArray) -> Any:
-    """Return rows and ratios from which to descend: the worst rows, and the worst row of the worst ratios."""
+    """Choose where to descend from: the worst rows, and the worst row of the worst ratios."""
     rows = np.argsort(np.min(ratios, axis=1))[:_STARTS].tolist()
     pairs = {(row, int(np.argmin(ratios[row]))) for row in rows}
     worst = np.argsort(np.min(ratios, axis=0))[:_STARTS].tolist()
@@ -333,11 +333,11 @@ def _starts(ratios: FloatArray) -> Any:
 
 
 def _lowest_of_each(going: Any, values: FloatArray, of_set: Any, most: int) -> Any:
-    """Return so many of each set's descents that go on, those with the lowest values."""
+    """Keep so many of each set's descents, those with the lowest values."""
     going = going[np.argsort(values[going])]
     return np.concatenate([going[of_set[going] == each][:most] for each in np.unique(of_set[going])])
 
 
 def _of(values: FloatArray, column: Any) -> FloatArray:
-    """Return the entry of each row that a column names."""
+    """Pick the entry of each row that a column names."""
     return np.asarray(values[np.arange(len(values)), column])

@@ -9,11 +9,10 @@ from functools import partial
 
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
-from nullpose.solver.compiling import limit_clock
+from nullpose.solver.compiling import compile_search, limit_clock, precompile
 from nullpose.solver.incumbent import Incumbent
 from nullpose.solver.multistart import multistart, search_settings
 from nullpose.solver.options import SolveOptions
-from nullpose.solver.precompile import compile_search, precompile
 from nullpose.solver.proof import Proof, prove
 
 

@@ -11,7 +11,7 @@ from nullpose.errors import UsageError
 from nullpose.scenario import Antenna, Scenario
 from nullpose.solver import solve
 from nullpose.solver.options import SolveKeywords, SolveOptions
-from nullpose.solver.provenance import provenance
+from nullpose.solver.result import provenance
 from nullpose.study.case import Case
 from nullpose.study.evaluation import evaluated
 from nullpose.study.table import ResultRow, ResultTable

@@ -14,7 +14,7 @@ from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Scenario
 from nullpose.scenario.airspace import BORDER_M
 from nullpose.solver import Result, Status
-from nullpose.solver.result import objective_of
+from nullpose.solver.objective import objective_of
 
 _TILT_RAD = 1e-9  # rounding of a stated tilt
 

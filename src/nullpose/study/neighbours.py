@@ -11,7 +11,8 @@ from nullpose.objectives import Quantity
 from nullpose.physics import evaluate
 from nullpose.scenario import Scenario
 from nullpose.solver import Result, Rigour, SolveOptions, Status
-from nullpose.solver.result import Stats, objective_of, status_of
+from nullpose.solver.objective import objective_of, status_of
+from nullpose.solver.result import Stats
 
 _FREER = {
     r"airframe\.tilt_max_(deg|rad)": 1.0,

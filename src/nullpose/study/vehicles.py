@@ -11,7 +11,7 @@ from nullpose.errors import SolveError
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
-from nullpose.solver.provenance import provenance
+from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
 from nullpose.study.case import OMNIDIRECTIONAL, STATED, Case, cases_of
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable

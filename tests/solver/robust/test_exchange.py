@@ -2,13 +2,12 @@
 
 import math
 import time
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from nullpose.physics import ErrorCase, ratios_under
+from nullpose.physics import ratios_under
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.robust import BindingCase
 from nullpose.scenario import Scenario
@@ -81,24 +80,3 @@ def test_a_general_solver_finds_no_better_promise(strong: Scenario, exchange: Ex
         reached.append(float(logs(search.x).min()))
     assert max(reached) <= best + 1e-6
     assert max(reached) == pytest.approx(best, abs=1e-3)
-
-
-def test_cases_are_kept_once(paper: Callable) -> None:
-    """A case that is in the family already is not added again."""
-    scene = paper(1.0)
-    exchange = Exchange(Inner(scene), AxisField.free(), SolveOptions(gap=1e-2), *POSE)
-    none = ErrorCase.none(scene)
-    assert not exchange.add([BindingCase(0, none), BindingCase(1, none)])
-    assert len(exchange.cases) == 2
-
-
-def test_levels_of_power_ratios_and_of_rates(paper: Callable) -> None:
-    """A level is the gap above a ratio; of rates, above the rate, and for a rate of zero by a little."""
-    inner = Inner(paper(1.0))
-    of_ratio = Exchange(inner, AxisField.free(), SolveOptions(gap=1e-2), *POSE)
-    assert of_ratio.level(0.25) == pytest.approx(0.2525, rel=1e-14)
-    assert of_ratio.level(0.25, 0.5) == pytest.approx(0.25125, rel=1e-14)
-    of_rate = Exchange(inner, AxisField.free(), SolveOptions(gap=1e-2, of_rate=True), *POSE)
-    assert math.log2(of_rate.level(2.0**0.5)) == pytest.approx(0.5 * 1.01, rel=1e-12)
-    assert math.log2(of_rate.level(8.0)) == pytest.approx(3.01, rel=1e-12)
-    assert math.log2(of_rate.level(0.5)) == pytest.approx(1e-5, rel=1e-9)

@@ -7,18 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from nullpose.physics.error_case import ErrorCase
 from nullpose.solver.robust.inner import Inner
 
 POSE = (np.array([5.0, 20.0, 12.0]), np.array([0.6, 0.0, 0.8]))
-
-
-def test_sets_are_told_apart(paper: Callable, erring: Callable) -> None:
-    """Known points have radius 0, balls theirs however they were stated, and the rest are ellipsoids."""
-    for extent, radius in ((0.0, 0.0), (2.0, 2.0), ([2.0, 2.0, 2.0], 2.0), ([2.0, 2.0, 1.0], -1.0)):
-        inner = Inner(erring(paper(1.0), extent_m=extent))
-        np.testing.assert_allclose(inner.radii, [0.0, 0.0, radius], rtol=1e-14)
-        assert inner.radii[2] >= radius  # rounded outwards
 
 
 def test_a_ball_stated_as_an_ellipsoid_is_the_ball(paper: Callable, erring: Callable) -> None:
@@ -80,11 +71,3 @@ def test_the_sign_of_the_axis_is_irrelevant(strong: object) -> None:
         assert other.worst == pytest.approx(one.worst, rel=1e-9)
         for case in (one.case, other.case):
             assert Rotation.from_matrix(case.rotation_world).magnitude() <= math.radians(2.0) * (1.0 + 1e-9)
-
-
-def test_nothing_uncertain_needs_no_cells(paper: Callable) -> None:
-    """Without errors there is one cell to look at for each node, and the case is that of no error."""
-    scene = paper(1.0)
-    for one in Inner(scene).worst(*POSE, 1e-2):
-        assert one.cells == 1
-        assert one.case.is_same(ErrorCase.none(scene))

@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from nullpose.errors import UsageError
 from nullpose.physics import objective_value
 from nullpose.scenario import Scenario
 from nullpose.solver import Result, Status, solve
@@ -151,15 +150,3 @@ def test_nothing_can_be_guaranteed(paper: Callable, erring: Callable) -> None:
     assert solved.objective.relative_gap == math.inf
     assert solved.status is Status.GAP_NOT_REACHED
     assert json.loads(json.dumps(solved.to_dict(), allow_nan=False))["relative_gap"] is None
-
-
-def test_arrays_and_bad_limits_are_refused(paper: Callable) -> None:
-    """Arrays have no robust pose, and limits are checked as everywhere."""
-    plain = paper(1.0).to_dict()
-    array = {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5}
-    with pytest.raises(UsageError, match="array"):
-        solve(Scenario(**(plain | {"array": array})), robust=True)
-    with pytest.raises(UsageError, match="gap"):
-        solve(paper(1.0), robust=True, gap=0.0)
-    with pytest.raises(UsageError, match="seed"):
-        solve(paper(1.0), robust=True, seed=-1)

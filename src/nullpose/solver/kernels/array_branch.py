@@ -15,14 +15,14 @@ from nullpose.solver.kernels.vectors import dot, minus, norm, row
 
 @inner_kernel
 def farthest(point, centre, half):
-    """Return how far a box goes from a point along each coordinate."""
+    """Measure how far a box goes from a point along each coordinate."""
     away = minus(centre, point)
     return abs(away[0]) + half[0], abs(away[1]) + half[1], abs(away[2]) + half[2]
 
 
 @inner_kernel
 def beyond_side(side, centre, half):
-    """Return how far a box goes beyond a forbidden piece's side, squared for a cylinder; negative if not."""
+    """Measure how far a box goes beyond a forbidden piece's side, squared for a cylinder; negative if not."""
     if side[0] == 0.0:
         normal = (side[1], side[2], side[3])
         reach = abs(normal[0]) * half[0] + abs(normal[1]) * half[1] + abs(normal[2]) * half[2]
@@ -33,7 +33,7 @@ def beyond_side(side, centre, half):
 
 @inner_kernel
 def is_forbidden(domain, centre, half):
-    """Return whether no position of a box is allowed: all of it inside one ball or one forbidden piece."""
+    """Test if no position of a box is allowed: all of it inside one ball or one forbidden piece."""
     for q in range(len(domain.keep_out_points_m)):
         far = farthest(row(domain.keep_out_points_m, q), centre, half)
         if dot(far, far) < domain.keep_out_m**2:
@@ -49,7 +49,7 @@ def is_forbidden(domain, centre, half):
 
 @inner_kernel
 def widest(problem, centre, half):
-    """Return the axis along which phases and amplitudes change most over a box."""
+    """Choose the axis along which phases and amplitudes change most over a box."""
     radius, nearest = 0.0, math.inf
     for n in range(len(problem.base)):
         radius = max(radius, math.hypot(problem.base[n, 0], problem.base[n, 1]))
@@ -66,7 +66,7 @@ def widest(problem, centre, half):
 
 @heap_kernel
 def branch_array(problem, domain, root, target, most, state):
-    """Return what the smallest ratio exceeds nowhere, and the boxes examined; fill the best centre seen.
+    """Bound the smallest ratio, and count the boxes examined; fill the best centre seen.
 
     The box with the highest bound is halved until none is above the target, or there are too many.
 

@@ -27,7 +27,7 @@ _CENTRE_M = 1e-9  # a position this near to the centre of a ball or a cylinder h
 
 @heap_kernel
 def walls(domain, x):
-    """Return how far a position is outside each keep-out ball and forbidden piece, and the ways out.
+    """Measure how far a position is outside each keep-out ball and forbidden piece.
 
     Distances, (w,) metres, negative inside; and their slopes, (w, 3), unit vectors.
     """
@@ -38,20 +38,20 @@ def walls(domain, x):
     for w in range(balls + pieces):
         side = domain.piece_sides[chosen[w - balls]] if w >= balls else domain.keep_out_points_m[w]
         if w >= balls and side[0] == 0.0:
-            distances[w], way = side_slack(side, x), (side[1], side[2], side[3])
+            distances[w], outward = side_slack(side, x), (side[1], side[2], side[3])
         else:
             away, radius = minus(x, side), domain.keep_out_m
             if w >= balls:
                 away, radius = (x[0] - side[1], x[1] - side[2], 0.0), side[4]
             length = max(norm(away), _CENTRE_M)
-            distances[w], way = length - radius, over(away, length)
-        store(way, ways[w])
+            distances[w], outward = length - radius, over(away, length)
+        store(outward, ways[w])
     return distances, ways
 
 
 @inner_heap_kernel
 def penalise(domain, x, stiffness, slope):
-    """Return half the stiffness times the square of how far a position is outside; take its slope away."""
+    """Evaluate half the stiffness times the square of how far a position is outside; take its slope away."""
     total = 0.0
     for i in range(3):
         beyond = max(domain.low_m[i] - x[i], 0.0) - max(x[i] - domain.high_m[i], 0.0)
@@ -68,7 +68,7 @@ def penalise(domain, x, stiffness, slope):
 
 @inner_heap_kernel
 def soften(problem, domain, x, beta, slope):
-    """Return ``-log(sum_k exp(-beta f_k)) / beta`` less the walls' penalty, and the worst f_k less it."""
+    """Evaluate ``-log(sum_k exp(-beta f_k)) / beta`` less the walls' penalty, and the worst f_k less it."""
     logs, slopes = np.empty(problem.nodes), np.empty((problem.nodes, len(x)))
     worst = respond(problem, x, logs, slopes)
     slope[:] = 0.0
@@ -120,7 +120,7 @@ def learn(inverse, step, bend):
 
 @inner_heap_kernel
 def best_of(problem, states):
-    """Return the state with the highest value, a copy; of one alone, that one."""
+    """Find the state with the highest value, a copy; of one alone, that one."""
     at, best = 0, -math.inf
     for s in range(len(states) if len(states) > 1 else 0):
         value = array_value(problem, states[s])
@@ -131,7 +131,7 @@ def best_of(problem, states):
 
 @heap_kernel
 def climb(problem, domain, states, betas, most):
-    """Return where a climb from the best of some states ends, its value, and evaluations.
+    """Climb from the best of several states: its end, the value there, and evaluations.
 
     The value is the smallest log ratio less the walls' penalty.
 

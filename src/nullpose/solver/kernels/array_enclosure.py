@@ -42,7 +42,7 @@ class Spans(NamedTuple):
 
 @inner_kernel
 def reach(point, centre, half, axes):
-    """Return the least and the greatest distance from a point to a box, along the first axes only."""
+    """Measure the least and the greatest distance from a point to a box, along the first axes only."""
     least, most = 0.0, 0.0
     for i in range(axes):
         away = abs(point[i] - centre[i])
@@ -53,7 +53,7 @@ def reach(point, centre, half, axes):
 
 @inner_heap_kernel
 def spans_over(problem, channels, centre, half):
-    """Return how amplitudes change.
+    """Bound how amplitudes change over a box.
 
     The amplitude ``sqrt(strength) |flat| / r^2`` has second derivatives of at most ``sqrt(strength) (1 /
     |flat| + 10 / r) / r^2``; infinite, if the box reaches over the point.
@@ -78,7 +78,7 @@ def spans_over(problem, channels, centre, half):
 
 @inner_kernel
 def linear_swing(channels, j, q, u, half):
-    """Return a bound on the linear change of ``u.(e_j - e_q)``, u being fixed to the body."""
+    """Bound the linear change of ``u.(e_j - e_q)``, u being fixed to the body."""
     e_j, e_q = row(channels.ways, j), row(channels.ways, q)
     apart = minus(e_j, e_q)
     rate_j = over(along(u, -dot(u, e_j), e_j), channels.distances[j])
@@ -91,7 +91,7 @@ def linear_swing(channels, j, q, u, half):
 
 @inner_kernel
 def further_swing(channels, spans, j, q, half):
-    """Return a bound on the rest of its change, for any horizontal u of unit length."""
+    """Bound the rest of its change, for any horizontal u of unit length."""
     diagonal, yaw = math.sqrt(dot(half, half)), half[3]
     near_j, near_q = spans.distance_m[j], spans.distance_m[q]
     apart = minus(row(channels.ways, j), row(channels.ways, q))
@@ -102,7 +102,7 @@ def further_swing(channels, spans, j, q, half):
 
 @inner_heap_kernel
 def node_bound(problem, channels, spans, nulls, q, centre, half, slope):
-    """Return a node's bound without its first-order terms, and fill the slope that these come from.
+    """Bound a node's ratio without its first-order terms, and fill the slope that these come from.
 
     Of a jammer's ``alpha exp(j s)``, s the change of the phase, ``alpha' + alpha s'`` is linear, and the rest
     is at most ``alpha'' + alpha (s'' + s^2 / 2) + alpha' s``.
@@ -137,7 +137,7 @@ def node_bound(problem, channels, spans, nulls, q, centre, half, slope):
 
 @inner_kernel
 def mean_of(share, level, slope, other, other_slope, half):
-    """Return the mean of two bounds with its first-order terms."""
+    """Evaluate the mean of two bounds with its first-order terms."""
     total = share * level + (1.0 - share) * other
     for a in range(4):
         total += abs(share * slope[a] + (1.0 - share) * other_slope[a]) * half[a]
@@ -146,7 +146,7 @@ def mean_of(share, level, slope, other, other_slope, half):
 
 @inner_kernel
 def best_share(level, slope, other, other_slope, half):
-    """Return the share of one bound in the best mean of two: where a slope cancels, or all or nothing."""
+    """Choose the share of one bound in the best mean of two: where a slope cancels, or all or nothing."""
     chosen, best = 1.0, mean_of(1.0, level, slope, other, other_slope, half)
     for a in range(5):
         share = 0.0
@@ -162,7 +162,7 @@ def best_share(level, slope, other, other_slope, half):
 
 @inner_heap_kernel
 def best_mean(levels, slopes, half):
-    """Return the least mean of the nodes' bounds that a few passes of pairwise blending find."""
+    """Find the least mean of the nodes' bounds that a few passes of pairwise blending find."""
     slope, level, best = slopes[0].copy(), math.inf, math.inf
     for q in range(len(levels)):
         total = mean_of(1.0, levels[q], slopes[q], 0.0, slope, half)
@@ -183,7 +183,7 @@ def best_mean(levels, slopes, half):
 
 @heap_kernel
 def box_bound(problem, centre, half):
-    """Return what the smallest ratio (not its logarithm) exceeds nowhere in a box.
+    """Bound the smallest ratio (not its logarithm) over a box.
 
     Args:
         problem: the array and its scene.

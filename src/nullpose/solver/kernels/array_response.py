@@ -42,7 +42,7 @@ class Nulls(NamedTuple):
 
 @inner_heap_kernel
 def channels_at(problem, x):
-    """Return the channels; an amplitude is ``sqrt(strength) |flat| / |r|^2``, flat r's horizontal part."""
+    """Evaluate the channels; an amplitude is ``sqrt(strength) |flat| / |r|^2``, flat r's horizontal part."""
     m, k = problem.points_m.shape[0], problem.base.shape[0]
     elements, values = np.empty((k, 2)), np.empty((m, k), np.complex128)
     leans, ways, distances = np.empty((m, 3)), np.empty((m, 3)), np.empty(m)
@@ -68,20 +68,20 @@ def channels_at(problem, x):
 @inner_kernel
 def beam_response(w, channels, i):
     """Return ``w^H h_i`` and its derivatives in east, north, up and yaw, w being held."""
-    h, elements, lean, way = channels.values[i], channels.elements, channels.leans[i], channels.ways[i]
+    h, elements, lean, toward = channels.values[i], channels.elements, channels.leans[i], channels.ways[i]
     total = east = north = 0j
     for n in range(h.shape[0]):
         part = w[n].conjugate() * h[n]
         total += part
         east += part * elements[n, 0]
         north += part * elements[n, 1]
-    ahead = east * way[0] + north * way[1]
+    ahead = east * toward[0] + north * toward[1]
     rate = -1j * _CYCLE / channels.distances[i]
     return total, (
-        lean[0] * total + rate * (east - ahead * way[0]),
-        lean[1] * total + rate * (north - ahead * way[1]),
-        lean[2] * total - rate * ahead * way[2],
-        1j * _CYCLE * (east * way[1] - north * way[0]),
+        lean[0] * total + rate * (east - ahead * toward[0]),
+        lean[1] * total + rate * (north - ahead * toward[1]),
+        lean[2] * total - rate * ahead * toward[2],
+        1j * _CYCLE * (east * toward[1] - north * toward[0]),
     )
 
 
@@ -95,9 +95,9 @@ def power_of(v):
 
 
 @inner_kernel
-def whiten(nulls, first, last, way, v):
+def whiten(nulls, first, last, step, v):
     """Multiply v by ``(I - g f f^H)`` of some factors in turn: all give ``S^H v``, all backwards ``S v``."""
-    for j in range(first, last, way):
+    for j in range(first, last, step):
         part = 0j
         for n in range(v.shape[0]):
             part += nulls.factors[j, n].conjugate() * v[n]
@@ -108,7 +108,7 @@ def whiten(nulls, first, last, way, v):
 
 @inner_heap_kernel
 def nulls_towards(values, jammers):
-    """Return the factors of ``R^-1`` by Potter's update: nothing of the jamming's size is subtracted."""
+    """Build the factors of ``R^-1`` by Potter's update: nothing of the jamming's size is subtracted."""
     nulls = Nulls(jammers, np.empty((len(jammers), values.shape[1]), np.complex128), np.empty(len(jammers)))
     for j in range(len(jammers)):
         for n in range(values.shape[1]):
@@ -167,5 +167,5 @@ def respond(problem, x, logs, slopes):
 
 @heap_kernel
 def array_value(problem, x):
-    """Return the smallest log ratio at a state, as :func:`respond`."""
+    """Evaluate the smallest log ratio at a state, as :func:`respond`."""
     return respond(problem, x, np.empty(problem.nodes), np.empty((0, 4)))

@@ -23,7 +23,7 @@ from nullpose.solver.robust.inner import Inner
 _CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
 _MOST_ROUNDS = 100
 _SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee
-_SAME = 1e-9
+_ROUNDING = 1e-9
 _FINER = 0.1  # accuracy of guarantees, as a share of the gap
 _ACCURACIES = 1e-6, 3e-3
 _LEAST_GAP, _WIDEST_GAP = 1e-8, 10.0  # of a proof
@@ -89,12 +89,12 @@ class Exchange:
         return bool(new)
 
     def accuracy(self) -> float:
-        """Return how close the guarantee of the best pose has to be to its worst case."""
+        """Choose how close the guarantee of the best pose has to be to its worst case."""
         finest, coarsest = _ACCURACIES
         return min(coarsest, max(finest, _FINER * self.limits.ratio_gap(self.best.worst)))
 
     def level(self, ratio: float, share: float = 1.0) -> float:
-        """Return the ratio that is a share of the gap above one, which counts as 1 for a rate of zero.
+        """Raise a ratio, at least 1 for a rate, by a share of the gap.
 
         Args:
             ratio: what is guaranteed.
@@ -110,7 +110,7 @@ class Exchange:
         return build_robust_family(self.inner.scenario, self.cases)
 
     def visit(self, position_m: FloatArray, axis: FloatArray, level: float = math.inf) -> list[BindingCase]:
-        """Return the worst cases at a pose that are below a level; the pose may be the best so far.
+        """Find the worst cases at a pose that are below a level; remember the pose if it is the best so far.
 
         Args:
             position_m: (3,) the position.
@@ -119,10 +119,10 @@ class Exchange:
         """
         unit = axis / np.linalg.norm(axis)
         worst = self.inner.worst(position_m, unit)
-        value = min(one.worst for one in worst)
+        value = min(case.worst for case in worst)
         if value > self.best.worst:
             self.best = Visited(position_m.copy(), unit, value)
-        return [one.binding for one in worst if one.worst < level * (1.0 - _SAME)]
+        return [case.binding for case in worst if case.worst < level * (1.0 - _ROUNDING)]
 
     def search(self, deadline: float) -> None:
         """Add cases until the finite family promises little more than the best pose guarantees.
@@ -147,7 +147,7 @@ class Exchange:
                 return
 
     def _search_once(self, settings: SearchSettings) -> Incumbent:
-        """Return the best pose of the finite family that a multistart or a climb from the best one finds."""
+        """Search the finite family by a multistart, and by a climb from the best pose so far."""
         family, field = self.family, self.axis_field
         with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
             anywhere = multistart(family, field, seed=self.limits.seed, settings=settings)
@@ -178,7 +178,7 @@ class Exchange:
         bound = proof.upper_bound
         self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)
         self.reason = proof.reason
-        if not proof.incumbent.log_value > start.log_value + _SAME:
+        if not proof.incumbent.log_value > start.log_value + _ROUNDING:
             return False
         new = self.visit(
             proof.incumbent.position_m, proof.incumbent.axis, math.exp(proof.incumbent.log_value)

@@ -43,12 +43,12 @@ class Guarantee:
     @property
     def nominal(self) -> float:
         """The smallest ratio without errors."""
-        return min(one.nominal for one in self.ratios)
+        return min(ratio.nominal for ratio in self.ratios)
 
     @property
     def lower(self) -> float:
         """A proved lower bound on the smallest ratio over all errors."""
-        return min(one.lower for one in self.ratios)
+        return min(ratio.lower for ratio in self.ratios)
 
     @property
     def worst(self) -> float:
@@ -58,7 +58,7 @@ class Guarantee:
     @property
     def binding(self) -> RatioGuarantee:
         """The ratio that is smallest in its worst case."""
-        return min(self.ratios, key=lambda one: one.worst)
+        return min(self.ratios, key=lambda ratio: ratio.worst)
 
     @property
     def case(self) -> ErrorCase:
@@ -69,7 +69,7 @@ class Guarantee:
 def guarantee(
     scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, *, accuracy: float = ACCURACY
 ) -> Guarantee:
-    """Return what a pose guarantees over all errors that the scenario allows, with a proof.
+    """Prove what a pose guarantees over all errors that the scenario allows.
 
     The errors are all of these together: an actual axis within ``attitude_error_deg`` of the commanded one,
     an actual position within ``position_error_m`` of the commanded one, every jammer or eavesdropper anywhere
@@ -98,7 +98,7 @@ def guarantee(
 
 
 def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy: float) -> Guarantee:
-    """Return what a pose guarantees, for a scenario that was prepared before.
+    """Prove what a pose guarantees in a scenario that was prepared before.
 
     Args:
         inner: the scenario, prepared.
@@ -122,12 +122,12 @@ def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy:
         position_m=p,
         axis=u,
         ratios=found,
-        cells=sum(one.cells for one in found),
+        cells=sum(ratio.cells for ratio in found),
     )
 
 
 def require_dipole(scenario: Scenario) -> Scenario:
-    """Return the scenario, whose antenna is one dipole.
+    """Refuse a scenario with an array; return any other.
 
     Args:
         scenario: any.

@@ -74,7 +74,7 @@ class Inner:
     def worst(
         self, position_m: FloatArray, axis: FloatArray, accuracy: float = 1.0
     ) -> tuple[RatioGuarantee, ...]:
-        """Return the worst error case of every ratio at a pose.
+        """Find the worst error case of every ratio at a pose.
 
         Args:
             position_m: (3,) the commanded position.
@@ -146,8 +146,8 @@ class Inner:
         self, u: FloatArray, y: FloatArray, offset: FloatArray, points: IntArray, moved: FloatArray
     ) -> ErrorCase:
         offsets_m = np.array(getattr(self.none, self.moved))
-        known = self.radii[points] == 0.0
-        offsets_m[points - len(self.scenario.nodes)] = np.where(known[:, None], 0.0, moved)
+        certain = self.radii[points] == 0.0
+        offsets_m[points - len(self.scenario.nodes)] = np.where(certain[:, None], 0.0, moved)
         case = replace(self.none, **{self.moved: offsets_m})
         if self.reach_m > 0.0:  # what cannot err has no rounding error either
             case = replace(case, position_offset_m=offset)
@@ -164,7 +164,7 @@ def _frame(u: FloatArray) -> Any:
 
 
 def _shapes(sets_m: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the radius of each set that is a ball, -1 for others, and axes and half lengths of all."""
+    """Describe sets by radius, -1 for no ball, and by axes and half lengths."""
     axes, semi, _ = np.linalg.svd(sets_m)
     largest = semi[:, :1]
     is_ball = np.all(semi >= largest * (1.0 - _ROUND_SET), axis=1)

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.objectives import Quantity
+from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import Pose, evaluate, pose_frames
 from nullpose.physics.error_case import ErrorCase
 from nullpose.scenario import Scenario
 from nullpose.solver.robust.guarantee import Guarantee
-from nullpose.solver.robust.wording import in_words
+
+_LEAST_RAD = 1e-9
+_LEAST_M = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -56,7 +58,7 @@ class GuardedPose:
         return in_words(self.scenario, self.guarantee.axis, self.guarantee.case)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the pose and its values as plain data for JSON."""
+        """Write the pose and its values as plain data for JSON."""
         return {
             **self.pose.to_dict(),
             "frames": pose_frames(self.scenario, self.pose).to_dict(),
@@ -68,13 +70,13 @@ class GuardedPose:
             "worst_case_errors": _plain(self.guarantee.case),
             "nodes": [
                 {
-                    "node": one.node,
-                    **({"eavesdropper": one.eavesdropper} if one.eavesdropper else {}),
-                    "nominal": one.nominal,
-                    "guaranteed": one.lower,
-                    "worst_found": one.worst,
+                    "node": ratio.node,
+                    **({"eavesdropper": ratio.eavesdropper} if ratio.eavesdropper else {}),
+                    "nominal": ratio.nominal,
+                    "guaranteed": ratio.lower,
+                    "worst_found": ratio.worst,
                 }
-                for one in self.guarantee.ratios
+                for ratio in self.guarantee.ratios
             ],
         }
 
@@ -105,7 +107,7 @@ class RobustDetails:
         return self.robust.guaranteed / guaranteed if guaranteed > 0.0 else math.inf
 
     def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
-        """Return both poses as plain data for JSON, over the keys of a result.
+        """Write both poses as plain data for JSON, over the keys of a result.
 
         Args:
             objective: what is guaranteed and the bound on it, as plain data.
@@ -128,3 +130,34 @@ def _plain(case: ErrorCase) -> dict[str, Any]:
         "jammer_offsets_m": case.jammer_offsets_m.tolist(),
         "eavesdropper_offsets_m": case.eavesdropper_offsets_m.tolist(),
     }
+
+
+def in_words(scenario: Scenario, axis: FloatArray, case: ErrorCase) -> str:
+    """Describe an error case as a phrase: what is off by how much, and in which direction.
+
+    Args:
+        scenario: has the names of jammers and eavesdroppers.
+        axis: (3,) the commanded unit antenna axis; the phrase speaks of its end that points up.
+        case: the error case.
+    """
+    up = axis if axis[2] >= 0.0 else -axis
+    parts = []
+    if case.rotation_rad > _LEAST_RAD:
+        lean = case.rotation_world @ up - up
+        parts.append(f"axis {math.degrees(case.rotation_rad):.3g} deg off, {_direction(lean)}")
+    moved = [("drone", case.position_offset_m)]
+    moved += zip(scenario.jammer_names, case.jammer_offsets_m, strict=True)
+    moved += zip(scenario.eavesdropper_names, case.eavesdropper_offsets_m, strict=True)
+    for name, offset_m in moved:
+        distance_m = float(np.linalg.norm(offset_m))
+        if distance_m > _LEAST_M:
+            parts.append(f"{name} {distance_m:.3g} m off, {_direction(offset_m)}")
+    return "; ".join(parts) if parts else "everything as stated"
+
+
+def _direction(vector: FloatArray) -> str:
+    """Describe a direction by its azimuth, from east towards north, and its elevation."""
+    east, north, up = vector
+    azimuth_deg = math.degrees(math.atan2(north, east)) % 360.0
+    elevation_deg = math.degrees(math.atan2(up, math.hypot(east, north)))
+    return f"towards azimuth {round(azimuth_deg) % 360:d} deg, elevation {round(elevation_deg):d} deg"

@@ -12,12 +12,11 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.solver.by_scheme import solve_by_scheme
-from nullpose.solver.compiling import limit_clock, working_clock
+from nullpose.solver.compiling import limit_clock, precompile, working_clock
+from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
-from nullpose.solver.precompile import precompile
 from nullpose.solver.proof import INTERRUPT
-from nullpose.solver.provenance import provenance
-from nullpose.solver.result import Result, Stats, objective_of, status_of
+from nullpose.solver.result import Result, Stats, provenance
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.robust.exchange import Exchange
 from nullpose.solver.robust.guarantee import guarantee_of, require_dipole
@@ -50,11 +49,11 @@ def solve_robust(scenario: Scenario, options: SolveOptions) -> Result:
         SolveError: no pose reaches every node.
     """
     limits = options.of(scenario, ROBUST_GAP)
-    stated, scenario = scenario, worst_polarised(require_dipole(scenario))
+    original, scenario = scenario, worst_polarised(require_dipole(scenario))
     inner = Inner(scenario)
     began = working_clock()
     search = SolveOptions(certify=False, seed=limits.seed)
-    nominal = solve_by_scheme(stated, Scheme.OPTIMUM, None, search).pose
+    nominal = solve_by_scheme(original, Scheme.OPTIMUM, None, search).pose
     field = AxisField.within(*scenario.axis_band)
     exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:
@@ -65,23 +64,23 @@ def solve_robust(scenario: Scenario, options: SolveOptions) -> Result:
         again = True
         while again:
             exchange.search(clock + limits.time_limit_s)
-            robust = _best(stated, exchange, robust)
+            robust = _best(original, exchange, robust)
             again = limits.certify and exchange.prove(exchange.level(robust.guarantee.lower), clock)
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
-    robust = _best(stated, exchange, robust)
+    robust = _best(original, exchange, robust)
     objective = objective_of(scenario, robust.guaranteed, exchange.upper_bound)
     is_close = robust.guarantee.worst <= exchange.level(robust.guarantee.lower)
     unsettled = "error cases that the search did not settle" if is_close else _MOST_CELLS_REACHED
     status, reason = status_of(objective, limits.target, exchange.reason or unsettled * limits.certify)
     return Result(
-        scenario=stated,
+        scenario=original,
         scheme="robust",
         status=status,
         # what is guaranteed rests on a floating-point proof, whether a bound is asked for or not
         objective=replace(objective, rigour=Rigour.FLOATING_POINT),
         pose=robust.pose,
-        links=evaluate(stated, robust.pose),
+        links=evaluate(original, robust.pose),
         reason=reason,
         stats=Stats(
             wall_s=working_clock() - began,
@@ -90,9 +89,9 @@ def solve_robust(scenario: Scenario, options: SolveOptions) -> Result:
             boxes=exchange.boxes,
         ),
         provenance=provenance(limits.seed) | {"gap": limits.target},
-        note="" if scenario is stated else POLARISATION,
+        note="" if scenario is original else POLARISATION,
         details=RobustDetails(
-            robust=robust, nominal=_guarded(stated, exchange, nominal), cases=len(exchange.cases)
+            robust=robust, nominal=_guarded(original, exchange, nominal), cases=len(exchange.cases)
         ),
     )
 

@@ -1,0 +1,114 @@
+"""The number that was maximised, the bound on it, and the status that follows from the two."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from nullpose.errors import SolveError
+from nullpose.objectives import Quantity
+from nullpose.scenario import Scenario
+from nullpose.solver.proof import INTERRUPT
+from nullpose.solver.rigour import Rigour, Status, bound_above
+
+_ROUNDING = 1e-6  # of a gap, by the rounding of value and bound: 1e-9 of a ratio is 1e-6 of the least rate
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Objective:
+    """The number that was maximised, evaluated at the reported pose, and what is proved about it.
+
+    Args:
+        name: that of its quantity, as in ``"min_sinr"``, the smallest SINR over the nodes (paper eq. 2.2).
+        value: that number: a power ratio, or bits/s/Hz for a rate.
+        value_db: the same in dB; not a number for a rate.
+        upper_bound: no pose exceeds this; None if nothing is proved.
+        relative_gap: ``(upper_bound - value) / value``, a rate below 1e-3 bits/s/Hz counting as so much; None
+            if nothing is proved.
+        rigour: how sure the bound is.
+    """
+
+    name: str
+    value: float
+    value_db: float
+    upper_bound: float | None = None
+    relative_gap: float | None = None
+    rigour: Rigour = Rigour.NONE
+
+    @property
+    def quantity(self) -> Quantity:
+        """What the number is of, and its unit."""
+        return Quantity.named(self.name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Write value and bound as plain data for JSON; None for a number that JSON cannot hold."""
+        return {
+            "name": self.name,
+            "value": self.value,
+            "value_db": _finite(self.value_db),
+            "upper_bound": self.upper_bound,
+            "relative_gap": _finite(self.relative_gap),
+        }
+
+
+def objective_of(
+    scenario: Scenario, value: float, ratio_bound: float | None, rigour: Rigour = Rigour.FLOATING_POINT
+) -> Objective:
+    """Report the value at a pose with the bound that was proved.
+
+    Args:
+        scenario: what it asks for decides which number it is.
+        value: that number.
+        ratio_bound: no pose has its smallest ratio above this; None if nothing is proved.
+        rigour: of the bound, if there is one.
+
+    Raises:
+        SolveError: the bound is below the value: a fault of nullpose.
+    """
+    quantity = Quantity.of(scenario)
+    bound = gap = None
+    if ratio_bound is not None:
+        ratio = 2.0**value if quantity.is_rate else value
+        bound = max(value, quantity.of_ratio(float(bound_above(ratio, ratio_bound))))  # log2 is rounded
+        gap = quantity.gap(value, bound)
+    return Objective(
+        name=quantity.name,
+        value=value,
+        value_db=math.nan if quantity.is_rate else quantity.in_unit(value),
+        upper_bound=bound,
+        relative_gap=gap,
+        rigour=Rigour.NONE if bound is None else rigour,
+    )
+
+
+def status_of(objective: Objective, requested_gap: float, reason: str) -> tuple[Status, str]:
+    """Decide from the reported numbers how a solve ended and why not better.
+
+    Certified means that the reported gap, by the quantity's own rule, is at most the one requested.
+
+    Args:
+        objective: value and bound, as reported.
+        requested_gap: relative.
+        reason: why the solver's proof stopped short of that gap; empty if it says that it did not.
+
+    Raises:
+        SolveError: the solver says that the gap is reached and the reported numbers do not, by more than
+            1e-6: a fault of nullpose.
+    """
+    gap = objective.relative_gap
+    if gap is None:
+        return Status.BEST_FOUND, reason
+    if gap <= requested_gap:
+        return Status.CERTIFIED, reason if reason == INTERRUPT else ""
+    if not reason and gap > requested_gap + _ROUNDING * (1.0 + requested_gap):
+        raise SolveError(
+            f"the proof reached a relative gap of {requested_gap:g}, but the reported value "
+            f"{objective.value!r} and bound {objective.upper_bound!r} are {gap:.3g} apart; "
+            "this is a fault of nullpose: please report it with the scenario"
+        )
+    return Status.GAP_NOT_REACHED, reason or "the rounding of value and bound"
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None
