@@ -1,14 +1,73 @@
-"""The verb `antenna compare`."""
+"""The verbs `antenna FILE` and `antenna compare`."""
 
 import json
+import math
 from collections.abc import Callable
+from pathlib import Path
 
+import pytest
 from typer.testing import Result
 
 Run = Callable[..., Result]
+DATA = Path(__file__).parents[1] / "antenna" / "data"
+HALF = DATA / "alone_half_5deg.out.gz"
 
 
-def test_table_and_answer(run: Run, paper: str) -> None:
+@pytest.mark.parametrize(
+    "words", [("antenna", HALF), ("antenna", "show", HALF), ("antenna", "--format", "nec", HALF)]
+)
+def test_the_table(run: Run, words: tuple[object, ...]) -> None:
+    """What was read, whether the word show is there or not, and options before the file or after."""
+    result = run(*words)
+    assert (result.exit_code, result.stderr) == (0, "")
+    for told in (
+        "alone_half_5deg.out.gz (nec)",
+        "2.14 dBi, at theta 90, phi 0",
+        "exact, at theta 0",
+        "linear along theta, at the peak",
+        "2400 MHz",
+        "steps of 5 degrees, with phases",
+    ):
+        assert told in result.stdout
+
+
+def test_json(run: Run) -> None:
+    """One object with every number of the table; an infinite depth is null."""
+    result = run("antenna", HALF, "--json")
+    assert result.exit_code == 0
+    data = json.loads(result.stdout)
+    assert {"source", "quantity", "notes", "peak_rad", "null_rad", "degree", "step_rad"} <= set(data)
+    assert data["peak_dbi"] == pytest.approx(2.14, abs=0.005)
+    assert data["null_db"] is None
+    assert data["peak_rad"] == pytest.approx([math.pi / 2.0, 0.0])
+
+
+def test_the_figure(run: Run, tmp_path: Path) -> None:
+    """It is written where it was asked for, and named."""
+    figure = tmp_path / "deeper" / "pattern.png"
+    result = run("antenna", HALF, "--figure", figure)
+    assert result.exit_code == 0
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert result.stdout.endswith(f"Wrote {figure}\n")
+    told = json.loads(run("antenna", HALF, "--figure", figure, "--json").stdout)
+    assert told["files"] == [str(figure)]
+
+
+def test_faults_are_one_message(run: Run, tmp_path: Path) -> None:
+    """Bad input exits with 2, nothing on standard output and the place on standard error."""
+    file = tmp_path / "pattern.csv"
+    file.write_text("theta_deg,phi_deg,gain_dbi\n0,0,0\n0,10,x\n", encoding="utf-8")
+    result = run("antenna", file)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(
+        f"error: {file}: 1 fault\n  line 3: got '0,10,x', must be 3 finite numbers"
+    )
+    for words in ((file, "--format", "msi"), (HALF, "--frequency", "1e9"), (tmp_path / "none.csv",)):
+        refused = run("antenna", *words)
+        assert (refused.exit_code, refused.stdout) == (2, "")
+
+
+def test_a_comparison_is_a_table_and_an_answer(run: Run, paper: str) -> None:
     """What is promised, received and possible, and the answer in a sentence at the end."""
     result = run("antenna", "compare", paper.replace("paper", "whips"))
     assert result.exit_code == 0
@@ -21,7 +80,7 @@ def test_table_and_answer(run: Run, paper: str) -> None:
     assert "24.11 dB less" in result.stdout
 
 
-def test_json(run: Run, paper: str) -> None:
+def test_json_of_a_comparison(run: Run, paper: str) -> None:
     """One object with the values, both solutions and the answer."""
     result = run("antenna", "compare", paper.replace("paper", "whips"), "--fast", "--json")
     assert result.exit_code == 0

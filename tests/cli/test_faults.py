@@ -1,5 +1,6 @@
 """Bad input at the command line: exit code 2, each fault with its place and what is allowed, no traceback."""
 
+import json
 import os
 import signal
 import subprocess
@@ -265,3 +266,30 @@ def test_reader_that_goes_away(good: Path, arguments: list[str]) -> None:
             [sys.executable, "-m", "nullpose", *words], stdout=pipe, stderr=subprocess.PIPE, check=False
         )
     assert (done.returncode, done.stderr) == (PIPE_CLOSED, b"")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "path", "words"),
+    [
+        (("--set", "jammers.M.power_w=-1"), "jammers[0].power_w", "must be a power in W"),
+        (("--scheme", "optimun"), "", "did you mean 'optimum'?"),
+        (("--sceme", "optimum"), "", "--sceme"),
+    ],
+)
+def test_a_fault_is_an_object(
+    run: Run, paper: str, arguments: tuple[str, ...], path: str, words: str
+) -> None:
+    """It has every fault with its path, and the exit code; standard output stays empty."""
+    result = run("solve", paper, "--json", *arguments)
+    told = json.loads(result.stderr.splitlines()[-1])
+    assert (result.exit_code, result.stdout, told["exit_code"]) == (2, "", 2)
+    assert list(told) == ["error", "source", "faults", "exit_code"]
+    assert told["faults"][0]["path"] == path
+    assert words in told["faults"][0]["message"]
+
+
+def test_every_fault_is_there(run: Run, paper: str) -> None:
+    """More than the twenty that a text tells."""
+    settings = [word for i in range(30) for word in ("--set", f"jammers.M{i}.power_w=1")]
+    told = json.loads(run("check", paper, "--json", *settings).stderr)
+    assert (told["error"], len(told["faults"])) == ("ScenarioError", 30)

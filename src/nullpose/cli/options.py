@@ -238,20 +238,17 @@ def error_sizes(text: str | None) -> ErrorSizes:
     from nullpose.errors import UsageError
     from nullpose.solver.sensitivity import ErrorSizes
 
-    names = [field.name for field in fields(ErrorSizes)]
+    names = {field.name: field.name for field in fields(ErrorSizes)}
     sizes: dict[str, float] = {}
     for part in [] if text is None else text.split(","):
         name, _, number = part.partition("=")
-        name = name.strip().replace("eavesdroppers_m", "jammers_m")
         try:
-            sizes[name] = float(number)
-        except ValueError:
-            name = ""
-        if name not in names:
+            sizes[(names | {"eavesdroppers_m": "jammers_m"})[name.strip()]] = float(number)
+        except (KeyError, ValueError):
             raise UsageError(
                 f"--off: given {part.strip()!r}; allowed: {', '.join(names)}, each with a number, as in "
                 "attitude_deg=2,jammers_m=200"
-            )
+            ) from None
     return ErrorSizes(**sizes)
 
 
