@@ -20,6 +20,7 @@ from nullpose.errors import Fault, OutputError, ScenarioError
 MOST_BYTES = 10_000_000
 """The largest file that is read, but for certificates and the manifests of studies."""
 
+_MOST_LISTS = 1_500_000  # of a certificate, which may be large: each takes some 64 bytes of memory
 _LONGEST_KEY = 40  # characters of a key that a message repeats
 
 
@@ -49,10 +50,12 @@ def parse_json(text: str, **options: Any) -> Any:
     """Parse a JSON text, in which no object gives a key twice, with options of ``json.loads``.
 
     Raises:
-        ScenarioError: it is no JSON, or gives a key twice.
+        ScenarioError: it is no JSON, gives a key twice, or would take too much memory.
     """
     place = ""
     try:
+        if text.count("[") + text.count("{") > _MOST_LISTS:
+            raise ValueError(f"it has more than {_MOST_LISTS} lists and objects")
         return json.loads(text, object_pairs_hook=_unique, **options)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
