@@ -145,7 +145,7 @@ def test_default_gaps_loosen_with_size() -> None:
 
 def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
     """A leaf of one stage that distances exclude begins the next with multipliers of different ratios."""
-    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_DIRECT_NODES", 10)
+    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((10, False),))
     for seed in range(4):
         family = build_family(random_scene(np.random.default_rng(seed), 6, 2, 30.0))
         proof = proof_of(family, AxisField.free(), gap=1e-2)
@@ -160,8 +160,7 @@ def test_a_long_try_is_shared(random_scene: Callable, monkeypatch: pytest.Monkey
     """Begun by one thread and gone on with by three, a try proves what one thread alone proves."""
     family = build_family(random_scene(np.random.default_rng(3), 5, 1, 30.0))
     alone = proof_of(family, AxisField.free(), gap=1e-4)
-    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_ALONE_NODES", 50)
-    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_LATE_SEEN", 50)
+    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((50, False), (200_000, True)))
     shared = proof_of(family, AxisField.free(), gap=1e-4, threads=3)
     assert alone.reason == shared.reason == ""
     assert shared.nodes > 100

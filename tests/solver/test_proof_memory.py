@@ -52,8 +52,7 @@ def test_no_number_of_boxes_ends_a_proof() -> None:
 def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where leaves do not fit into memory the proof is closed without them, and has no certificate."""
     scenario = whips(1)
-    monkeypatch.setattr(PROOF, "_DIRECT_NODES", 10)
-    monkeypatch.setattr(PROOF, "_ALONE_NODES", 10)
+    monkeypatch.setattr(PROOF, "_TRIES", ((10, False),))
     kept = solve(scenario, gap=1e-3, threads=1)
     monkeypatch.setattr(PROOF, "_MOST_BYTES", 1e4)
     dropped = solve(scenario, gap=1e-3, threads=1)

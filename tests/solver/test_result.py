@@ -13,7 +13,7 @@ import pytest
 from nullpose.physics import Link, Pose, evaluate
 from nullpose.scenario import Scenario
 from nullpose.solver import Objective, Result, Status, solve
-from nullpose.solver.proof import INTERRUPT
+from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.result import provenance
 
 

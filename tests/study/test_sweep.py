@@ -9,7 +9,7 @@ import pytest
 
 from nullpose import Scenario, ScenarioError, UsageError, load, solve
 from nullpose.scenario import apply_overrides
-from nullpose.solver.proof import INTERRUPT
+from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.study import sweep
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.problem.records import Axes
+from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS, FREE_AXIS, Axes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,8 +113,8 @@ class AxisField:
         # writable copies, as those are that kernels make: they are compiled for one kind of array
         offset, matrix = self.offset.copy(), self.matrix.copy()
         if not self.is_free:
-            return Axes(1, offset, matrix)
+            return Axes(AFFINE_AXIS, offset, matrix)
         if (low, high) == (0.0, 1.0):
-            return Axes(0, offset, matrix)
+            return Axes(FREE_AXIS, offset, matrix)
         offset[:2] = low, high
-        return Axes(3 if low == high else 2, offset, matrix)
+        return Axes(CONE_AXIS if low == high else BAND_AXIS, offset, matrix)

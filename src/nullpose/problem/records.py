@@ -40,8 +40,12 @@ class Domain(NamedTuple):
     zone_range_m: FloatArray = np.zeros((0, 2))
 
 
+FREE_AXIS, AFFINE_AXIS, BAND_AXIS, CONE_AXIS = 0, 1, 2, 3
+"""Kinds of axis field: any axis, affine in the position, a band of elevations, a cone about the vertical."""
+
+
 class Axes(NamedTuple):
-    """An axis field: 0 any axis, 1 affine in the position, 2 a band, 3 a cone.
+    """An axis field of one of the kinds.
 
     The ends of a band or a cone stand in the first two places of the offset.
     """

@@ -19,9 +19,9 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Airframe, Scenario
+from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveKeywords, SolveOptions
-from nullpose.solver.proof import INTERRUPT
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
@@ -220,7 +220,7 @@ def _solve_band(
     shared = [each.incumbent for each in wider if band[0] <= _upright(each.incumbent.axis) <= band[1]]
     start = max(shared, key=lambda incumbent: incumbent.log_value, default=None)
     try:
-        outcome = solve_and_prove(family, [AxisField.within(*band)], options, known=start, bound=bound)
+        outcome = solve_and_prove(family, [AxisField.within(*band)], options, incumbent=start, bound=bound)
     except SolveError:
         return None
     if outcome.reason == INTERRUPT:

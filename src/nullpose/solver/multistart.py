@@ -56,7 +56,7 @@ _NO_SEARCH = SearchSettings(coarse=0, polished=0, rounds=-1, patience=0)
 
 
 def search_settings(proof_follows: bool, field: AxisField) -> SearchSettings:
-    """Return how hard to try: lightly if a proof follows, which repairs what the search misses.
+    """Return the settings of a search: light if a proof follows, which repairs what the search misses.
 
     Args:
         proof_follows: whether one does.
@@ -71,9 +71,8 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     """Return positions worth a start of their own, (m, 3), some of which no grid would hit.
 
     Over the points' centre and over each interferer: the vertical case under strong jamming is a needle
-    straight
-    above the jammer, which begins at its keep-out ball. On the line of each two interferers, beside their
-    balls: there one axis has its null on both.
+    straight above the jammer, which begins at its keep-out ball. On the line of each two
+    interferers, beside their balls: there one axis has its null on both.
 
     Args:
         family: the ratios and their domain.
@@ -90,8 +89,8 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     for first, second in permutations(interferers[:_PAIRED], 2):
         apart_m = np.linalg.norm(second - first)
         if apart_m > 0.0:  # one point may stand for several that see different axes
-            way = (second - first) / apart_m
-            beside += [first + clear_m * way, first - clear_m * way]
+            direction = (second - first) / apart_m
+            beside += [first + clear_m * direction, first - clear_m * direction]
     return np.vstack([over, *beside]) if beside else over
 
 

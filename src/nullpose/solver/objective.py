@@ -9,7 +9,7 @@ from typing import Any
 from nullpose.errors import SolveError
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
-from nullpose.solver.proof import INTERRUPT
+from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.rigour import Rigour, Status, bound_above
 
 _ROUNDING = 1e-6  # of a gap, by the rounding of value and bound: 1e-9 of a ratio is 1e-6 of the least rate

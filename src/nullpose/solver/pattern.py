@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
 from functools import partial
 
 import numpy as np
@@ -17,23 +15,21 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.records import Reach
 from nullpose.scenario import Scenario
+from nullpose.solver.branch_and_bound import INSIDE, INTERRUPT, MOST_LEAVES, BranchAndBound
 from nullpose.solver.compiling import limit_clock
 from nullpose.solver.incumbent import Incumbent
 from nullpose.solver.multistart import NO_POSITION
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.pattern_search import PatternSearch
-from nullpose.solver.proof import INTERRUPT, MOST_LEAVES, Proof
+from nullpose.solver.proof import Proof
 from nullpose.solver.rigour import bound_above
 from nullpose.solver.solve_and_prove import Outcome
-from nullpose.solver.worker_pool import Kernel, WorkerPool, processors
+from nullpose.solver.worker_pool import Kernel, WorkerPool
 
-_AT_ONCE = 60_000  # cells that take about as long as a thorough search
-_CHUNK = 20_000  # cells between two looks at the clock
 _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
 _GAPS = (0.5, 0.1, 0.02)
 _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
-_INSIDE = 1.0 - 1e-4
-_DOUBT = 1e-9  # relative: a middle that is no better is the incumbent again
+_ROUNDING = 1e-9  # relative: a middle that is better by less is the incumbent again
 
 
 def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
@@ -56,7 +52,7 @@ def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
 
 
 def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
-    """Return which attitudes of an antenna the scenario's airframe reaches.
+    """Return the attitudes of an antenna that the scenario's airframe reaches.
 
     Args:
         scenario: with its airframe.
@@ -68,7 +64,7 @@ def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
     return Reach(tilt, mount, up, antenna.is_axisymmetric, antenna.harmonics.is_even)
 
 
-class PatternRun:
+class PatternRun(BranchAndBound):
     """One search and one proof.
 
     Args:
@@ -78,11 +74,13 @@ class PatternRun:
         options: what is asked for.
     """
 
+    chunk, nodes_of_search = 20_000, 60_000
+
     def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, options: SolveOptions) -> None:
-        self.family, self.antenna, self.reach, self.options = family, antenna, reach, options
+        super().__init__(options, limit_clock())
+        self.family, self.antenna, self.reach = family, antenna, reach
         self.search = PatternSearch(family, antenna, reach, options.seed)
-        self.cells = 0
-        self.doubt = _DOUBT
+        self.rounding = _ROUNDING
         self.leaves: FloatArray | None = None
         self.root = np.zeros((2, 3))
 
@@ -95,11 +93,12 @@ class PatternRun:
         self.search.compile()  # before the clock begins
         self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
         began = limit_clock()
-        self.thorough = not self.search.run(light=self.options.certify)
+        self.deadline = began + self.limits.time_limit_s
+        self.thorough = not self.search.run(light=self.limits.certify)
         if not math.isfinite(self.search.best):
             raise SolveError(NO_POSITION)
         reason = ""
-        if self.options.certify:
+        if self.limits.certify:
             reason = self._proved(began)
         position_m, rotation = self.search.pose
         found = Incumbent(
@@ -110,18 +109,18 @@ class PatternRun:
             starts=self.search.starts,
             evaluations=self.search.evaluations,
         )
-        if not self.options.certify:
+        if not self.limits.certify:
             return Outcome(incumbent=found)
         bound = float(bound_above(self.value, self.proved))
         if self.leaves is None:
-            return Outcome(incumbent=found, upper_bound=bound, reason=reason, cells=self.cells)
+            return Outcome(incumbent=found, upper_bound=bound, reason=reason, cells=self.nodes)
         proof = Proof(
             incumbent=found,
             upper_bound=bound,
             root=self.root,
             leaves=self.leaves,
             reason=reason,
-            nodes=self.cells,
+            nodes=self.nodes,
             is_even=self.reach.even,
         )
         return Outcome(incumbent=found, upper_bound=bound, reason=reason, proofs=(proof,))
@@ -129,69 +128,62 @@ class PatternRun:
     @property
     def value(self) -> float:
         """The best smallest ratio so far; 1 at least if it is one of a rate, which is never below zero."""
-        return math.exp(max(self.search.best, 0.0) if self.options.of_rate else self.search.best)
+        return math.exp(max(self.search.best, 0.0) if self.limits.of_rate else self.search.best)
 
     def _proved(self, began: float) -> str:
         """Close the gap asked for, or else wider ones; return why it was not closed."""
-        limits = self.options
-        whole = began + limits.time_limit_s
-        target = _INSIDE * limits.ratio_gap(self.value)
+        limits = self.limits
+        target = INSIDE * limits.ratio_gap(self.value)
         try:
             if self.proved <= self.value * (1.0 + target):
                 return ""
             until = began + _DIRECT_SHARE * limits.time_limit_s
             reason = self._stage(target, until)
-            for gap in _GAPS if reason and self.cells < limits.node_limit else ():
-                if gap > target and self._stage(gap, whole):
+            for gap in _GAPS if reason and self.nodes < self.node_limit else ():
+                if gap > target and self._stage(gap, self.deadline):
                     break
             if reason:
-                self._search_thoroughly()
+                self.search_thoroughly()
             return reason
         except KeyboardInterrupt:
             return INTERRUPT
 
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
-        threads = self.options.threads or processors()
-        root = self.root_of(gap)
-        workers, keep = WorkerPool(self.cells_of(root), threads, orientation=(3, 3)), self.reach.spins
-        with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
-            while not workers.done:
-                if limit_clock() > until:
-                    return f"the time limit of {self.options.time_limit_s:g} s"
-                if self.cells >= self.options.node_limit:
-                    return f"the node limit of {self.options.node_limit}"
-                self.cells += workers.work(self._excluding(gap, keep), _CHUNK, pool)
-                keep = keep and workers.filled <= MOST_LEAVES
-                for position_m, rotation in workers.better():
-                    # what does not help, by rounding, must not be met again and again
-                    self.doubt *= 1.0 if self.search.improve(position_m, rotation) else 10.0
-                if self.cells >= _AT_ONCE and not workers.done:
-                    self._search_thoroughly()
-                if self.options.on_progress is not None:
-                    self.options.on_progress(self.proved / self.value - 1.0, self.cells)
+        root, self.keeps_leaves = self.root_of(gap), self.reach.spins
+        workers = WorkerPool(self.cells_of(root), self.threads, orientation=(3, 3))
+        reason = self.work_off(workers, gap, self.node_limit - self.nodes, until, self.threads)
         bound = self.value * (1.0 + gap)
-        if bound < self.proved:
+        if not reason and bound < self.proved:
             self.proved, self.root = bound, root
-            self.leaves = workers.leaves() if keep else None
-        return ""
+            self.leaves = workers.leaves() if self.keeps_leaves else None
+        return reason
 
-    def _search_thoroughly(self) -> None:
-        """Search as without a proof, once: what a light search missed must not be lost to a long proof."""
+    def has_space(self, workers: WorkerPool) -> bool:
+        """Check that a certificate can hold the leaves."""
+        return workers.filled <= MOST_LEAVES
+
+    def improve(self, position_m: FloatArray, rotation: FloatArray) -> None:
+        """Take up a pose, and what a climb from there leads to."""
+        # what does not help, by rounding, must not be met again and again
+        self.rounding *= 1.0 if self.search.improve(position_m, rotation) else 10.0
+
+    def search_thoroughly(self) -> None:
+        """Search as without a proof, once."""
         if not self.thorough:
             self.thorough, light = True, self.search
-            self.search = PatternSearch(self.family, self.antenna, self.reach, self.options.seed)
+            self.search = PatternSearch(self.family, self.antenna, self.reach, self.limits.seed)
             self.search.compile()
             self.search.run(light=False)
             self.search.take(*light.pose)
             self.search.starts += light.starts
             self.search.evaluations += light.evaluations
 
-    def _excluding(self, gap: float, keep: bool) -> Kernel:
-        """Return the kernel that excludes all above ``value (1 + gap)``, and keeps the leaves if asked to."""
-        family, antenna = self.family, self.antenna
-        problem = family.arrays, family.domain, antenna.arrays, self.reach
-        return partial(self.branch, *problem, self.value * (1.0 + gap), self.value * (1.0 + self.doubt), keep)
+    def excluding(self, gap: float) -> Kernel:
+        """Return the kernel that excludes all above ``value (1 + gap)``."""
+        level, floor = self.value * (1.0 + gap), self.value * (1.0 + self.rounding)
+        problem = self.family.arrays, self.family.domain, self.antenna.arrays, self.reach
+        return partial(self.branch, *problem, level, floor, self.keeps_leaves)
 
     def root_of(self, gap: float) -> FloatArray:
         """Return corners, (2, 3), of a box outside which no pose reaches the best value, or a gap over it.
@@ -199,7 +191,7 @@ class PatternRun:
         Args:
             gap: relative; it counts for a rate, whose ratios tend to one far away.
         """
-        level = math.log(self.value) + (math.log1p(gap) if self.options.of_rate else 0.0)
+        level = math.log(self.value) + (math.log1p(gap) if self.limits.of_rate else 0.0)
         low_m, high_m = self.search.box(level)
         return np.array([low_m, np.maximum(low_m, high_m)])
 
@@ -240,7 +232,7 @@ class PatternRun:
     def _clearance(self, anchor: int, chart: int, middle: FloatArray, half: FloatArray) -> float:
         """Return the least cosine of the anchor's latitude over a box, in a chart."""
         order = [(chart + i) % 3 for i in range(3)]
-        way = np.abs(self.family.points_m[anchor] - middle)[order]
+        away_m = np.abs(self.family.points_m[anchor] - middle)[order]
         sides = half[order]
-        level = math.hypot(max(0.0, way[0] - sides[0]), max(0.0, way[2] - sides[2]))
-        return level / math.hypot(level, way[1] + sides[1]) if level > 0.0 else 0.0
+        level = math.hypot(max(0.0, away_m[0] - sides[0]), max(0.0, away_m[2] - sides[2]))
+        return level / math.hypot(level, away_m[1] + sides[1]) if level > 0.0 else 0.0

@@ -16,9 +16,9 @@ from nullpose.problem.family import Family
 from nullpose.problem.records import Reach
 from nullpose.solver.multistart import multistart
 
-_HARD = 30_000, 800, 10  # poses judged, climbed from and polished, where no proof follows
-_LIGHTLY = 6_000, 120, 4  # where one does, which repairs what this misses
-_ROUND = 1_500, 30, 2  # likewise, for an antenna that is the same all round
+_THOROUGH = 30_000, 800, 10  # poses judged, climbed from and polished, where no proof follows
+_LIGHT = 6_000, 120, 4  # where one does, which repairs what this misses
+_LIGHT_ROUND = 1_500, 30, 2  # likewise, for an antenna that is the same all round
 _FEW = 12  # degree up to which lobes are few
 _WANDERED = 600  # random steps of a climb
 _NEAR = 0.2  # radians, and as much of the scene, that the last part of a climb moves at most
@@ -93,8 +93,8 @@ class PatternSearch:
         """
         lobes = max(1, self.arrays.cosine.shape[0] // _FEW)  # of which most climbs lead to a small one
         light = light and lobes == 1
-        few = _ROUND if self.reach.spins else _LIGHTLY
-        drawn, climbs, polished = few if light else (lobes * count for count in _HARD)
+        few = _LIGHT_ROUND if self.reach.spins else _LIGHT
+        drawn, climbs, polished = few if light else (lobes * count for count in _THOROUGH)
         points = self.family.points_m
         margin = float(np.max(np.ptp(points, axis=0))) + 10.0 * self.family.keep_out_m
         widest_m = points.min(axis=0) - margin, points.max(axis=0) + margin
@@ -155,12 +155,12 @@ class PatternSearch:
         """Return rotations that have the strongest interferer, or the first point, where the gain is low."""
         weights = self.family.denominator_weight
         strongest = self.family.denominator_point[np.argmax(weights)] if len(weights) else 0
-        ways = self.family.points_m[strongest] - positions_m
+        to_strongest_m = self.family.points_m[strongest] - positions_m
         spins = Rotation.from_rotvec(
-            np.outer(self.rng.uniform(-math.pi, math.pi, len(ways)), [0.0, 0.0, 1.0])
+            np.outer(self.rng.uniform(-math.pi, math.pi, len(to_strongest_m)), [0.0, 0.0, 1.0])
         )
-        chosen = self.lowest[self.rng.integers(len(self.lowest), size=len(ways))]
-        return np.asarray(_frames(ways) @ spins.as_matrix() @ _frames(chosen).transpose(0, 2, 1))
+        chosen = self.lowest[self.rng.integers(len(self.lowest), size=len(to_strongest_m))]
+        return np.asarray(_frames(to_strongest_m) @ spins.as_matrix() @ _frames(chosen).transpose(0, 2, 1))
 
     def improve(self, position_m: FloatArray, rotation: FloatArray) -> bool:
         """Take up a pose, and what a climb from there leads to; return whether that is better than before.

@@ -16,8 +16,9 @@ from nullpose.notebook import html_table, imported
 from nullpose.physics import Link, Pose, pose_frames
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
+from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.objective import Objective
-from nullpose.solver.proof import INTERRUPT, Proof
+from nullpose.solver.proof import Proof
 from nullpose.solver.rigour import Rigour, Status
 from nullpose.solver.sensitivity import ErrorSizes, Sensitivity, sensitivity
 from nullpose.version import __version__

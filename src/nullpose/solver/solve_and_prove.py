@@ -48,7 +48,7 @@ def solve_and_prove(
     fields: Sequence[AxisField],
     options: SolveOptions,
     *,
-    known: Incumbent | None = None,
+    incumbent: Incumbent | None = None,
     bound: float = math.inf,
 ) -> Outcome:
     """Return the best pose over the axis fields, with a proof if one is asked for.
@@ -60,7 +60,7 @@ def solve_and_prove(
         family: the ratios and their domain.
         fields: the axis fields, one or more.
         options: what is asked for, its gap stated.
-        known: a pose under the only field, in place of a search.
+        incumbent: a pose under the only field, in place of a search.
         bound: known before of more axes than the fields have.
 
     Raises:
@@ -76,7 +76,7 @@ def solve_and_prove(
         searches.append(multistart(family, field, seed=options.seed, settings=settings))
         return searches[-1]
 
-    each = [known or searched(one, options.certify) for one in fields]
+    each = [incumbent or searched(field, options.certify) for field in fields]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
     best = each[chosen]
     proofs: list[Proof] = []

@@ -3,23 +3,16 @@
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from scipy.optimize import nnls
 
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.family import Family
 from nullpose.scenario import Airspace
-from nullpose.solver.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.borders import borders, choose_border, slope_and_rest
 from nullpose.solver.kernels.jit import kernel
 from nullpose.solver.kernels.node import BALL, CENTRE, COLUMNS, HALF, LEVEL, NU
 from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
 
 SEEDS = st.integers(0, 2**32 - 1)
-
-
-@kernel
-def multipliers_of(slopes, count, gradient, nu):
-    """Returns what the kernel does, which has no Python name of its own; so do the three after it."""
-    return border_multipliers(slopes, count, gradient, nu)
 
 
 @kernel
@@ -38,43 +31,6 @@ def borders_of(domain, row, sides, counts):
 def slope_of(side, row, slope):
     """Returns a constraint's value at a box's centre and its curvature, having filled its slope."""
     return slope_and_rest(side, row, slope)
-
-
-@given(seed=SEEDS, count=st.integers(1, 2))
-def test_multipliers_solve_the_least_squares(seed: int, count: int) -> None:
-    """They are not negative and bring the gradient as near to zero as any such multipliers could."""
-    rng = np.random.default_rng(seed)
-    slopes, gradient = np.full((2, 3), np.nan), rng.normal(size=3)
-    slopes[:count] = rng.normal(size=(count, 3)) * 10.0 ** rng.uniform(-2.0, 2.0, (count, 1))
-    nu = np.full(2, np.nan)
-    helps = multipliers_of(slopes, count, gradient, nu)
-    expected, _ = nnls(slopes[:count].T, -gradient)
-    assert helps == bool(np.any(expected > 0.0))
-    assert np.all(nu >= 0.0)
-    if helps:
-        np.testing.assert_allclose(nu[:count], expected, rtol=1e-6, atol=1e-9 * expected.max())
-    np.testing.assert_array_equal(nu[count:], 0.0)
-
-
-def test_of_two_constraints_the_one_that_helps_is_taken() -> None:
-    """However steeply the other rises against the gradient."""
-    slopes, nu = np.array([[1.0, 0.0, 0.0], [3.0, -0.1, 0.0]]), np.empty(2)
-    for order in ([0, 1], [1, 0]):
-        assert multipliers_of(slopes[order].copy(), 2, np.array([0.1, 5.0, 0.0]), nu)
-        assert nu[order.index(0)] == 0.0
-        assert nu[order.index(1)] > 0.0
-    assert not multipliers_of(slopes, 2, np.array([1.0, 0.0, 0.0]), nu)
-
-
-@pytest.mark.parametrize("first", [0, 1])
-def test_parallel_walls(first: int) -> None:
-    """Of two walls that face each other the one that pushes the right way is taken; no slope, no push."""
-    slopes, nu = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]), np.empty(2)
-    gradient = np.array([-2.0 if first == 0 else 2.0, 0.3, 0.0])
-    assert multipliers_of(slopes, 2, gradient, nu)
-    assert nu[first] == pytest.approx(2.0)
-    assert nu[1 - first] == 0.0
-    assert not multipliers_of(np.zeros((2, 3)), 1, gradient, nu)
 
 
 def row_of(centre: np.ndarray, half: np.ndarray) -> np.ndarray:

@@ -5,7 +5,6 @@ import pytest
 
 from nullpose.solver.kernels.axis import best_axis_of_forms
 from nullpose.solver.kernels.dual import dual_multipliers
-from nullpose.solver.kernels.symmetric import top_eigenvector
 
 ISOTROPIC = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
 
@@ -48,17 +47,6 @@ def test_multipliers_bound_the_best_axis(count: int) -> None:
         assert np.sum(matrix[:3]) == pytest.approx(1.0, abs=1e-12)
 
 
-def test_two_forms_have_no_gap() -> None:
-    """By Brickman's theorem the dual of two forms is what one axis reaches."""
-    rng = np.random.default_rng(5)
-    for _ in range(100):
-        forms = random_forms(rng, 2)
-        best = best_axis_of_forms(forms, np.empty(3))
-        multipliers, matrix = np.empty(2), np.empty(6)
-        dual_multipliers(forms, 0, 2, best, math.inf, 1e-8, ISOTROPIC, multipliers, matrix)
-        assert dual_value(forms, multipliers) == pytest.approx(best, rel=1e-6)
-
-
 def test_a_side_only_lowers_the_bound() -> None:
     """A constraint on the axis, with its multiplier, never raises the bound."""
     rng = np.random.default_rng(6)
@@ -74,14 +62,3 @@ def test_a_side_only_lowers_the_bound() -> None:
         bound = dual_multipliers(both, 1, 5, *arguments, start, confined, np.empty(6))
         assert bound <= unbound * (1.0 + 1e-5)
         assert dual_value(both, confined) == pytest.approx(bound, rel=1e-5)
-
-
-def test_top_eigenvector() -> None:
-    """The closed form's value agrees with the general solver; its vector nearly reaches it."""
-    rng = np.random.default_rng(7)
-    for form in [*random_forms(rng, 100), *rng.normal(size=(100, 6)), ISOTROPIC]:
-        v = np.empty(3)
-        top = top_eigenvector(form, v)
-        assert top == pytest.approx(np.linalg.eigvalsh(matrix_of(form))[-1], rel=1e-7, abs=1e-9)
-        assert np.linalg.norm(v) == pytest.approx(1.0, abs=1e-9)
-        assert v @ matrix_of(form) @ v == pytest.approx(top, rel=1e-3, abs=1e-4)

@@ -15,7 +15,7 @@ from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.scenario import Airspace
-from nullpose.solver.kernels.branch import EARLY, examine, workspace_of
+from nullpose.solver.kernels.branch import examine, workspace_of
 from nullpose.solver.kernels.jit import heap_kernel
 from nullpose.solver.kernels.node import (
     AFFINE,
@@ -45,7 +45,7 @@ JUST_BELOW = 1.0 - 1e-9
 @heap_kernel
 def examined(family, domain, axis_field, favourite, row, axis):
     """Returns what becomes of a node: the kernel itself has no Python name."""
-    goal = Goal(np.inf, favourite, EARLY)
+    goal = Goal(np.inf, favourite)
     return examine(family, domain, axis_field, goal, row, workspace_of(family), axis)[0]
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nullpose.objectives import Ratios
-from nullpose.solver.kernels.expansion import expand_point, frame_at, min_distance
+from nullpose.solver.kernels.expansion import expand_point, frame_at
 from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD
 
 POINTS = np.array([[0.0, 0.0, 0.0], [40.0, 10.0, 2.0], [17.0, 15.0, 4.0], [-20.0, 30.0, 1.0]])
@@ -69,13 +69,3 @@ def test_expansion_encloses_the_forms(
             if j == turning.anchor:  # along the null all is multiplied by the leak
                 along = (exact - linear)[2, 2]
                 assert leak * down * reach - slack <= along <= leak * up * reach + slack
-
-
-def test_distance_to_a_box() -> None:
-    """The distance from a point to a box is that to the nearest of its points."""
-    rng = np.random.default_rng(3)
-    for _ in range(50):
-        centre, half = rng.uniform(-30.0, 30.0, size=3), rng.uniform(0.0, 20.0, size=3)
-        nearest = np.clip(POINTS[1], centre - half, centre + half)
-        exact = np.linalg.norm(POINTS[1] - nearest)
-        assert min_distance(POINTS, 1, centre, half) == pytest.approx(exact, abs=1e-12)

@@ -1,8 +1,6 @@
 """The multistart's parts: the box of better poses, the way out of the balls, and the search itself."""
 
-import math
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -72,24 +70,6 @@ def test_no_better_pose_lies_outside_the_box_of_a_secrecy_family(seed: int, rand
         assert np.all((better >= low) & (better <= high))
 
 
-def test_the_box_of_the_paper(paper: Callable) -> None:
-    """At 0 dB the box is the airspace met with the cubes around the balls of 31.6 m about both nodes."""
-    low, high = box_of(build_family(paper(1.0)), 0.0)
-    reach = math.sqrt(1000.0)
-    np.testing.assert_allclose(low, [-reach, 50.0 - reach, 8.0], rtol=1e-14)
-    np.testing.assert_allclose(high, [reach, reach, 30.0], rtol=1e-14)
-
-
-def test_the_box_shrinks_as_the_level_rises(paper: Callable) -> None:
-    """A higher level cuts a smaller box; without a level there is only the airspace."""
-    family = build_family(paper(1.0))
-    boxes = [box_of(family, level) for level in (-math.inf, -2.0, -1.0, 0.0)]
-    np.testing.assert_array_equal(boxes[0], [family.low_m, family.high_m])
-    for (low, high), (inner_low, inner_high) in pairwise(boxes):
-        assert np.all(inner_low >= low)
-        assert np.all(inner_high <= high)
-
-
 def domain(low: np.ndarray, high: np.ndarray, centres: np.ndarray, radius: float) -> tuple[object, ...]:
     """Returns a box without balls as the kernels take it, with keep-out balls of its own."""
     family = Family(
@@ -147,13 +127,3 @@ def test_a_search_repeats_itself(paper: Callable) -> None:
     logs, out = np.empty(1), np.empty(2)
     assert min_log_ratio(family.arrays, first[3], first[4], logs, out) == first[0]
     assert np.sum(first[5]) == pytest.approx(1.0, abs=1e-12)
-
-
-@pytest.mark.parametrize("shift", [0.0, 0.25, 0.999])
-def test_a_search_counts_its_work(shift: float, paper: Callable) -> None:
-    """Starts are landmarks and polished positions; evaluations are at least the positions judged."""
-    _, starts, evaluations, *_ = run(
-        build_family(paper(1.0)), np.array([[0.0, 25.0, 8.0]]), np.full(3, shift)
-    )
-    assert 1 + 2 * 8 <= starts <= 1 + 4 * 8
-    assert evaluations >= 1 + 2 * 32

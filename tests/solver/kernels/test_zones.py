@@ -195,31 +195,3 @@ def test_positions_in_a_zone(seed: int, kind: str) -> None:
     clear = clear_by(airspace, positions)
     for p, away in zip(positions, clear, strict=True):
         assert abs(away) < HAIR_M or in_zone(domain, 0, p) == (away < 0.0)
-
-
-def test_corners_become_two_constraints() -> None:
-    """A corner to stay inside of holds both of its sides; one to stay outside of, one or the other."""
-    square = [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)]
-    centre, half = np.array([5.0, 5.0, 20.0]), np.full(3, 0.5)
-    sides, counts = np.zeros((MOST_ALTERNATIVES, 2, 5)), np.zeros(MOST_ALTERNATIVES, np.int64)
-    fence = domain_of(Airspace(altitude_m=(8.0, 40.0), geofence_m=square))
-    assert alternatives_of(fence, 0, row_of(centre, half), sides, counts) == 1
-    assert counts[0] == 2
-    zone = {"polygon_m": square, "altitude_m": (0.0, 20.2)}
-    block = domain_of(Airspace(altitude_m=(8.0, 40.0), no_fly=(zone,)))
-    assert alternatives_of(block, 0, row_of(centre, half), sides, counts) == 3
-    np.testing.assert_array_equal(counts[:3], [1, 1, 1])
-    np.testing.assert_array_equal(sides[2, 0], [0.0, 0.0, 0.0, 1.0, 20.2])
-
-
-def test_walls_that_face_each_other() -> None:
-    """Between two walls both hold; of a wall that is passed on either side, one or the other."""
-    lane = [(-0.2, -50.0), (0.2, -50.0), (0.2, 50.0), (-0.2, 50.0)]
-    centre, half = np.array([0.0, 3.0, 20.0]), np.full(3, 1.0)
-    sides, counts = np.zeros((MOST_ALTERNATIVES, 2, 5)), np.zeros(MOST_ALTERNATIVES, np.int64)
-    inside = domain_of(Airspace(altitude_m=(8.0, 40.0), geofence_m=lane))
-    assert alternatives_of(inside, 0, row_of(centre, half), sides, counts) == 1
-    assert counts[0] == 2
-    across = domain_of(Airspace(altitude_m=(8.0, 40.0), no_fly=({"polygon_m": lane},)))
-    assert alternatives_of(across, 0, row_of(centre, half), sides, counts) == 2
-    np.testing.assert_array_equal(counts[:2], [1, 1])

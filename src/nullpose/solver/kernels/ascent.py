@@ -57,7 +57,7 @@ class Pool(NamedTuple):
 
 @inner_kernel
 def holds(members, wanted):
-    """Return whether a number is among some."""
+    """Check for a number among several."""
     found = False
     for member in members:
         found = found or member == wanted
@@ -125,7 +125,7 @@ def exchange(pool, enter, sides, answer):
 
 @inner_kernel
 def model_optimum(pool, m, sides, total, slack, answer):
-    """Return how many forms are active where the model is best, filling them and their multipliers; or 0."""
+    """Fill the forms active where the model is best, and their multipliers; return how many, or 0."""
     active = pool.active
     for _ in range(_PIVOTS):
         if not solve_active(pool, m, sides, answer):

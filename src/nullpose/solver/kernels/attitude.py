@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 
+from nullpose.solver.kernels.constants import DIRECTION_BEND
 from nullpose.solver.kernels.jit import inner_kernel
 from nullpose.solver.kernels.vectors import (
     along,
@@ -28,8 +29,6 @@ from nullpose.solver.kernels.vectors import (
 CENTRE, HALF, FACE, CHART, ANCHOR, WARM = 0, 6, 12, 13, 14, 15
 """A cell's row: middle and half-widths of position, u, v and spin; its face, its chart, the index of its
 anchor, and the multipliers to begin with."""
-
-_BENT = 1.1548  # sqrt(4/3): |d''| of the direction d to a point on a straight line, over (speed / distance)^2
 
 
 @inner_kernel
@@ -50,7 +49,7 @@ def into_body(face, a):
 
 
 @inner_kernel
-def fill_frame(cell, way, frame):
+def fill_frame(cell, anchor_m, frame):
     """Fill how a cell's middle is turned and how that changes with its coordinates, in body axes.
 
     ``frame[0:3]`` are the images of the chart's axes: the columns of the rotation to the body.
@@ -60,18 +59,18 @@ def fill_frame(cell, way, frame):
 
     Args:
         cell: the cell.
-        way: to the anchor from its middle, in the chart's order.
+        anchor_m: from its middle to the anchor, in the chart's order.
         frame: output, (18, 3).
     """
     face = int(cell[FACE])
     cu, su, cv, sv = math.cos(cell[3]), math.sin(cell[3]), math.cos(cell[4]), math.sin(cell[4])
     c, s = math.cos(cell[5]), math.sin(cell[5])
     third = into_body(face, (su * cv, -sv, cu * cv))
-    one, two = (cu, 0.0, -su), (su * sv, cv, cu * sv)
-    first = into_body(face, along(scaled(c, one), s, two))
-    second = into_body(face, along(scaled(c, two), -s, one))
+    by_u, by_v = (cu, 0.0, -su), (su * sv, cv, cu * sv)
+    first = into_body(face, along(scaled(c, by_u), s, by_v))
+    second = into_body(face, along(scaled(c, by_v), -s, by_u))
     axes = (first, second, third)  # of the anchor's frame
-    x, y, z = way
+    x, y, z = anchor_m
     flat = x * x + z * z
     level, square = math.sqrt(flat), flat + y * y
     length = math.sqrt(square)
@@ -80,7 +79,7 @@ def fill_frame(cell, way, frame):
     store(combination(axes, (0.0, cb, -sb)), frame[1])
     store(combination(axes, (-sa, ca * sb, ca * cb)), frame[2])
     store(into_body(face, (0.0, 1.0, 0.0)), frame[6])
-    store(into_body(face, one), frame[7])
+    store(into_body(face, by_u), frame[7])
     store(third, frame[8])
     # of alpha = atan2(x, z) and beta = -atan2(y, level), by the way's coordinates
     slope_a = (z / flat, 0.0, -x / flat)
@@ -105,9 +104,9 @@ def fill_frame(cell, way, frame):
 
 
 @inner_kernel
-def in_body(frame, way):
+def in_body(frame, vector):
     """Return a way in the chart's order in body axes."""
-    return combination((row(frame, 0), row(frame, 1), row(frame, 2)), way)
+    return combination((row(frame, 0), row(frame, 1), row(frame, 2)), vector)
 
 
 @inner_kernel
@@ -124,18 +123,18 @@ def move(frame, a, firsts, seconds):
         store(minus(cross(row(frame, 3 + i), a), row(frame, i)), firsts[i])
         store(cross(row(frame, 6 + i), a), firsts[3 + i])
     for i in range(3):
-        about, step, here = row(frame, 3 + i), row(frame, i), row(firsts, i)
+        about, step, slope = row(frame, 3 + i), row(frame, i), row(firsts, i)
         for j in range(i, 3):
             bent = along(cross(row(frame, 9 + 3 * i + j), a), 1.0, cross(about, row(firsts, j)))
             store(minus(bent, cross(row(frame, 3 + j), step)), seconds[i, j])
             store(cross(row(frame, 6 + i), row(firsts, 3 + j)), seconds[3 + i, 3 + j])
         for j in range(3):
-            store(cross(row(frame, 6 + j), here), seconds[i, 3 + j])
+            store(cross(row(frame, 6 + j), slope), seconds[i, 3 + j])
 
 
 @inner_kernel
-def rates(cell, reach_m, anchor_way, anchor_near_m):
-    """Return how fast a cell's frames turn along any straight line from its middle into it.
+def rates(cell, reach_m, anchor_m, anchor_near_m):
+    """Bound how fast a cell's frames turn along any straight line from its middle into it.
 
     Bounds of the turning, of its first and of its second derivative, for the frame that holds the anchor
     alone and for the whole; infinite where the chart's pole is too near.
@@ -143,7 +142,7 @@ def rates(cell, reach_m, anchor_way, anchor_near_m):
     Args:
         cell: the cell.
         reach_m: half-diagonal of its positions.
-        anchor_way: to the anchor from its middle, in the chart's order.
+        anchor_m: from its middle to the anchor, in the chart's order.
         anchor_near_m: the least distance between anchor and cell.
     """
     hu, hv, hs = cell[9], cell[10], cell[11]
@@ -151,30 +150,30 @@ def rates(cell, reach_m, anchor_way, anchor_near_m):
     held = (wy, hu * hv, hu * hu * hv)
     we, we2 = wy + hs, hu * hv + hs * wy
     we3 = held[2] + hs * (hu * hv + wy * wy)
-    level = math.hypot(anchor_way[0], anchor_way[2]) - reach_m
+    level = math.hypot(anchor_m[0], anchor_m[2]) - reach_m
     if level <= 0.0 or anchor_near_m <= 0.0:
         return held, (math.inf, math.inf, math.inf)
-    high = abs(anchor_way[1]) + reach_m
+    high = abs(anchor_m[1]) + reach_m
     sb = min(1.0, high / math.hypot(high, level))  # of the largest latitude
     k = 1.0 / math.sqrt(max(1e-12, 1.0 - sb * sb))
     e, ea = reach_m / anchor_near_m, reach_m / level
     alpha = (ea, ea * ea, 2.0 * ea**3)  # of the angle to a point on a straight line
-    b1, b2 = e, k * (_BENT + sb) * e * e
+    b1, b2 = e, k * (DIRECTION_BEND + sb) * e * e
     b3 = 3.0 * k * e**3 + 3.0 * sb * k * b1 * b2 + b1**3
     r1 = min(k * e, math.hypot(alpha[0], b1))
     r2 = math.sqrt(b2 * b2 + alpha[1] ** 2 + (alpha[0] * b1) ** 2)
     r3 = math.sqrt(
         b3 * b3 + (alpha[2] + alpha[0] * b1 * b1) ** 2 + (2.0 * alpha[1] * b1 + alpha[0] * b2) ** 2
     )
-    one = we + r1
-    two = we2 + we * r1 + r2
-    three = we3 + we2 * r1 + we * we * r1 + 2.0 * we * r2 + r3
-    return held, (one, two, three)
+    turning = we + r1
+    second = we2 + we * r1 + r2
+    third_rate = we3 + we2 * r1 + we * we * r1 + 2.0 * we * r2 + r3
+    return held, (turning, second, third_rate)
 
 
 @inner_kernel
 def direction_rate(cell, frame, a, turning, away):
-    """Return how far the direction to a point moves at most from a cell's middle into it, radians.
+    """Bound how far the direction to a point moves from a cell's middle into it, radians.
 
     From its derivatives at the middle, and a bound on the second derivative between; or from the turning and
     the way moved alone, where that is less.
@@ -205,7 +204,7 @@ def direction_rate(cell, frame, a, turning, away):
         for j in range(i, 6):
             both = abs(dot(steps[i], steps[j]) - along_i * dot(steps[j], b))
             total += both if i == j else 2.0 * both
-    between = turning[1] + turning[0] ** 2 + 2.0 * turning[0] * away + _BENT * away * away
+    between = turning[1] + turning[0] ** 2 + 2.0 * turning[0] * away + DIRECTION_BEND * away * away
     return min(whole, math.sqrt(total) + between)
 
 
@@ -229,7 +228,12 @@ def third(turning, v, e, away, g0, g1, g2, g3):
     w1, w2, w3 = turning
     bent = w2 + 0.5 * w1 * w1 + 2.0 * w1 * away + away * away
     jerk = (
-        w3 + 3.0 * w2 * w1 + w1**3 + 3.0 * (w2 + w1 * w1) * away + 3.0 * w1 * _BENT * away**2 + 3.0 * away**3
+        w3
+        + 3.0 * w2 * w1
+        + w1**3
+        + 3.0 * (w2 + w1 * w1) * away
+        + 3.0 * w1 * DIRECTION_BEND * away**2
+        + 3.0 * away**3
     )
     curve = g3 * v**3 + 3.0 * g2 * v * bent + g1 * (jerk + v**3)
     return (24.0 * e**3 * g0 + 18.0 * e * e * g1 * v + 6.0 * e * (g2 * v * v + g1 * bent) + curve) / 6.0

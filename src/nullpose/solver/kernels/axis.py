@@ -93,35 +93,35 @@ def equal_cone(difference, curves):
 
 
 @inner_kernel
-def add_candidate(known, members, v, count, floor):
+def add_candidate(found, members, v, count, floor):
     """Append a direction at which the working set's smallest form reaches ``floor``; return the count."""
     normalise(v)
     smallest = math.inf
     for m in range(members):
-        smallest = min(smallest, form_value(known.forms, m, v))
+        smallest = min(smallest, form_value(found.forms, m, v))
     if not smallest >= floor or count >= _MAX_CANDIDATES:
         return count
-    copy_into(v, known.directions[count])
-    known.values[count] = smallest
+    copy_into(v, found.directions[count])
+    found.values[count] = smallest
     return count + 1
 
 
 @inner_kernel
-def add_roots(known, members, poly, degree, curve, count, floor):
+def add_roots(found, members, poly, degree, curve, count, floor):
     """Append the points of a curve at which a polynomial of its parameter is zero; return the count."""
     roots, v = scratch(12), scratch(3)
     for root in range(real_roots(poly, degree, roots)):
         s = roots[root]
         for d in range(3):
             v[d] = curve[0, d] + s * (curve[1, d] + s * curve[2, d])
-        count = add_candidate(known, members, v, count, floor)
+        count = add_candidate(found, members, v, count, floor)
     return count
 
 
 @inner_kernel
-def add_pair(known, members, i, j, count, floor):
+def add_pair(found, members, i, j, count, floor):
     """Append the candidates on which forms i and j of the working set are equal; return the count."""
-    forms = known.forms
+    forms = found.forms
     difference, curves, poly = scratch(6), scratch(4, 3, 3), scratch(9)
     q, n = scratch(5), scratch(5)
     for m in range(6):
@@ -137,29 +137,29 @@ def add_pair(known, members, i, j, count, floor):
             for b in range(5):
                 if 0 < a + b < 8:
                     poly[a + b - 1] += (a - b) * q[a] * n[b]
-        count = add_roots(known, members, poly, np.int64(6), curve, count, floor)
+        count = add_roots(found, members, poly, np.int64(6), curve, count, floor)
         for m in range(members):
             if m not in (i, j):
                 for d in range(6):
                     difference[d] = forms[m, d] - forms[i, d]
                 quartic(difference, curve, poly)
-                count = add_roots(known, members, poly, np.int64(4), curve, count, floor)
+                count = add_roots(found, members, poly, np.int64(4), curve, count, floor)
     return count
 
 
 @inner_kernel
-def add_single(known, members, i, count, floor):
+def add_single(found, members, i, count, floor):
     """Append the top eigenvector of form i of the working set; return the count."""
     matrix, values, vectors, v = scratch(3, 3), scratch(3), scratch(3, 3), scratch(3)
-    matrix_of(known.forms[i], matrix)
+    matrix_of(found.forms[i], matrix)
     eigen3(matrix, values, vectors)
     copy_into(vectors[:, 0], v)
-    return add_candidate(known, members, v, count, floor)
+    return add_candidate(found, members, v, count, floor)
 
 
 @inner_kernel
 def smallest_form(forms, v):
-    """Return which form is smallest at a vector, and its value."""
+    """Return the index of the smallest form at a vector, and its value."""
     least, smallest = 0, math.inf
     for k in range(forms.shape[0]):
         value = form_value(forms, k, v)
@@ -176,7 +176,7 @@ def best_axis_of_forms(forms, axis):
         forms: (m, 6), symmetric matrices as (xx, yy, zz, xy, xz, yz).
         axis: output, (3,).
     """
-    known = Candidates(forms.copy(), np.empty((_MAX_CANDIDATES, 3)), np.empty(_MAX_CANDIDATES))
+    found = Candidates(forms.copy(), np.empty((_MAX_CANDIDATES, 3)), np.empty(_MAX_CANDIDATES))
     new, lowest = 0, math.inf
     for k in range(forms.shape[0]):
         top, _ = largest_eigenvalue(forms[k])
@@ -186,22 +186,22 @@ def best_axis_of_forms(forms, axis):
     count, members = np.int64(0), 0
     while new >= members:
         for m in range(6):  # the working set stands first
-            known.forms[members, m], known.forms[new, m] = known.forms[new, m], known.forms[members, m]
+            found.forms[members, m], found.forms[new, m] = found.forms[new, m], found.forms[members, m]
         for c in range(count):
-            known.values[c] = min(known.values[c], form_value(known.forms, members, known.directions[c]))
+            found.values[c] = min(found.values[c], form_value(found.forms, members, found.directions[c]))
         members += 1
         floor = best - tolerance
-        count = add_single(known, members, members - 1, count, floor)
+        count = add_single(found, members, members - 1, count, floor)
         for i in range(members - 1):  # old pairs meet the new form on the curves traced here
-            count = add_pair(known, members, i, members - 1, count, floor)
+            count = add_pair(found, members, i, members - 1, count, floor)
         if count == 0:
             break
-        lead = np.argmax(known.values[:count])
-        new, smallest = smallest_form(known.forms, known.directions[lead])
+        lead = np.argmax(found.values[:count])
+        new, smallest = smallest_form(found.forms, found.directions[lead])
         if smallest > best:
             best = smallest
-            copy_into(known.directions[lead], axis)
-        if smallest >= known.values[lead] - tolerance:
+            copy_into(found.directions[lead], axis)
+        if smallest >= found.values[lead] - tolerance:
             break
     return best
 

@@ -11,7 +11,15 @@ import math
 
 import numpy as np
 
-from nullpose.problem.records import Axes
+from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, FREE_AXIS, Axes
+from nullpose.solver.kernels.constants import (
+    FORM_FALL,
+    FORM_RISE,
+    MIXED_FALL,
+    MIXED_RISE,
+    SWING_FALL,
+    SWING_RISE,
+)
 from nullpose.solver.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
 from nullpose.solver.kernels.denominators import expand_denominator
 from nullpose.solver.kernels.domain import contains
@@ -53,11 +61,6 @@ LIMIT = 1
 FULL = 2
 BETTER = 3
 
-EARLY = 0.0
-"""Split axes wherever there is a duality gap that outweighs the box."""
-LATE = 1.0
-"""Split axes only where no multipliers exclude even the box's centre: mostly far fewer nodes, or far more."""
-
 _EXCLUDED = 0
 _BY_POSITION = 1
 _BY_AXIS = 2
@@ -87,7 +90,7 @@ def strongest_point(family, centre):
 
 
 @inner_kernel
-def own_sine(axes, j, away):
+def dipole_sine(axes, j, away):
     """Return the sine of the angle between point j's dipole and a direction."""
     if axes is not None:
         return norm(cross(axes[j], away)) / norm(away)
@@ -109,7 +112,7 @@ def best_frame(family, axis_field, row):
     if (
         isotropic_share(family.ground_leaks, anchor) < 1.0
     ):  # the nearer to its own null, the faster its form turns
-        rho *= own_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
+        rho *= dipole_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
         if not rho > 0.0:
             return WORLD, anchor
     still = turning = 0.0
@@ -118,14 +121,14 @@ def best_frame(family, axis_field, row):
         square = min_square(points, family.numerator_point[k], centre, half)
         a = math.sqrt(square)
         scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
-        still += 6.0 * scale
-        turning += scale * (6.0 + a / rho * (16.0 + 8.31 * a / rho))
+        still += FORM_RISE * scale
+        turning += scale * (FORM_RISE + a / rho * (MIXED_RISE + SWING_RISE * a / rho))
     for e in range(family.denominator_weight.shape[0]):
         a = min_distance(points, family.denominator_point[e], centre, half)
         scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
-        still += 4.0 * scale
+        still += FORM_FALL * scale
         if family.denominator_point[e] != anchor:
-            turning += scale * (4.0 + a / rho * (12.0 + 6.31 * a / rho))
+            turning += scale * (FORM_FALL + a / rho * (MIXED_FALL + SWING_FALL * a / rho))
     return (TOWARDS_POINT if turning < still else WORLD), anchor
 
 
@@ -148,11 +151,11 @@ def examine(family, domain, axis_field, goal, row, workspace, axis):
     nearest = math.sqrt(nearest)
     if not nearest > _CLOSE * radius:
         return _BY_POSITION, side, 0
-    if axis_field.kind == 1:
+    if axis_field.kind == AFFINE_AXIS:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
             return examine_affine(family, domain, axis_field, goal, row, workspace, axis)
-    if axis_field.kind >= 2 and off_band(axis_field.offset, row):
+    if axis_field.kind >= BAND_AXIS and off_band(axis_field.offset, row):
         row[KIND] = OFF_BAND
         return _EXCLUDED, side, 0
     verdict, sought = examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis)
@@ -161,7 +164,7 @@ def examine(family, domain, axis_field, goal, row, workspace, axis):
 
 @inner_kernel
 def same_multipliers(row, other):
-    """Return whether two rows have the same multipliers."""
+    """Check whether two rows have the same multipliers."""
     same = row[COUNT] == other[COUNT] and row[BAND] == other[BAND]
     for s in range(int(row[COUNT])):
         same = same and row[INDEX + s] == other[INDEX + s] and row[WEIGHT + s] == other[WEIGHT + s]
@@ -170,13 +173,13 @@ def same_multipliers(row, other):
 
 @inner_kernel
 def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis):
-    """Return what becomes of a node whose axis is free, and whether multipliers were sought."""
+    """Examine a box whose axis is free; return the verdict and how often multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     basis = scratch(3, 3)
-    is_free, is_band = axis_field.kind != 1, axis_field.kind >= 2
+    is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
-        axis_field = Axes(np.int64(0), axis_field.offset, axis_field.matrix)
+        axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
     kind, anchor = best_frame(family, axis_field, row)
     frame = frame_at(family, kind, anchor, centre, half, basis)
     denominator, slopes = zeroed(6), zeroed(3, 6)
@@ -211,8 +214,11 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
         return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
     if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
         return _EXCLUDED, 1
+    # Where multipliers exclude the centre, they exclude the halves of the box soon: axes need not be split.
+    # With several denominators that takes long, unless they do so by more than the size of the box.
+    spare = coarseness if family.denominator_isotropic.shape[0] > 1 else 0.0
+    split_axes = followed and primal - reached > coarseness and primal > 1.0 - spare
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
-    split_axes = followed and primal - reached > coarseness and primal > goal.axes_above
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or radius == 0.0  # one position has no halves
     if split_axes and is_free:
@@ -224,7 +230,7 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
 
 @inner_kernel
 def lone_ratio(family, row, below):
-    """Return whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
+    """Check whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
     for k in range(family.numerator_weight.shape[0]):
         square = min_square(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
         most = family.numerator_isotropic[k] + family.numerator_weight[k] / square

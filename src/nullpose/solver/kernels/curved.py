@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from nullpose.solver.kernels.borders import border_multipliers, borders, slope_and_rest
+from nullpose.solver.kernels.constants import ROUNDING
 from nullpose.solver.kernels.enclosure import JET, link_jet
 from nullpose.solver.kernels.forms import entry
 from nullpose.solver.kernels.jit import inner_kernel, kernel
@@ -34,7 +35,6 @@ from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
 
 _SHARES = 5  # sizes of mu that are tried along concave directions
 _LESS = 0.25
-_ROUNDING = 2e-14  # relative to the terms summed: see "The certificate explained"
 
 
 @inner_kernel
@@ -96,9 +96,10 @@ def box_maximum(jet, half):
     """Return an upper bound on a jet over its box."""
     gradient, hessian, mu = scratch(3), scratch(3, 3), scratch(3)
     base = scaled_bound(jet, half, gradient, hessian)
-    if not base < 0.0:
+    if not base < 0.0:  # not even at the centre
         return base
-    tiny = -1e-6 * base
+    tiny = -1e-6 * base  # keeps the matrix definite where nothing bends
+    # diagonally dominant: cheap, and enough for most boxes
     for i in range(3):
         lean = hessian[i, i]
         for k in range(3):
@@ -117,7 +118,7 @@ def box_maximum(jet, half):
             for m in range(3):
                 part += max(0.0, values[m]) * vectors[i, m] * vectors[k, m]
             convex[i] += abs(part)
-    share = 1.0
+    share = 1.0  # along concave directions a smaller mu is better, how small depends on the slope
     for _ in range(_SHARES):
         for i in range(3):
             mu[i] = share * abs(gradient[i]) + convex[i] + tiny
@@ -130,7 +131,7 @@ def box_maximum(jet, half):
 
 @inner_kernel
 def excludes_curved(family, domain, axis_field, row, below, jet, total):
-    """Return whether the row's multipliers exclude its box; fill the jet of their sum.
+    """Check whether the row's multipliers exclude its box; fill the jet of their sum.
 
     Args:
         family: arrays of the family.
@@ -155,7 +156,7 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
         link_jet(family, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
         total[0], total[17] = total[0] + isotropic, total[17] + isotropic
         add_jet(row[WEIGHT + s] * family.numerator_weight[k], jet, total)
-    total[0], total[17] = total[0] + _ROUNDING * size, total[17] + _ROUNDING * size
+    total[0], total[17] = total[0] + ROUNDING * size, total[17] + ROUNDING * size
     row[NU] = 0.0
     if total[17] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
         return True
@@ -164,21 +165,21 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
 
 @inner_kernel
 def excludes_allowed(domain, row, total):
-    """Return whether a jet is negative wherever a border allows positions; fill its multiplier."""
+    """Check whether a jet is negative wherever a border allows positions; fill its multiplier."""
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
-    nu, ways, bent = scratch(2), scratch(2, 3), scratch(JET)
+    nu, border_slopes, bent = scratch(2), scratch(2, 3), scratch(JET)
     values, bends, axes = scratch(2), scratch(2), scratch_int(2)
     for a in range(alternatives):
         for c in range(counts[a]):
-            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
-        if not border_multipliers(ways, counts[a], total[1:4], nu):
+            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, border_slopes[c])
+        if not border_multipliers(border_slopes, counts[a], total[1:4], nu):
             return False
         copy_into(total, bent)
         for c in range(counts[a]):
             bent[0] += nu[c] * values[c]
             for i in range(3):
-                bent[1 + i] += nu[c] * ways[c, i]
+                bent[1 + i] += nu[c] * border_slopes[c, i]
                 if i < axes[c]:
                     bent[4 + i] += nu[c] * bends[c]
         if not box_maximum(bent, row[HALF:LEVEL]) < 0.0:

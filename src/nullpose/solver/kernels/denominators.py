@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from nullpose.solver.kernels.constants import NULL_BEND, NULL_MIXED, NULL_SWING, ROUNDING
 from nullpose.solver.kernels.expansion import expand_point, min_distance
 from nullpose.solver.kernels.forms import bilinear
 from nullpose.solver.kernels.jit import inner_kernel
@@ -11,9 +12,6 @@ from nullpose.solver.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIG
 from nullpose.solver.kernels.records import TOWARDS_POINT
 from nullpose.solver.kernels.scratch import scratch
 from nullpose.solver.kernels.symmetric import top_eigenvector
-
-ROUNDING = 2e-14
-"""Relative to the terms summed: a hundred units in the last place."""
 
 _LARGEST_SHARE = 0.5
 
@@ -72,20 +70,20 @@ def add_mixed_denominators(family, frame, row, matrix, slopes):
         weight = group_weight(family, row, s) * row[LEVEL]
         if weight > 0.0:
             g = family.denominator_of[int(row[INDEX + s])]
-            one, two = expand_denominator(
+            rest, rest_across = expand_denominator(
                 family, g, weight, frame, row[CENTRE:HALF], row[HALF:LEVEL], matrix, slopes
             )
-            everywhere += one
-            across += two
+            everywhere += rest
+            across += rest_across
     return everywhere, across
 
 
 @inner_kernel
 def null_rest(a, rho):
     """Return a bound on the second derivative of a link's vector w, in a frame that turns or stands still."""
-    rest = 2.0 / (a * a * a)
+    rest = NULL_BEND / (a * a * a)
     if rho < math.inf:
-        rest += 6.0 / (a * a * rho) + 3.155 / (a * rho * rho)  # 2 + 2 / sqrt(3), rounded up
+        rest += NULL_MIXED / (a * a * rho) + NULL_SWING / (a * rho * rho)
     return rest
 
 
@@ -116,11 +114,11 @@ def sharpen(family, frame, row, matrix, slopes):
             if frame.kind == TOWARDS_POINT and j == frame.anchor:
                 continue
             _, down = expand_point(family, j, frame, centre, half, form, form_slopes)
-            here, trace = bilinear(form, v, v), form[0] + form[1] + form[2]
+            value, trace = bilinear(form, v, v), form[0] + form[1] + form[2]
             rest = 0.5 * square * null_rest(min_distance(points, j, centre, half), frame.least_radius_m)
             plain = -0.5 * square * down
-            eta = rest / math.sqrt(max(here, 1e-12 * trace))
-            if eta < _LARGEST_SHARE and eta * here + rest * rest / eta < plain:
+            eta = rest / math.sqrt(max(value, 1e-12 * trace))
+            if eta < _LARGEST_SHARE and eta * value + rest * rest / eta < plain:
                 add_scaled(scale * eta, form, form_slopes, matrix, slopes)
                 change += scale * (rest * rest / eta - plain + ROUNDING * (trace + rest * rest / eta))
     for m in range(3):

@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solver.kernels.denominators import ROUNDING, group_weight
+from nullpose.solver.kernels.constants import (
+    ROUNDING,
+    VECTOR_BEND,
+    VECTOR_SLOPE,
+    VECTOR_SQUARE_BEND,
+    VECTOR_THIRD,
+)
+from nullpose.solver.kernels.denominators import group_weight
 from nullpose.solver.kernels.expansion import min_square
 from nullpose.solver.kernels.forms import add_point, entry, in_frame
 from nullpose.solver.kernels.jit import inner_kernel
 from nullpose.solver.kernels.link_vectors import (
-    BEND,
-    SLOPE,
-    THIRD,
     add_shear,
     size_of,
     third_of,
@@ -27,7 +31,6 @@ from nullpose.solver.kernels.scratch import scratch
 from nullpose.solver.kernels.symmetric import add_square, copy_table
 from nullpose.solver.kernels.vectors import dot, row
 
-_BENT = 8.67  # the second derivative of a link vector's square, times the fourth power of the distance
 _MOST_ETA = 0.25
 _SHARE = 0.1  # of the anchor's form that may be given up where the axis hardly sees it
 
@@ -120,10 +123,10 @@ def add_leak(family, j, has, shear, frame, centre, half, sign, scale, matrix, sl
     weight = sign * scale * family.leak
     square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2]
     if has and sign < 0.0 and shear.kind == WORLD:  # beside the dipole's own null, as in ``sharpen``
-        bound = size_of(second) + THIRD / least**4 * math.sqrt(square)
-        bend = 0.5 * square * min(BEND / least**3, bound)
+        bound = size_of(second) + VECTOR_THIRD / least**4 * math.sqrt(square)
+        bend = 0.5 * square * min(VECTOR_BEND / least**3, bound)
         eta = bend / math.sqrt(max(gain, 1e-300))
-        if eta < 0.5 and eta * gain + bend * bend / eta < 0.5 * square * _BENT / least**4:
+        if eta < 0.5 and eta * gain + bend * bend / eta < 0.5 * square * VECTOR_SQUARE_BEND / least**4:
             for m in range(3):
                 matrix[m] += (1.0 - eta) * weight * gain
                 rest[m] += abs(weight) * (bend * bend / eta + ROUNDING * gain)
@@ -142,12 +145,12 @@ def add_leak(family, j, has, shear, frame, centre, half, sign, scale, matrix, sl
     i2 = 1.0 / (least * least)
     most = 1.0 / least
     if has:
-        reach = 0.5 * square * BEND * i2 / least
+        reach = 0.5 * square * VECTOR_BEND * i2 / least
         for i in range(3):
             reach += half[i] * math.sqrt(dot(row(first, i), row(first, i)))
         most = min(most, math.sqrt(gain) + reach)
-    bent = 2.0 * (SLOPE * SLOPE * i2 * i2 + most * BEND * i2 / least) * (1.0 + e0) ** 2
-    bent += 8.0 * most * SLOPE * i2 * e1 * (1.0 + e0)
+    bent = 2.0 * (VECTOR_SLOPE * VECTOR_SLOPE * i2 * i2 + most * VECTOR_BEND * i2 / least) * (1.0 + e0) ** 2
+    bent += 8.0 * most * VECTOR_SLOPE * i2 * e1 * (1.0 + e0)
     bent += 2.0 * most * most * (e2 * (1.0 + e0) + e1 * e1)
     for m in range(3):
         matrix[m] += weight * gain
@@ -201,17 +204,17 @@ def add_constant(shear, half, weight, q, matrix, slopes, rest):
     if shear.kind != WORLD:
         still = shear.still
         for i in range(3):
-            one, other = scratch(3), scratch(3)  # E = one other^T
+            left, right = scratch(3), scratch(3)  # E = left right^T
             for m in range(3):
-                one[m] = still[m] if shear.is_dipole else shear.first[i, m]
-                other[m] = shear.first[i, m] if shear.is_dipole else still[m]
-            x = q[0] * one[0] + q[3] * one[1] + q[4] * one[2]
-            y = q[3] * one[0] + q[1] * one[1] + q[5] * one[2]
-            z = q[4] * one[0] + q[5] * one[1] + q[2] * one[2]
+                left[m] = still[m] if shear.is_dipole else shear.first[i, m]
+                right[m] = shear.first[i, m] if shear.is_dipole else still[m]
+            x = q[0] * left[0] + q[3] * left[1] + q[4] * left[2]
+            y = q[3] * left[0] + q[1] * left[1] + q[5] * left[2]
+            z = q[4] * left[0] + q[5] * left[1] + q[2] * left[2]
             turned = (x, y, z)
             for s in range(6):
                 a, b = entry(s)
-                slopes[i, s] += weight * (turned[a] * other[b] + turned[b] * other[a])
+                slopes[i, s] += weight * (turned[a] * right[b] + turned[b] * right[a])
         square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2]
         length = math.sqrt(dot(still, still))
         bend = length * shear.most[2] * square + (length * shear.most[0]) ** 2

@@ -8,7 +8,7 @@ from nullpose.solver.kernels.zones import in_zone
 
 @kernel
 def contains(domain, p):
-    """Return whether a position is in the box, outside of every keep-out ball and in no zone."""
+    """Check whether a position is in the box, outside of every keep-out ball and in no zone."""
     for i in range(3):
         if not domain.low_m[i] <= p[i] <= domain.high_m[i]:
             return False

@@ -36,7 +36,7 @@ _MARGIN = 0.1  # what more steps can gain, as a share of the distance to where t
 
 @inner_kernel
 def positive_definite(u):
-    """Return whether a form is positive definite, by its leading minors."""
+    """Check whether a form is positive definite, by its leading minors."""
     minors = scratch(6)
     return adjugate(u, minors) > 0.0 and minors[2] > 0.0 and u[0] > 0.0
 
@@ -70,17 +70,17 @@ def add_log_det(matrix, mu, system, gradient):
 
 
 @inner_kernel
-def feasible_step(matrix, slacks, changes, way, trial):
+def feasible_step(matrix, slacks, changes, direction, trial):
     """Return the largest tried share of a step that stays inside; fill the matrix there. Zero: none does."""
     step = 1.0
     for k in range(slacks.shape[0]):
         if changes[k] < 0.0:
             step = min(step, -0.95 * slacks[k] / changes[k])
     for _ in range(_BACKTRACKS):
-        trial[0], trial[1] = matrix[0] + step * way[0], matrix[1] + step * way[1]
-        trial[2] = matrix[2] - step * (way[0] + way[1])
+        trial[0], trial[1] = matrix[0] + step * direction[0], matrix[1] + step * direction[1]
+        trial[2] = matrix[2] - step * (direction[0] + direction[1])
         for i in range(3):
-            trial[3 + i] = matrix[3 + i] + step * way[2 + i]
+            trial[3 + i] = matrix[3 + i] + step * direction[2 + i]
         if positive_definite(trial):
             return step
         step *= 0.6
@@ -110,7 +110,7 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
     """
     rates, values, slacks, changes = np.empty((total, 6)), np.empty(total), np.empty(total), np.zeros(total)
     duals, system, gradient = np.empty(total), scratch(6, 6), scratch(6)
-    way, trial = scratch(6), scratch(6)
+    direction, trial = scratch(6), scratch(6)
     copy_into(start, matrix)
     for k in range(total):
         fill_slopes(forms[k], rates[k])
@@ -129,19 +129,19 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
         add_constraints(slacks, duals, rates, np.int64(6), mu, system, gradient)
         if not cholesky_factor(system, np.int64(6)):
             break
-        copy_into(gradient, way)
-        cholesky_solve(system, np.int64(6), way)
+        copy_into(gradient, direction)
+        cholesky_solve(system, np.int64(6), direction)
         for k in range(total):
-            changes[k] = inner(rates[k], way, 6)
-        step = feasible_step(matrix, slacks, changes, way, trial)
+            changes[k] = inner(rates[k], direction, 6)
+        step = feasible_step(matrix, slacks, changes, direction, trial)
         if not step > 0.0:
             break
         copy_into(trial, matrix)
-        s += step * way[5]
+        s += step * direction[5]
         for k in range(total):
-            values[k] += step * (changes[k] - rates[k, 5] * way[5])
+            values[k] += step * (changes[k] - rates[k, 5] * direction[5])
         smallest = smallest_of(values[sides:])
-        is_centred = inner(gradient, way, 6) <= mu
+        is_centred = inner(gradient, direction, 6) <= mu
         if smallest > stop or (is_centred and (mu <= end or mu * total <= _MARGIN * (below - smallest))):
             break
         if is_centred:

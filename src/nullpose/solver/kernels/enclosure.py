@@ -143,13 +143,13 @@ def of_gradients(i, k, power, dn, beta, sigma):
     beta_i, beta_k, sigma_i, sigma_k = bounds(beta, i), bounds(beta, k), bounds(sigma, i), bounds(sigma, k)
     fall_i = (-beta_i[1] - power * sigma_i[1], -beta_i[0] - power * sigma_i[0])
     fall_k = (-beta_k[1] - power * sigma_k[1], -beta_k[0] - power * sigma_k[0])
-    one, other = product(bounds(dn, i), fall_k), product(bounds(dn, k), fall_i)
+    left, right = product(bounds(dn, i), fall_k), product(bounds(dn, k), fall_i)
     bb = square(beta_i) if i == k else product(beta_i, beta_k)
     ss = square(sigma_i) if i == k else product(sigma_i, sigma_k)
     bs, sb = product(beta_i, sigma_k), product(sigma_i, beta_k)
     low = 2.0 * bb[0] + power * (bs[0] + sb[0] + (power + 1.0) * ss[0])
     high = 2.0 * bb[1] + power * (bs[1] + sb[1] + (power + 1.0) * ss[1])
-    return one[0] + other[0], one[1] + other[1], low, high
+    return left[0] + right[0], left[1] + right[1], low, high
 
 
 @inner_kernel

@@ -13,9 +13,10 @@ import math
 
 import numpy as np
 
+from nullpose.problem.records import BAND_AXIS, CONE_AXIS
 from nullpose.solver.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.constants import CONSTANT_FORM_BEND, ROUNDING
 from nullpose.solver.kernels.denominators import (
-    ROUNDING,
     add_mixed_denominators,
     add_scaled as add_with_slopes,
     sharpen,
@@ -54,16 +55,17 @@ _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 
 @inner_kernel
 def is_level(axis_field):
-    """Return whether an axis field holds the level axes only."""
-    return axis_field.kind == 3 and axis_field.offset[1] == 0.0
+    """Check whether an axis field holds the level axes only."""
+    return axis_field.kind == CONE_AXIS and axis_field.offset[1] == 0.0
 
 
 @inner_kernel
 def negative_at(matrix, slopes, x, y, z, level_axes):
-    """Return whether the linear matrix is negative definite at a step from the centre."""
+    """Check whether the linear matrix is negative definite at a step from the centre."""
     a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
     a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
     a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
+    # leading minors, not eigenvalues: this runs eight times for every box
     minor = a0 * a1 - a3 * a3
     if not (a0 < 0.0 and minor > _DEFINITE * a0 * a1):
         return False
@@ -89,8 +91,8 @@ def failing_corner(matrix, slopes, middle, half, level_axes):
 
 
 @inner_kernel
-def mended(matrix, slopes, half, corner, most, level_axes):
-    """Return whether a failing corner is negative once so much is taken off the diagonal."""
+def is_negative_without(matrix, slopes, half, corner, most, level_axes):
+    """Check whether a failing corner is negative once so much is taken off the diagonal."""
     less = scratch(6)
     copy_into(matrix, less)
     for m in range(3):
@@ -103,9 +105,9 @@ def mended(matrix, slopes, half, corner, most, level_axes):
 
 @inner_kernel
 def will_fail(forecast, row, part, level_axes):
-    """Return whether a part of a row's box will fail, by what its own multipliers come to there."""
+    """Check whether a part of a row's box will fail, by what its own multipliers come to there."""
     middle, half, matrix = scratch(3), part[HALF:LEVEL], scratch(6)
-    if forecast.rest[0] == math.inf:
+    if forecast.rest[0] == math.inf:  # no multipliers exclude even the centre
         return True
     whole = square = 0.0
     for i in range(3):
@@ -136,14 +138,14 @@ def add_side(form, weight, frame, matrix, matrix_slopes):
         matrix_slopes[i, 4] += weight * (x * (q[2] - q[0]) - y * q[3])
         matrix_slopes[i, 5] += weight * (y * (q[2] - q[1]) - x * q[3])
     size = q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + 2.0 * (q[3] ** 2 + q[4] ** 2 + q[5] ** 2)
-    return weight * 2.4143 * math.sqrt(2.0 * size) / (frame.least_radius_m * frame.least_radius_m)
+    return weight * CONSTANT_FORM_BEND * math.sqrt(2.0 * size) / (frame.least_radius_m * frame.least_radius_m)
 
 
 @inner_kernel
 def add_band(axis_field, frame, row, matrix, slopes):
     """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
     weight = row[BAND]
-    if axis_field.kind < 2 or weight == 0.0 or is_level(axis_field):
+    if axis_field.kind < BAND_AXIS or weight == 0.0 or is_level(axis_field):
         return 0.0
     form = zeroed(6)
     form[2] = -1.0 if weight > 0.0 else 1.0
@@ -191,7 +193,7 @@ def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
         below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
     everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
     rest[:] = 0.0
-    rest[0] = rest[1] = everywhere + across
+    rest[0] = rest[1] = everywhere + across  # the anchor's remainder lies across its own null only
     rest[2] = everywhere
     return below_rest
 
@@ -231,7 +233,7 @@ def constraint_of(axis_field, row, number, form):
             return 0.0
         cell_side(int(row[FACE]), row[CELL:SIDE], number, form)
         return row[SIDE + number]
-    if axis_field.kind < 2 or is_level(axis_field):
+    if axis_field.kind < BAND_AXIS or is_level(axis_field):
         return 0.0
     upper = row[BAND] > 0.0
     end = axis_field.offset[1] if upper else -axis_field.offset[0]
@@ -243,7 +245,7 @@ def constraint_of(axis_field, row, number, form):
 
 @inner_kernel
 def excludes(family, domain, axis_field, frame, row, below, forecast):
-    """Return whether the row's multipliers exclude its box and cell.
+    """Check whether the row's multipliers exclude its box and cell.
 
     Args:
         family: arrays of the family.
@@ -273,7 +275,8 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
     corner = failing_corner(matrix, slopes, still, half, level_axes)
     if corner < 0:
         return True
-    if not dipoles and mended(matrix, slopes, half, corner, below_rest, level_axes):
+    # sharper remainders cost as much as the test so far: only where none at all would let the corner pass
+    if not dipoles and is_negative_without(matrix, slopes, half, corner, below_rest, level_axes):
         if level_axes:  # what is off the level plane does not count
             matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
             matrix[4] = matrix[5] = 0.0
@@ -287,24 +290,25 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
 
 @inner_kernel
 def excludes_allowed(domain, row, matrix, slopes, level_axes):
-    """Return whether the matrix is negative wherever a border allows positions; fill its multiplier."""
+    """Check whether the matrix is negative wherever a border allows positions; fill its multiplier."""
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
     if alternatives == 0:
         return False
-    v, gradient, nu, ways = scratch(3), scratch(3), scratch(2), scratch(2, 3)
+    v, gradient, nu, border_slopes = scratch(3), scratch(3), scratch(2), scratch(2, 3)
     values, bends, axes = scratch(2), scratch(2), scratch_int(2)
     half, row[NU] = row[HALF:LEVEL], 0.0
     if level_axes:
         matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
+    # the border is to cancel the slope along the axis that fails worst
     top_eigenvector(matrix, v)
     for i in range(3):
         gradient[i] = form_value(slopes, i, v)
     bent, bent_slopes = scratch(6), scratch(3, 6)
     for a in range(alternatives):
         for c in range(counts[a]):
-            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, ways[c])
-        if not border_multipliers(ways, counts[a], gradient, nu):
+            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, border_slopes[c])
+        if not border_multipliers(border_slopes, counts[a], gradient, nu):
             return False
         copy_into(matrix, bent)
         copy_table(slopes, bent_slopes)
@@ -315,7 +319,7 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
             for m in range(3):
                 bent[m] += nu[c] * rest
                 for i in range(3):
-                    bent_slopes[i, m] += nu[c] * ways[c, i]
+                    bent_slopes[i, m] += nu[c] * border_slopes[c, i]
         if failing_corner(bent, bent_slopes, zeroed(3), half, level_axes) >= 0:
             return False
         row[NU] = nu[0]

@@ -13,6 +13,16 @@ from __future__ import annotations
 
 import math
 
+from nullpose.solver.kernels.constants import (
+    ANCHOR_FALL,
+    ANCHOR_RISE,
+    FORM_FALL,
+    FORM_RISE,
+    MIXED_FALL,
+    MIXED_RISE,
+    SWING_FALL,
+    SWING_RISE,
+)
 from nullpose.solver.kernels.forms import seen_from
 from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.links import isotropic_share
@@ -99,7 +109,7 @@ def expand_point(family, j, frame, centre, half, form, slopes):
     beyond = 1.0 / (square * square)
     if turns and j == frame.anchor:
         fill_anchor(leak, frame, form, slopes)
-        return 6.0 * beyond, -2.0 * beyond
+        return ANCHOR_RISE * beyond, -ANCHOR_FALL * beyond
     i2 = 1.0 / (x * x + y * y + z * z)
     i4 = i2 * i2
     form[0] = (leak * x * x + y * y + z * z) * i4
@@ -124,7 +134,8 @@ def expand_point(family, j, frame, centre, half, form, slopes):
         slopes[i, 4] = -(x * w + z * u) * b4 + k * x * z
         slopes[i, 5] = -(y * w + z * v) * b4 + k * y * z
     if not turns:
-        return 6.0 * beyond, -4.0 * beyond
+        return FORM_RISE * beyond, -FORM_FALL * beyond
     swing = 1.0 / (square * frame.least_radius_m * frame.least_radius_m)
     mixed = math.sqrt(beyond * swing)  # 1 / (a^3 rho), for a the distance and rho that of the anchor
-    return 6.0 * beyond + 16.0 * mixed + 8.31 * swing, -(4.0 * beyond + 12.0 * mixed + 6.31 * swing)
+    rise = FORM_RISE * beyond + MIXED_RISE * mixed + SWING_RISE * swing
+    return rise, -(FORM_FALL * beyond + MIXED_FALL * mixed + SWING_FALL * swing)

@@ -6,7 +6,7 @@ import math
 
 from nullpose.solver.kernels.jit import inner_kernel, kernel
 
-_HAIR = 1e-9  # radians by which a cap is wider than asked for
+_ROUNDING_RAD = 1e-9  # radians by which a cap is wider than asked for
 
 
 @kernel
@@ -15,12 +15,12 @@ def gain_at(pattern, x, y, z):
     total, real, imaginary = 0.0, 1.0, 0.0
     top = pattern.cosine.shape[0]
     for m in range(pattern.orders):
-        here, before = pattern.start[m], 0.0
-        u, w = pattern.cosine[m, m] * here, pattern.sine[m, m] * here
+        legendre, before = pattern.start[m], 0.0
+        u, w = pattern.cosine[m, m] * legendre, pattern.sine[m, m] * legendre
         for n in range(m + 1, top):
-            here, before = pattern.a[n, m] * z * here - pattern.b[n, m] * before, here
-            u += pattern.cosine[n, m] * here
-            w += pattern.sine[n, m] * here
+            legendre, before = pattern.a[n, m] * z * legendre - pattern.b[n, m] * before, legendre
+            u += pattern.cosine[n, m] * legendre
+            w += pattern.sine[n, m] * legendre
         total += u * real + w * imaginary
         real, imaginary = real * x - imaginary * y, real * y + imaginary * x
     return max(0.0, total)
@@ -106,7 +106,7 @@ def cap_bounds(pattern, d, radius, out):
     """
     rows = pattern.rows
     step = math.pi / rows
-    theta, wide = math.acos(max(-1.0, min(1.0, d[2]))), radius + _HAIR
+    theta, wide = math.acos(max(-1.0, min(1.0, d[2]))), radius + _ROUNDING_RAD
     first = max(0, int((theta - wide) / step)) if theta > wide else 0
     last = min(rows - 1, int((theta + wide) / step))
     level = 0
@@ -115,7 +115,7 @@ def cap_bounds(pattern, d, radius, out):
     left, right, sideways = 0, 2 * rows - 1, math.sin(theta)
     whole = theta - wide <= 0.0 or theta + wide >= math.pi or math.sin(min(wide, 0.5 * math.pi)) >= sideways
     if not whole:
-        phi, turn = math.atan2(d[1], d[0]), math.asin(math.sin(wide) / sideways) + _HAIR
+        phi, turn = math.atan2(d[1], d[0]), math.asin(math.sin(wide) / sideways) + _ROUNDING_RAD
         if phi < 0.0:
             phi += 2.0 * math.pi
         left = math.floor((phi - turn) / step) + 2 * rows

@@ -24,7 +24,7 @@ compiler: Any = None
 
 
 def interpret(kernel: Any, signature: Any, *arguments: Any) -> Any:
-    """Return what a kernel returns, as Python runs it, or as machine code if that is there before.
+    """Run a kernel in Python, or as machine code if that is there before.
 
     An array that Python has changed is as before when machine code takes over, or when an interrupt ends the
     call: half a step of a proof must not count.

@@ -95,7 +95,7 @@ def _drop_outdated(cache_path: str) -> None:
 
 
 def entry_of(kernel: Any, ratios: Ratios) -> Any:
-    """Return what Python calls where a kernel's arguments but the ratios are always of the same types.
+    """Return the quickest entry to a kernel whose arguments but the ratios are always of the same types.
 
     That is its machine code, once it is compiled: to choose by types, which for named tuples takes as long
     as a short kernel, is left out.

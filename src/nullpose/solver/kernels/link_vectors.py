@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.solver.kernels.constants import DIRECTION_THIRD, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
 from nullpose.solver.kernels.expansion import min_square
 from nullpose.solver.kernels.forms import entry, in_frame
 from nullpose.solver.kernels.jit import inner_kernel
@@ -25,8 +26,6 @@ from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD
 from nullpose.solver.kernels.scratch import scratch
 from nullpose.solver.kernels.vectors import dot, row
 
-SLOPE, BEND, THIRD = 1.1548, 3.0, 9.89  # of a link vector, times powers of the distance: lemma 5
-_TURN = 2.31  # of the direction to a point: 6 cos^2 sin, rounded up
 _UPRIGHT = 0.4  # of the anchor's vector along its value at the centre: what must be left all over the box
 
 FloatArray = NDArray[np.float64]
@@ -101,7 +100,7 @@ def size_of(vectors):
 
 @inner_kernel
 def reach_along(vectors, v, half):
-    """Return how far the products of v with derivatives reach over a box."""
+    """Bound the products of v with derivatives over a box."""
     total = 0.0
     for i in range(3):
         total += abs(dot(row(vectors, i), v)) * half[i]
@@ -122,9 +121,9 @@ def dipole_shear(family, j, centre, half, frame, shear):
     least = math.sqrt(min_square(family.points_m, j, centre, half))
     diagonal = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
     square, length = dot(a, a), math.sqrt(dot(a, a))
-    a3 = THIRD / least**4
-    a2 = min(BEND / least**3, size_of(second) + a3 * diagonal)
-    a1 = min(SLOPE / least**2, size_of(first) + a2 * diagonal)
+    a3 = VECTOR_THIRD / least**4
+    a2 = min(VECTOR_BEND / least**3, size_of(second) + a3 * diagonal)
+    a1 = min(VECTOR_SLOPE / least**2, size_of(first) + a2 * diagonal)
     bend = 0.5 * a2 * diagonal * diagonal
     y = square - reach_along(first, a, half) - length * bend
     if not y > _UPRIGHT * square:
@@ -142,9 +141,9 @@ def dipole_shear(family, j, centre, half, frame, shear):
     most[3] = a3 / y + 3.0 * a2 * i1 + 3.0 * a1 * i2 + g * i3
     for s in range(6):
         i, k = entry(s)
-        one, other = dot(row(first, i), a), dot(row(first, k), a)
+        by_i, by_k = dot(row(first, i), a), dot(row(first, k), a)
         for m in range(3):
-            second[s, m] = (second[s, m] - (first[i, m] * other + first[k, m] * one) / square) / square
+            second[s, m] = (second[s, m] - (first[i, m] * by_k + first[k, m] * by_i) / square) / square
     for i in range(3):
         shear.still[i] = -a[i]
         for m in range(3):
@@ -165,7 +164,7 @@ def direction_shear(frame, centre, half, shear):
     most[0] = diagonal
     most[1] = math.sqrt(1.0 + diagonal * diagonal) / y
     most[2] = (1.0 + 2.0 * diagonal) / (y * y)
-    most[3] = (_TURN + 6.0 * diagonal) / (y * y * y)
+    most[3] = (DIRECTION_THIRD + 6.0 * diagonal) / (y * y * y)
     for i in range(3):
         shear.still[i] = 1.0 if i == 2 else 0.0
         for m in range(3):
@@ -203,9 +202,9 @@ def add_shear(shear, value, first, second):
         whole = dot(value, still)
         for s in range(6):
             i, k = entry(s)
-            one, other = dot(row(first, i), still), dot(row(first, k), still)
+            by_i, by_k = dot(row(first, i), still), dot(row(first, k), still)
             for m in range(3):
-                second[s, m] += one * shear.first[k, m] + other * shear.first[i, m]
+                second[s, m] += by_i * shear.first[k, m] + by_k * shear.first[i, m]
                 second[s, m] += whole * shear.second[s, m]
         for i in range(3):
             for m in range(3):
@@ -228,10 +227,10 @@ def third_of(shear, least):
     """Return a bound on the third derivative of ``L^T a`` in the box."""
     i1 = 1.0 / least
     i2 = i1 * i1
-    third = THIRD * i2 * i2
+    third = VECTOR_THIRD * i2 * i2
     if shear.kind == WORLD:
         return third
     most, size = shear.most, math.sqrt(dot(shear.still, shear.still))
-    more = THIRD * i2 * i2 * most[0] + 3.0 * BEND * i2 * i1 * most[1]
-    more += 3.0 * SLOPE * i2 * most[2] + i1 * most[3]
+    more = VECTOR_THIRD * i2 * i2 * most[0] + 3.0 * VECTOR_BEND * i2 * i1 * most[1]
+    more += 3.0 * VECTOR_SLOPE * i2 * most[2] + i1 * most[3]
     return third + size * more

@@ -120,7 +120,7 @@ class _Files(IndexDataCacheFile):
         return Path(self._cache_path) / self._index_name.replace(".nbi", f".{choice}.nbc")
 
     def load(self, key: Any) -> Any:
-        """Return what was saved; None for nothing, and for what is not as it was saved."""
+        """Load a kernel; None where there is none, or where its file is damaged."""
         with suppress(OSError):
             content = self._path(key).read_bytes()
             if sha256(content[_CHECKSUM:]).digest() == content[:_CHECKSUM]:
@@ -145,11 +145,11 @@ class _Cache(FunctionCache):
         self._cache_file = _Files(numba._cache_path, self._impl.filename_base, numba._source_stamp)
 
     def holds(self, sig: Any, target_context: Any) -> bool:
-        """Return whether there is machine code that can be loaded."""
+        """Check for machine code that can be loaded."""
         return self._cache_file.load(self._index_key(sig, target_context.codegen())) is not None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return what was compiled before, without loading the compiler, as numba would; None for nothing."""
+        """Load machine code without the compiler, which numba would load too; None where there is none."""
         rtsys.initialize(target_context)
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)
@@ -180,7 +180,7 @@ class LinkedDispatcher(CPUDispatcher):
         self._cache = _Cache(self.py_func)
 
     def compile(self, sig: Any) -> Any:
-        """Return what runs for arguments of some types: machine code, or Python while that is not there."""
+        """Return machine code for arguments of given types, or Python while that is not there."""
         compiler = interpreted.compiler
         if compiler is None or self._has_code(sig) or not compiler.takes(self, sig):
             return super().compile(sig)

@@ -35,7 +35,7 @@ def seen_axis(turn, j, u):
 
 @inner_kernel
 def isotropic_share(leaks, j):
-    """Return which part of point j is isotropic: all of it, or what leaks through the null of its dipole.
+    """Return the isotropic part of point j: all of it, or the leak through the null of its dipole.
 
     Where no point has a dipole, the leaks are None, and what dipoles need is not even compiled.
     """

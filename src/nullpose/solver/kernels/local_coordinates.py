@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 
+from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS
 from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.links import isotropic_share
 from nullpose.solver.kernels.scratch import scratch
@@ -28,13 +29,11 @@ from nullpose.solver.kernels.vectors import along, dot, minus, row, scaled
 
 _TIP = 1e-6  # squared sine from a dipole's own null below which nothing follows it
 
-AFFINE, BAND, CONE = 1, 2, 3  # kinds of axis field, 0 being any axis
-
 
 @kernel
 def axis_at(axis_field, p, u):
     """Overwrite ``u`` with the axis that an affine field gives at p; leave a free axis as it is."""
-    if axis_field.kind == AFFINE:
+    if axis_field.kind == AFFINE_AXIS:
         for i in range(3):
             u[i] = axis_field.offset[i] + dot(axis_field.matrix[i], p)
 
@@ -56,7 +55,7 @@ def clamp_elevation(least, greatest, u):
 def clamp_axis(axis_field, u):
     """Bring an axis to unit length and, where the field is a band or a cone, to the nearest in it."""
     normalise(u)
-    if axis_field.kind >= BAND:
+    if axis_field.kind >= BAND_AXIS:
         clamp_elevation(axis_field.offset[0], axis_field.offset[1], u)
 
 
@@ -121,16 +120,16 @@ def local_coordinates(family, axis_field, pose, free, directions):
     for i in range(3):
         if free[i]:
             directions[n, i] = length
-            if axis_field.kind == AFFINE:
+            if axis_field.kind == AFFINE_AXIS:
                 add_scaled(length, axis_field.matrix[:, i], directions[n, 3:])
-            elif axis_field.kind != CONE:
+            elif axis_field.kind != CONE_AXIS:
                 add_scaled(length, rates[i], directions[n, 3:])
             n += 1
-    if axis_field.kind == CONE:
+    if axis_field.kind == CONE_AXIS:
         across = math.hypot(u[0], u[1])
         directions[n, 3], directions[n, 4] = -u[1] / across, u[0] / across
         n += 1
-    elif axis_field.kind != AFFINE:
+    elif axis_field.kind != AFFINE_AXIS:
         tangents(u, directions[n, 3:], directions[n + 1, 3:])
         n += 2
     return n
@@ -142,9 +141,9 @@ def move(axis_field, pose, directions, n, step, scale, moved):
     copy_into(pose, moved)
     for m in range(n):
         add_scaled(scale * step[m], directions[m], moved)
-    if axis_field.kind == AFFINE:
+    if axis_field.kind == AFFINE_AXIS:
         axis_at(axis_field, moved[:3], moved[3:])
-    elif axis_field.kind == CONE:
+    elif axis_field.kind == CONE_AXIS:
         clamp_axis(axis_field, moved[3:])
     else:
         normalise(moved[3:])
@@ -163,7 +162,7 @@ def reduce_hessian(hess, directions, n, out):
 
 @kernel
 def slack_count(domain):
-    """Return how many slacks a pose has."""
+    """Count the slacks of a pose."""
     return 8 + domain.keep_out_points_m.shape[0] + domain.piece_start.shape[0] - 1
 
 
@@ -205,7 +204,7 @@ def domain_slacks(p, u, domain, axis_field, chosen, out):
         out[c] = side_slack(domain.piece_sides[s], p)
         c += 1
     out[c] = out[c + 1] = math.inf
-    if axis_field.kind == BAND:
+    if axis_field.kind == BAND_AXIS:
         least, greatest, size = axis_field.offset[0], axis_field.offset[1], dot(u, u)
         out[c] = u[2] * u[2] - least * size if least > 0.0 else math.inf
         out[c + 1] = greatest * size - u[2] * u[2] if greatest < 1.0 else math.inf
@@ -235,7 +234,7 @@ def add_slack_slopes(domain, axis_field, chosen, pose, duals, slopes, hess):
                 slopes[c, i] = 2.0 * (pose[i] - side[1 + i])
                 hess[i, i] += 2.0 * duals[c]
         c += 1
-    if axis_field.kind == BAND:
+    if axis_field.kind == BAND_AXIS:
         for end in range(2):
             for i in range(3):
                 weight = (2.0 - 4.0 * end) * ((1.0 if i == 2 else 0.0) - axis_field.offset[end])

@@ -97,7 +97,7 @@ class _Lower(Lower):
         return super().lower_expr(resty, expr)
 
     def _part(self, array: Any, index: Any) -> Any:
-        """Return where a part of an array begins, its shape and its strides; None if left to numba."""
+        """Return the address, shape and strides of a part of an array; None if left to numba."""
         kind, builder = self.typeof(array.name), self.builder
         if not isinstance(kind, types.Array):
             return None

@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 
+from nullpose.problem.records import BAND_AXIS
 from nullpose.solver.kernels.ascent import POOL, Pool, ascend, lowest_missing, put_weights
 from nullpose.solver.kernels.dual import dual_multipliers, positive_definite
 from nullpose.solver.kernels.exclusion import is_level
 from nullpose.solver.kernels.forms import form_value
 from nullpose.solver.kernels.jit import inner_heap_kernel, inner_kernel
-from nullpose.solver.kernels.local_coordinates import BAND as ELEVATION_BAND, clamp_axis
+from nullpose.solver.kernels.local_coordinates import clamp_axis
 from nullpose.solver.kernels.node import (
     BAND,
     CELL,
@@ -88,7 +89,7 @@ def cell_start(axis_field, basis, back, row, start):
 
     In whitened coordinates: the mean of the squares of axes inside. None may have been met in a thin cell.
     """
-    face, has_band, level_axes = int(row[FACE]), axis_field.kind >= ELEVATION_BAND, is_level(axis_field)
+    face, has_band, level_axes = int(row[FACE]), axis_field.kind >= BAND_AXIS, is_level(axis_field)
     start[:] = 0.0
     if face < 0 and (level_axes or not has_band):
         start[:3] = 1.0 / 3.0
@@ -146,15 +147,15 @@ def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matri
     Begins with the pool and the ratios smallest at the start, and adds what turns out to be smaller.
     """
     copy_into(start, matrix)
-    below, found, known = math.inf, math.inf, np.int64(0)
+    below, found, counted = math.inf, math.inf, np.int64(0)
     for _ in range(_ROUNDS):
         for k in range(every.shape[0]):
             every[k] = form_product(forms[k], matrix)
         total = take_smallest(forms, every, below, max(_FEW, _MANY + sides - total), pool, sides, total)
-        if total == known:
+        if total == counted:
             break
         found = dual_multipliers(pool.forms, sides, total, level, stop, gap, start, pool.shares, matrix)
-        below, known = found - _SLIGHT * level, total
+        below, counted = found - _SLIGHT * level, total
     return found, total
 
 
@@ -224,7 +225,7 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, wo
         return primal / level, 0.0, False
     axis_of(basis, back, v, axis)
     square = 1.0
-    if axis_field.kind >= ELEVATION_BAND:
+    if axis_field.kind >= BAND_AXIS:
         clamp_axis(axis_field, axis)
         whiten_axis(basis, back, axis, v)
         square = dot(v, v)

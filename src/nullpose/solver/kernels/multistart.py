@@ -8,7 +8,7 @@ from nullpose.solver.kernels.jit import heap_kernel
 from nullpose.solver.kernels.polish import polish
 from nullpose.solver.kernels.search import search
 
-_SAME = 1e-12
+_LEAST_GAIN = 1e-12
 
 
 @heap_kernel
@@ -42,6 +42,6 @@ def search_and_climb(
         before = value
         value, steps = polish(family, domain, axis_field, best_p, best_u, mu, most_steps, best_z)
         evaluations += steps
-        if steps < most_steps and value <= before + _SAME:
+        if steps < most_steps and value <= before + _LEAST_GAIN:
             break
     return value, starts, evaluations

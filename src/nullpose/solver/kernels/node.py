@@ -136,7 +136,7 @@ def split_axis(row, level_axes, stack, top):
 
 @inner_kernel
 def off_band(ends, row):
-    """Return whether no axis of a row's cell has its elevation within the band."""
+    """Check whether no axis of a row's cell has its elevation within the band."""
     face = int(row[FACE])
     if face < 0:
         return False

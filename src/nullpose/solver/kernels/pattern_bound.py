@@ -46,7 +46,7 @@ def square_range(point, row):
 
 
 @inner_kernel
-def way_to(points, j, row):
+def vector_to(points, j, row):
     """Return the way from a cell's middle to a point, in the chart's order."""
     first = int(row[CHART])
     point, middle = cyclic(points[j], first), cyclic(row, first)
@@ -54,7 +54,7 @@ def way_to(points, j, row):
 
 
 @inner_kernel
-def fill_points(family, pattern, row, room):
+def fill_points(family, pattern, row, space):
     """Fill every point's value, its bounds over the cell and how wide the cap of its directions is.
 
     ``room.value`` holds ``g / r^2`` at the middle and ``room.wide`` its bounds: least and largest over the
@@ -62,167 +62,167 @@ def fill_points(family, pattern, row, room):
     """
     points = family.points_m
     anchor = int(row[ANCHOR])
-    anchor_way = way_to(points, anchor, row)
-    fill_frame(row, anchor_way, room.frame)
+    anchor_m = vector_to(points, anchor, row)
+    fill_frame(row, anchor_m, space.frame)
     reach = math.sqrt(row[HALF] ** 2 + row[HALF + 1] ** 2 + row[HALF + 2] ** 2)
     near, _ = square_range(points[anchor], row)
-    held, whole = rates(row, reach, anchor_way, math.sqrt(near))
+    held, whole = rates(row, reach, anchor_m, math.sqrt(near))
     for j in range(points.shape[0]):
-        a = in_body(room.frame, way_to(points, j, row))
+        a = in_body(space.frame, vector_to(points, j, row))
         near, far = square_range(points[j], row)
         e = reach / math.sqrt(near) if near > 0.0 else math.inf
         is_anchor = j == anchor
-        width = held[0] if is_anchor else direction_rate(row, room.frame, a, whole, e)
-        cap_bounds(pattern, unit(a), min(width, math.pi), room.caps)
-        least, most = -room.caps[0], room.caps[1]
-        room.wide[j, 0] = max(0.0, least) / far if least >= 0.0 else least / near
-        room.wide[j, 1] = most / near if most >= 0.0 else most / far
-        room.wide[j, 2] = math.inf
-        if width < _WIDEST and e < 0.5:
+        width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
+        cap_bounds(pattern, unit(a), min(width, math.pi), space.caps)
+        least, most = -space.caps[0], space.caps[1]
+        space.wide[j, 0] = max(0.0, least) / far if least >= 0.0 else least / near
+        space.wide[j, 1] = most / near if most >= 0.0 else most / far
+        space.wide[j, 2] = math.inf
+        if width < _WIDEST and e < 0.5:  # in wider cells the third derivative's bound is of no use
             turning = held if is_anchor else whole
             g0 = max(abs(least), abs(most))
             away = 0.0 if is_anchor else e
-            rest = third(turning, width, e, away, g0, room.caps[2], room.caps[3], room.caps[4])
-            room.wide[j, 2] = rest / near
+            rest = third(turning, width, e, away, g0, space.caps[2], space.caps[3], space.caps[4])
+            space.wide[j, 2] = rest / near
     return whole[0]
 
 
 @inner_kernel
-def hopeless(family, level, room):
+def weak_ratio(family, level, space):
     """Return a ratio that stays below a level by the bounds of its points over the cell, or -1."""
     for k in range(family.numerator_point.shape[0]):
         g = family.denominator_of[k]
         below = family.denominator_isotropic[g]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            below += family.denominator_weight[e] * room.wide[family.denominator_point[e], 0]
+            below += family.denominator_weight[e] * space.wide[family.denominator_point[e], 0]
         above = family.numerator_isotropic[k]
-        above += family.numerator_weight[k] * room.wide[family.numerator_point[k], 1]
+        above += family.numerator_weight[k] * space.wide[family.numerator_point[k], 1]
         if above < level * below * (1.0 - 1e-12):
             return k
     return -1
 
 
 @inner_kernel
-def middle(family, pattern, level, row, room):
+def middle(family, pattern, level, row, space):
     """Return the smallest ratio at a cell's middle, and whether it is to be expanded there.
 
     It is if some ratio with its remainders is below the level: no multipliers would do otherwise. Fills the
     points' values.
     """
     for j in range(family.points_m.shape[0]):
-        a = in_body(room.frame, way_to(family.points_m, j, row))
+        a = in_body(space.frame, vector_to(family.points_m, j, row))
         square = dot(a, a)
         x, y, z = over(a, math.sqrt(square))
-        room.value[j] = gain_at(pattern, x, y, z) / square
-    least, promising = math.inf, False
+        space.value[j] = gain_at(pattern, x, y, z) / square
+    least, promising = math.inf, False  # an expansion costs ten times as much as this look
     for k in range(family.numerator_point.shape[0]):
         g, j = family.denominator_of[k], family.numerator_point[k]
         isotropic, weight = family.numerator_isotropic[k], family.numerator_weight[k]
-        above = isotropic + weight * min(room.wide[j, 1], room.value[j] + room.wide[j, 2])
-        value = isotropic + weight * room.value[j]
+        above = isotropic + weight * min(space.wide[j, 1], space.value[j] + space.wide[j, 2])
+        value = isotropic + weight * space.value[j]
         below = base = family.denominator_isotropic[g]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
             j, weight = family.denominator_point[e], family.denominator_weight[e]
-            below += weight * max(room.wide[j, 0], room.value[j] - room.wide[j, 2])
-            base += weight * room.value[j]
+            below += weight * max(space.wide[j, 0], space.value[j] - space.wide[j, 2])
+            base += weight * space.value[j]
         promising = promising or above < level * below
         least = min(least, value / base)
     return least, promising
 
 
 @inner_kernel
-def expand(family, pattern, row, room):
+def expand(family, pattern, row, space):
     """Fill value, gradient and Hessian of every point's ``g / r^2`` at a cell's middle."""
     points, first = family.points_m, int(row[CHART])
     for j in range(points.shape[0]):
-        a = in_body(room.frame, way_to(points, j, row))
+        a = in_body(space.frame, vector_to(points, j, row))
         square = dot(a, a)
         length = math.sqrt(square)
-        move(room.frame, a, room.firsts, room.seconds)
-        room.value[j] = gain_jet(pattern, over(a, length), room.pull, room.stiff) / square
+        move(space.frame, a, space.firsts, space.seconds)
+        space.value[j] = gain_jet(pattern, over(a, length), space.pull, space.stiff) / square
         p1, p2 = 1.0 / (square * length), 1.0 / (square * square)
-        pull = (p1 * room.pull[0], p1 * room.pull[1], p1 * room.pull[2])
+        pull = (p1 * space.pull[0], p1 * space.pull[1], p1 * space.pull[2])
         for m in range(6):
-            i, f = (first + m) % 3 if m < 3 else m, row_of(room.firsts, m)
-            room.slope[j, i] = dot(pull, f)
-            stiff = room.stiff
+            i, f = (first + m) % 3 if m < 3 else m, row_of(space.firsts, m)
+            space.slope[j, i] = dot(pull, f)
+            stiff = space.stiff
             pushed = scaled(
                 p2, (dot(row_of(stiff, 0), f), dot(row_of(stiff, 1), f), dot(row_of(stiff, 2), f))
             )
             for n in range(m, 6):
                 k = (first + n) % 3 if n < 3 else n
-                bend = dot(pushed, row_of(room.firsts, n)) + dot(pull, row_of(room.seconds[m], n))
-                room.bend[j, i, k] = bend
-                room.bend[j, k, i] = bend
+                bend = dot(pushed, row_of(space.firsts, n)) + dot(pull, row_of(space.seconds[m], n))
+                space.bend[j, i, k] = bend
+                space.bend[j, k, i] = bend
 
 
 @inner_kernel
-def add_point(room, k, j, weight):
+def add_point(space, k, j, weight):
     """Add the constant of a point's ``g / r^2`` times a weight to that of ``N_k - t D_k``, from above.
 
     Where the bound over the cell alone is nearer than the expansion's remainder, it takes the place of both.
     """
-    value, limit = room.value[j], room.wide[j, 1] if weight > 0.0 else room.wide[j, 0]
-    rest = room.wide[j, 2]
-    if room.one_sided[j] and abs(limit - value) < rest:
+    value, limit = space.value[j], space.wide[j, 1] if weight > 0.0 else space.wide[j, 0]
+    rest = space.wide[j, 2]
+    if space.one_sided[j] and abs(limit - value) < rest:
         rest = abs(limit - value)
         for i in range(6):
-            room.slope[j, i] = 0.0
-            room.bend[j, i] = 0.0
-    room.f[k] += weight * value + abs(weight) * rest
-    room.rest[k] += abs(weight) * rest
+            space.slope[j, i] = 0.0
+            space.bend[j, i] = 0.0
+    space.f[k] += weight * value + abs(weight) * rest
+    space.rest[k] += abs(weight) * rest
 
 
 @inner_kernel
-def fill_constants(family, level, room):
+def fill_constants(family, level, space):
     """Fill the constants of ``N_k - t D_k`` from above, and how much of them is remainder."""
     for k in range(family.numerator_point.shape[0]):
         g = family.denominator_of[k]
-        room.f[k] = family.numerator_isotropic[k] - level * family.denominator_isotropic[g]
-        room.rest[k] = 0.0
-        add_point(room, k, family.numerator_point[k], family.numerator_weight[k])
+        space.f[k] = family.numerator_isotropic[k] - level * family.denominator_isotropic[g]
+        space.rest[k] = 0.0
+        add_point(space, k, family.numerator_point[k], family.numerator_weight[k])
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            add_point(room, k, family.denominator_point[e], -level * family.denominator_weight[e])
+            add_point(space, k, family.denominator_point[e], -level * family.denominator_weight[e])
 
 
 @inner_kernel
-def weigh(family, level, multipliers, room):
+def weigh(family, level, multipliers, space):
     """Fill every point's factor in ``sum_k l_k (N_k - t D_k)``; return the sum of the constants."""
-    room.factor[:] = 0.0
+    space.factor[:] = 0.0
     total = 0.0
     for k in range(multipliers.shape[0]):
-        total += multipliers[k] * room.f[k]
+        total += multipliers[k] * space.f[k]
         g = family.denominator_of[k]
-        room.factor[family.numerator_point[k]] += multipliers[k] * family.numerator_weight[k]
+        space.factor[family.numerator_point[k]] += multipliers[k] * family.numerator_weight[k]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            room.factor[family.denominator_point[e]] -= level * multipliers[k] * family.denominator_weight[e]
+            space.factor[family.denominator_point[e]] -= level * multipliers[k] * family.denominator_weight[e]
     return total
 
 
 @inner_kernel
-def upper(family, level, half, multipliers, room):
+def upper(family, level, half, multipliers, space):
     """Return an upper bound of ``sum_k l_k (N_k - t D_k)`` over the cell, convex in l; fill its slopes by l.
 
     With ``|x_i| <= h_i`` the Hessian's mixed terms are
     ``|x_i x_j| <= (x_i^2 h_j / h_i + x_j^2 h_i / h_j) / 2``: what is left is one parabola for each
     coordinate.
     """
-    total = weigh(family, level, multipliers, room)
-    slope, bend, parts = room.sum_slope, room.sum_bend, room.parts
+    total = weigh(family, level, multipliers, space)
+    slope, bend, parts = space.sum_slope, space.sum_bend, space.parts
     slope[:] = 0.0
     bend[:] = 0.0
-    points = room.factor.shape[0]
+    points = space.factor.shape[0]
     for j in range(points):
-        c = room.factor[j]
+        c = space.factor[j]
         if c != 0.0:
             for i in range(6):
-                slope[i] += c * room.slope[j, i]
+                slope[i] += c * space.slope[j, i]
                 for n in range(i, 6):
-                    bend[i, n] += c * room.bend[j, i, n]
+                    bend[i, n] += c * space.bend[j, i, n]
     for i in range(6):
         h, mixed = half[i], 0.0
         if h == 0.0:
-            room.at[i] = room.score[i] = 0.0
+            space.at[i] = space.score[i] = 0.0
             continue
         for n in range(6):
             if n != i:
@@ -231,52 +231,52 @@ def upper(family, level, half, multipliers, room):
         if curve < 0.0 and abs(slope[i]) < -curve * h:
             x = -abs(slope[i]) / curve
         total += abs(slope[i]) * x + 0.5 * curve * x * x
-        room.score[i] = abs(slope[i]) * h + (abs(bend[i, i]) + mixed) * h * h
-        room.at[i] = math.copysign(x, slope[i])
+        space.score[i] = abs(slope[i]) * h + (abs(bend[i, i]) + mixed) * h * h
+        space.at[i] = math.copysign(x, slope[i])
     # by Danskin's theorem the slopes by l are those at the maximum
     for i in range(6):
         for n in range(i + 1, 6):
             share = 0.0
             if half[i] > 0.0 and half[n] > 0.0:
-                share = 0.5 * (room.at[i] ** 2 * half[n] / half[i] + room.at[n] ** 2 * half[i] / half[n])
+                share = 0.5 * (space.at[i] ** 2 * half[n] / half[i] + space.at[n] ** 2 * half[i] / half[n])
             bend[n, i] = math.copysign(share, bend[i, n])
     for j in range(points):
         part = 0.0
         for i in range(6):
-            part += room.slope[j, i] * room.at[i] + 0.5 * room.at[i] ** 2 * room.bend[j, i, i]
+            part += space.slope[j, i] * space.at[i] + 0.5 * space.at[i] ** 2 * space.bend[j, i, i]
             for n in range(i + 1, 6):
-                part += bend[n, i] * room.bend[j, i, n]
+                part += bend[n, i] * space.bend[j, i, n]
         parts[j] = part
     for k in range(multipliers.shape[0]):
         g = family.denominator_of[k]
-        by = room.f[k] + family.numerator_weight[k] * parts[family.numerator_point[k]]
+        by = space.f[k] + family.numerator_weight[k] * parts[family.numerator_point[k]]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
             by -= level * family.denominator_weight[e] * parts[family.denominator_point[e]]
-        room.by_l[k] = by
+        space.by_l[k] = by
     return total
 
 
 @inner_kernel
-def excluded_by_sum(family, level, row, multipliers, room):
-    """Return whether some multipliers keep the sum negative over the cell; leave the best that were tried."""
+def excluded_by_sum(family, level, row, multipliers, space):
+    """Check whether some multipliers keep the sum negative over the cell; leave the best that were tried."""
     n, half = multipliers.shape[0], row[HALF:FACE]
     for k in range(n):
         multipliers[k] = row[WARM + k]
-    if n == 2:
-        return two_multipliers(family, level, half, multipliers, room)
-    return descended(family, level, half, multipliers, room)
+    if n == 2:  # one number: bisection with tangents ends in a few steps, descent does not
+        return two_multipliers(family, level, half, multipliers, space)
+    return descended(family, level, half, multipliers, space)
 
 
 @inner_kernel
-def two_multipliers(family, level, half, multipliers, room):
-    """Return whether two multipliers keep the sum negative: tried where both sides' tangents meet."""
+def two_multipliers(family, level, half, multipliers, space):
+    """Check whether two multipliers keep the sum negative: tried where both sides' tangents meet."""
     left, left_value, left_slope, right, right_value, right_slope = 0.0, 0.0, 0.0, 1.0, 0.0, 0.0
     for _ in range(_HALVINGS):
         x = multipliers[0]
-        value = upper(family, level, half, multipliers, room)
+        value = upper(family, level, half, multipliers, space)
         if value < 0.0:
             return True
-        slope = room.by_l[0] - room.by_l[1]
+        slope = space.by_l[0] - space.by_l[1]  # of a convex function of the first multiplier
         if slope < 0.0:
             left, left_value, left_slope = x, value, slope
         else:
@@ -302,30 +302,31 @@ def two_multipliers(family, level, half, multipliers, room):
 
 
 @inner_kernel
-def descended(family, level, half, multipliers, room):
-    """Return whether several multipliers keep the sum negative: mirror descent, the best of which is left."""
+def descended(family, level, half, multipliers, space):
+    """Check whether several multipliers keep the sum negative: mirror descent, the best of which is left."""
     n = multipliers.shape[0]
     least = math.inf
     for step in range(_STEPS):
-        value = upper(family, level, half, multipliers, room)
+        value = upper(family, level, half, multipliers, space)
         if value < 0.0:
             return True
         low, high, mean = math.inf, -math.inf, 0.0
         for k in range(n):
-            low, high = min(low, room.by_l[k]), max(high, room.by_l[k])
-            mean += multipliers[k] * room.by_l[k]
+            low, high = min(low, space.by_l[k]), max(high, space.by_l[k])
+            mean += multipliers[k] * space.by_l[k]
         if value < least:
             least = value
             for k in range(n):
-                room.best[k] = multipliers[k]
+                space.best[k] = multipliers[k]
         if value + low - mean > 0.0:
             break  # convex: no multipliers do better than this
         size, total = _PACE / ((high - low) * math.sqrt(1.0 + step)), 0.0
         for k in range(n):
-            multipliers[k] = max(1e-9, multipliers[k]) * math.exp(-size * (room.by_l[k] - low))
+            # none may stay at zero, which a product never leaves
+            multipliers[k] = max(1e-9, multipliers[k]) * math.exp(-size * (space.by_l[k] - low))
             total += multipliers[k]
         for k in range(n):
             multipliers[k] /= total
     for k in range(n):
-        multipliers[k] = room.best[k]
+        multipliers[k] = space.best[k]
     return False

@@ -18,18 +18,18 @@ from nullpose.solver.kernels.pattern_bound import (
     expand,
     fill_constants,
     fill_points,
-    hopeless,
     middle,
     square_range,
+    weak_ratio,
 )
 from nullpose.solver.kernels.pattern_search import bring_within_reach, fill_log_ratios, tilt_of
 from nullpose.solver.kernels.symmetric import copy_into
 from nullpose.solver.kernels.vectors import row as row_of
 
-_HAIR = 1e-9  # radians
+_ROUNDING_RAD = 1e-9  # radians
 
 
-class Room(NamedTuple):
+class Space(NamedTuple):
     """Where the kernels of one thread write."""
 
     caps: FloatArray
@@ -56,7 +56,7 @@ class Room(NamedTuple):
 
 
 @inner_kernel
-def choose(family, row, room, multipliers):
+def choose(family, row, space, multipliers):
     """Return the coordinate to split: the one that adds most to the bound."""
     anchor = int(row[ANCHOR])
     near, far = square_range(family.points_m[anchor], row)
@@ -66,11 +66,11 @@ def choose(family, row, room, multipliers):
         total += row[HALF + i] * (2.0 / length if i < 3 else 1.0)
     rest = 0.0
     for k in range(multipliers.shape[0]):
-        rest += multipliers[k] * room.rest[k]
+        rest += multipliers[k] * space.rest[k]
     most, axis = -1.0, 0
     for i in range(6):
         rate = row[HALF + i] * (2.0 / length if i < 3 else 1.0)
-        score = rate if not math.isfinite(rest) else room.score[i] + 3.0 * rest * rate / total
+        score = rate if not math.isfinite(rest) else space.score[i] + 3.0 * rest * rate / total
         if score > most:
             most, axis = score, i
     return axis
@@ -121,7 +121,7 @@ def branch_pattern(
         rotation: output, (3, 3): its rotation to the world from the antenna's axes.
     """
     m, n = family.points_m.shape[0], family.numerator_point.shape[0]
-    room = Room(
+    space = Space(
         np.empty(5),
         np.empty((m, 3)),
         np.empty(m),
@@ -147,7 +147,7 @@ def branch_pattern(
     for k in range(n):
         for e in range(family.denominator_point.shape[0]):
             if family.denominator_point[e] == family.numerator_point[k]:
-                room.one_sided[family.numerator_point[k]] = 0.0
+                space.one_sided[family.numerator_point[k]] = 0.0
     multipliers, row = np.empty(n), np.empty(stack.shape[1])
     done = 0
     while top > 0:
@@ -161,35 +161,35 @@ def branch_pattern(
         if is_forbidden(domain, (row[0], row[1], row[2]), (row[6], row[7], row[8])):
             filled = kept(keep, row, -1, leaves, filled)
             continue
-        turning = fill_points(family, pattern, row, room)
-        tilt, _ = tilt_of(reach, row_of(room.frame, (2 - int(row[CHART])) % 3))
-        weak = hopeless(family, level, room)
-        if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + _HAIR:
+        turning = fill_points(family, pattern, row, space)
+        tilt, _ = tilt_of(reach, row_of(space.frame, (2 - int(row[CHART])) % 3))
+        weak = weak_ratio(family, level, space)
+        if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + _ROUNDING_RAD:
             filled = kept(keep, row, weak, leaves, filled)
             continue
         multipliers[:] = row[WARM : WARM + n]
-        value, promising = middle(family, pattern, level, row, room)
+        value, promising = middle(family, pattern, level, row, space)
         if value > floor and contains(domain, row[:3]):
             first = int(row[CHART])
             for i in range(3):
                 position[i] = row[i]
                 for k in range(3):
-                    rotation[(first + i) % 3, k] = room.frame[i, k]
+                    rotation[(first + i) % 3, k] = space.frame[i, k]
             bring_within_reach(reach, rotation)
-            nearest = fill_log_ratios(family, pattern, position, rotation, room.parts, room.by_l)
+            nearest = fill_log_ratios(family, pattern, position, rotation, space.parts, space.by_l)
             if math.exp(nearest) > floor:
                 stack[top] = row
                 return BETTER, top + 1, filled, done, 0
         if promising:
-            expand(family, pattern, row, room)
-            fill_constants(family, level, room)
-            if excluded_by_sum(family, level, row, multipliers, room):
+            expand(family, pattern, row, space)
+            fill_constants(family, level, space)
+            if excluded_by_sum(family, level, row, multipliers, space):
                 row[WARM : WARM + n] = multipliers
                 filled = kept(keep, row, n, leaves, filled)
                 continue
         else:
-            room.rest[:] = math.inf
-        axis = choose(family, row, room, multipliers)
+            space.rest[:] = math.inf
+        axis = choose(family, row, space, multipliers)
         row[HALF + axis] *= 0.5
         row[WARM : WARM + n] = multipliers
         before = row[axis]

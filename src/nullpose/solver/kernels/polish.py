@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.objectives.ratios import Ratios
-from nullpose.problem.records import Axes, Domain
+from nullpose.problem.records import BAND_AXIS, CONE_AXIS, Axes, Domain
 from nullpose.solver.kernels.barrier import (
     barrier_value,
     bent_step,
@@ -26,8 +26,6 @@ from nullpose.solver.kernels.barrier import (
 from nullpose.solver.kernels.jit import heap_kernel, inner_kernel
 from nullpose.solver.kernels.links import derivatives, log_ratios
 from nullpose.solver.kernels.local_coordinates import (
-    BAND,
-    CONE,
     add_slack_slopes,
     axis_at,
     choose_sides,
@@ -48,7 +46,7 @@ _INSIDE = 0.995
 _ATTEMPTS = 31
 _BAND_EDGE = 1e-12  # an axis put on the end of a band is off it by rounding
 _ACTIVE = 1e-5  # the least multiplier of a face on which a pose is put
-_HAIR = 1e-12  # what that may cost
+_FACE_LOSS = 1e-12  # what that may cost
 
 FloatArray = NDArray[np.float64]
 
@@ -89,7 +87,7 @@ def enter(problem, pose):
         problem.free[i] = high - low > 1e-9
         margin = min(1e-2, 1e-3 * (high - low)) if problem.free[i] else 0.0
         pose[i] = min(max(pose[i], low + margin), high - margin)
-    if problem.axis_field.kind == BAND:
+    if problem.axis_field.kind == BAND_AXIS:
         margin = min(1e-3, 1e-2 * (ends[1] - ends[0]))
         least = ends[0] + margin if ends[0] > 0.0 else 0.0
         greatest = ends[1] - margin if ends[1] < 1.0 else 1.0
@@ -109,7 +107,7 @@ def fill_values(problem, pose, logs, values):
 
 @inner_kernel
 def ratio_count(problem):
-    """Return how many of the values are log ratios."""
+    """Count the log ratios among the values."""
     return problem.family.numerator_point.shape[0]
 
 
@@ -165,7 +163,9 @@ def linearise(problem, point, grads, parts, n, model, h):
             for m in range(n):
                 model.rates[c, m] = inner(grads[c], model.directions[m], 6)
         model.rates[c, n] = -1.0 if c < ratios else 0.0
-    if problem.axis_field.kind == CONE:  # it bends away from the step by u_z e3, in units of its variable
+    if (
+        problem.axis_field.kind == CONE_AXIS
+    ):  # it bends away from the step by u_z e3, in units of its variable
         h[n - 1, n - 1] += pose[5] * inner(duals, grads[:, 5], ratios)
 
 
@@ -185,40 +185,40 @@ def longest_scale(problem, gaps, rates, step, n):
 
 
 @inner_kernel
-def line_search(problem, here, t, there, model, n, mu, step, slope, scale, logs):
+def line_search(problem, point, t, trial, model, n, mu, step, slope, scale, logs):
     """Return the share of a step that climbs the barrier enough, and the level there; fill the point reached.
 
     Before the step is shortened it is bent once, to follow a curved ridge. A share of zero: none climbs.
     """
     ratios = ratio_count(problem)
-    f, new_f, bent = here.values[:ratios], there.values[:ratios], scratch(6)
-    floor = barrier_value(here.gaps, t, mu)
+    f, new_f, bent = point.values[:ratios], trial.values[:ratios], scratch(6)
+    floor = barrier_value(point.gaps, t, mu)
     for attempt in range(_ATTEMPTS):
         if attempt == 1:
-            bent_step(f, new_f, here.gaps, model.duals, model.rates, model.factor, n, scale, step, bent)
-            share, _ = longest_scale(problem, here.gaps, model.rates, bent, n)
-            move(problem.axis_field, here.pose, model.directions, n, bent, share, there.pose)
+            bent_step(f, new_f, point.gaps, model.duals, model.rates, model.factor, n, scale, step, bent)
+            share, _ = longest_scale(problem, point.gaps, model.rates, bent, n)
+            move(problem.axis_field, point.pose, model.directions, n, bent, share, trial.pose)
         else:
             scale *= 0.5 if attempt > 1 else 1.0
-            move(problem.axis_field, here.pose, model.directions, n, step, scale, there.pose)
-        fill_values(problem, there.pose, logs, there.values)
+            move(problem.axis_field, point.pose, model.directions, n, step, scale, trial.pose)
+        fill_values(problem, trial.pose, logs, trial.values)
         new_t = best_level(new_f, mu)
-        fill_gaps(there, ratios, new_t)
-        value = barrier_value(there.gaps, new_t, mu)
+        fill_gaps(trial, ratios, new_t)
+        value = barrier_value(trial.gaps, new_t, mu)
         if value >= floor + 1e-4 * scale * slope - 1e-15 * (1.0 + abs(floor)):
             return scale, new_t
     return 0.0, t
 
 
 @inner_kernel
-def put_on_faces(problem, here, there, model, logs, best, best_pose):
+def put_on_faces(problem, point, trial, model, logs, best, best_pose):
     """Put the last pose on the faces that hold it, as the best unless that loses anything; return its value.
 
     A step in the search variables does so, since the axis must follow.
     """
     ratios, m = ratio_count(problem), 0
     step, goal = zeroed(6), scratch(3)
-    copy_into(here.pose[:3], goal)
+    copy_into(point.pose[:3], goal)
     for i in range(3):
         if problem.free[i]:
             length = model.directions[m, i]
@@ -226,15 +226,15 @@ def put_on_faces(problem, here, there, model, logs, best, best_pose):
                 goal[i] = problem.domain.low_m[i]
             if model.duals[ratios + 3 + i] * length > _ACTIVE:
                 goal[i] = problem.domain.high_m[i]
-            step[m] = (goal[i] - here.pose[i]) / length
+            step[m] = (goal[i] - point.pose[i]) / length
             m += 1
-    move(problem.axis_field, here.pose, model.directions, m, step, 1.0, there.pose)
-    copy_into(goal, there.pose)  # exactly
-    axis_at(problem.axis_field, goal, there.pose[3:])
-    fill_values(problem, there.pose, logs, there.values)
-    value = reached(problem, there.values)
-    if value >= best - _HAIR:
-        copy_into(there.pose, best_pose)
+    move(problem.axis_field, point.pose, model.directions, m, step, 1.0, trial.pose)
+    copy_into(goal, trial.pose)  # exactly
+    axis_at(problem.axis_field, goal, trial.pose[3:])
+    fill_values(problem, trial.pose, logs, trial.values)
+    value = reached(problem, trial.values)
+    if value >= best - _FACE_LOSS:
+        copy_into(trial.pose, best_pose)
         return value
     return best
 
@@ -257,49 +257,49 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
     problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_))
     count = ratios + slack_count(domain)
-    here = Point(np.empty(6), np.empty(count), np.empty(count))
-    there = Point(np.empty(6), np.empty(count), np.empty(count))
+    point = Point(np.empty(6), np.empty(count), np.empty(count))
+    trial = Point(np.empty(6), np.empty(count), np.empty(count))
     model = Model(np.zeros((5, 6)), np.zeros((count, 6)), np.empty(count), np.empty((6, 6)))
     best_pose, logs, duals = scratch(6), np.empty(groups), model.duals
-    copy_into(p, here.pose)
-    copy_into(u, here.pose[3:])
-    best, value = begin(problem, here, logs, best_pose)
-    f, mu = here.values[:ratios], mu_start
+    copy_into(p, point.pose)
+    copy_into(u, point.pose[3:])
+    best, value = begin(problem, point, logs, best_pose)
+    f, mu = point.values[:ratios], mu_start
     steps = stalled = 0
-    if value > -math.inf and smallest_of(here.values[ratios:]) > 0.0:
+    if value > -math.inf and smallest_of(point.values[ratios:]) > 0.0:
         t = best_level(f, mu)
-        fill_gaps(here, ratios, t)
+        fill_gaps(point, ratios, t)
         for c in range(count):
-            duals[c] = mu / here.gaps[c]
+            duals[c] = mu / point.gaps[c]
         grads, parts, h, step = np.empty((count, 6)), np.empty((groups, 50)), scratch(5, 5), scratch(6)
         while steps < max_steps:
             steps += 1
-            n = local_coordinates(family, axis_field, here.pose, problem.free, model.directions)
-            linearise(problem, here, grads, parts, n, model, h)
-            if stalled >= 2 or residual(here.gaps, duals, model.rates, n, mu) <= 10.0 * mu:
+            n = local_coordinates(family, axis_field, point.pose, problem.free, model.directions)
+            linearise(problem, point, grads, parts, n, model, h)
+            if stalled >= 2 or residual(point.gaps, duals, model.rates, n, mu) <= 10.0 * mu:
                 if mu <= _MU_END or stalled >= 6:
                     break
                 mu = max(_MU_END, min(0.1 * mu, mu**1.5))
                 t = best_level(f, mu)
-                fill_gaps(here, ratios, t)
-            slope = newton_step(here.gaps, duals, model.rates, h, n, mu, model.factor, step)
+                fill_gaps(point, ratios, t)
+            slope = newton_step(point.gaps, duals, model.rates, h, n, mu, model.factor, step)
             if math.isnan(slope):
                 break
-            dual_scale, largest = longest_scale(problem, here.gaps, model.rates, step, n)
-            scale, t = line_search(problem, here, t, there, model, n, mu, step, slope, dual_scale, logs)
+            dual_scale, largest = longest_scale(problem, point.gaps, model.rates, step, n)
+            scale, t = line_search(problem, point, t, trial, model, n, mu, step, slope, dual_scale, logs)
             if not scale > 0.0:
                 stalled += 3
                 continue
             stalled = stalled + 1 if scale * largest < 1e-13 else 0
-            update_duals(here.gaps, there.gaps, model.rates, step, n + 1, dual_scale, mu, duals)
-            copy_into(there.pose, here.pose)
-            copy_into(there.values, here.values)
-            copy_into(there.gaps, here.gaps)
+            update_duals(point.gaps, trial.gaps, model.rates, step, n + 1, dual_scale, mu, duals)
+            copy_into(trial.pose, point.pose)
+            copy_into(trial.values, point.values)
+            copy_into(trial.gaps, point.gaps)
             value = smallest_of(f)
             if value > best:
                 best = value
-                copy_into(here.pose, best_pose)
-        best = put_on_faces(problem, here, there, model, logs, best, best_pose)
+                copy_into(point.pose, best_pose)
+        best = put_on_faces(problem, point, trial, model, logs, best, best_pose)
     else:
         duals[:] = 1.0
     total = 0.0

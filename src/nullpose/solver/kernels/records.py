@@ -37,12 +37,10 @@ class Goal(NamedTuple):
     Args:
         best: the incumbent's smallest ratio; a box's centre that beats it ends the call.
         multipliers: a row with the multipliers at the incumbent, which are tried on every box.
-        axes_above: axes are split only where the dual's value, relative to the level, is above this.
     """
 
     best: float
     multipliers: FloatArray
-    axes_above: float
 
 
 class Workspace(NamedTuple):

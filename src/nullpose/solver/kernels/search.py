@@ -11,11 +11,12 @@ import math
 
 import numpy as np
 
+from nullpose.problem.records import AFFINE_AXIS
 from nullpose.solver.kernels.dual import dual_multipliers
 from nullpose.solver.kernels.forms import congruence, fill_forms, inverse_factor
 from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 from nullpose.solver.kernels.links import min_log_ratio
-from nullpose.solver.kernels.local_coordinates import AFFINE, axis_at, choose_sides, clamp_axis, side_slack
+from nullpose.solver.kernels.local_coordinates import axis_at, choose_sides, clamp_axis, side_slack
 from nullpose.solver.kernels.polish import polish
 from nullpose.solver.kernels.scratch import scratch, zeroed
 from nullpose.solver.kernels.symmetric import (
@@ -29,7 +30,7 @@ from nullpose.solver.kernels.vectors import dot
 
 _MU_START = 0.1
 _MAX_STEPS = 100
-_SAME = 1e-9
+_LEAST_GAIN = 1e-9
 _ROUGH = 1e-2
 _STEP = 1e-3  # m beyond a forbidden piece's side
 _SPARE = 1e-2  # beyond a keep-out ball's radius, as a share of it
@@ -62,8 +63,8 @@ def push_away(centre, n, reach, fallback, p):
         away += (p[i] - centre[i]) ** 2
     away = math.sqrt(away)
     for i in range(n):
-        way = (p[i] - centre[i]) / away if away > 1e-9 else (1.0 if i == fallback else 0.0)
-        p[i] = centre[i] + reach * way
+        outwards = (p[i] - centre[i]) / away if away > 1e-9 else (1.0 if i == fallback else 0.0)
+        p[i] = centre[i] + reach * outwards
 
 
 @inner_kernel
@@ -172,7 +173,7 @@ def axis_of_forms(forms, back, level, axis):
 @inner_kernel
 def start_axis(family, axis_field, p, u, logs, f):
     """Return the smallest log ratio at the axis to start with: a likely one, or the field's."""
-    if axis_field.kind == AFFINE:
+    if axis_field.kind == AFFINE_AXIS:
         axis_at(axis_field, p, u)
     else:
         likely_axis(family, p, u)
@@ -258,7 +259,7 @@ def search(family, domain, axis_field, landmarks, shift, settings, best_p, best_
             starts += 1
             evaluations += steps
         if lap > 0 and best > -math.inf:
-            idle = 0 if best > before + _SAME else idle + 1
+            idle = 0 if best > before + _LEAST_GAIN else idle + 1
             if idle >= settings.patience:
                 break
     return best, starts, evaluations

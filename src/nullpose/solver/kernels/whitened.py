@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from nullpose.problem.records import BAND_AXIS, CONE_AXIS
 from nullpose.solver.kernels.exclusion import is_level
 from nullpose.solver.kernels.forms import add_denominator, add_point, congruence, inverse_factor
 from nullpose.solver.kernels.jit import inner_kernel
@@ -18,7 +19,7 @@ _STEEP = 1e-3  # and as a share of its distance from level and upright, if that 
 @inner_kernel
 def half_width(axis_field):
     """Return half the width that a cone is given; zero for a band."""
-    if axis_field.kind != 3:
+    if axis_field.kind != CONE_AXIS:
         return 0.0
     c = axis_field.offset[0]
     return min(_THIN, _STEEP * min(c, 1.0 - c))
@@ -87,7 +88,7 @@ def constraint_forms(axis_field, basis, row, back, forms, places):
                 forms[sides, 2] = forms[sides, 4] = forms[sides, 5] = 0.0
             places[sides] = SIDE + side
             sides += 1
-    if axis_field.kind >= 2 and not level_axes:
+    if axis_field.kind >= BAND_AXIS and not level_axes:
         thin = half_width(axis_field)
         for end in range(2):
             c = axis_field.offset[end] + (thin if end == 1 else -thin)

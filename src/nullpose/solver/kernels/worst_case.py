@@ -146,7 +146,7 @@ def descend(ratio, errors, y, offset, places):
 
 @inner_kernel
 def null_within_reach(node, errors):
-    """Return whether some error points the null at the node, and the axis and offset that come closest."""
+    """Check whether some error points the null at the node, and the axis and offset that come closest."""
     y = into_cone(errors, node)
     ahead = dot(y, node)
     offset = along(node, -ahead, y)
@@ -159,7 +159,7 @@ def null_within_reach(node, errors):
 
 @inner_kernel
 def crossed_within_reach(ratio, errors):
-    """Return whether an error of the axis alone crosses the node's dipole, and that axis."""
+    """Check whether an error of the axis alone crosses the node's dipole, and that axis."""
     nominal, q = errors.frame[0], ratio.node
     a = along(scaled(dot(q, q), ratio.dipole), -dot(ratio.dipole, q), q)
     lean, square = dot(nominal, a), dot(a, a)
@@ -182,8 +182,8 @@ def worst_found(ratio, errors, places):
         begin = nominal
         if start > 0:
             angle = 0.5 * math.pi * start
-            way = along(scaled(math.cos(angle), first), math.sin(angle), second)
-            begin = along(scaled(errors.cosine, nominal), errors.sine, way)
+            tilt = along(scaled(math.cos(angle), first), math.sin(angle), second)
+            begin = along(scaled(errors.cosine, nominal), errors.sine, tilt)
         value, new_y, new_offset = descend(ratio, errors, into_cone(errors, begin), _NO_OFFSET, places)
         if value < best:
             best, y, offset = value, new_y, new_offset

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nullpose.solver.kernels.constants import VECTOR_BEND, VECTOR_SLOPE
 from nullpose.solver.kernels.jit import heap_kernel, inner_kernel
-from nullpose.solver.kernels.link_vectors import BEND, SLOPE
 from nullpose.solver.kernels.vectors import along, combination, cross, dot, minus, norm, row, scaled, store
 from nullpose.solver.kernels.worst_case import (
     FloatArray,
@@ -67,7 +67,7 @@ def cell_of(cells, i):
 
 @inner_kernel
 def ahead(face):
-    """Return which of a face's three coordinates lies along the nominal axis."""
+    """Return the one of a face's three coordinates that lies along the nominal axis."""
     return (3 - face) % 3
 
 
@@ -87,13 +87,13 @@ def signs(corner):
 @inner_kernel
 def corner_of(centre, half, corner):
     """Return a corner of three of a cell's coordinates."""
-    way = signs(corner)
-    return centre[0] + way[0] * half[0], centre[1] + way[1] * half[1], centre[2] + way[2] * half[2]
+    x, y, z = signs(corner)
+    return centre[0] + x * half[0], centre[1] + y * half[1], centre[2] + z * half[2]
 
 
 @inner_kernel
 def nearest(centre, half):
-    """Return how near each coordinate comes to zero."""
+    """Return the least size of each coordinate."""
     return (
         max(0.0, abs(centre[0]) - half[0]),
         max(0.0, abs(centre[1]) - half[1]),
@@ -103,13 +103,13 @@ def nearest(centre, half):
 
 @inner_kernel
 def farthest(centre, half):
-    """Return how far each coordinate goes from zero."""
+    """Return the largest size of each coordinate."""
     return abs(centre[0]) + half[0], abs(centre[1]) + half[1], abs(centre[2]) + half[2]
 
 
 @inner_kernel
 def empty_of_errors(errors, cell):
-    """Return whether a cell lies outside the cone or outside the ball of offsets."""
+    """Check whether a cell lies outside the cone or outside the ball of offsets."""
     d = nearest(cell.d, cell.d_half)
     if dot(d, d) > errors.reach**2 * (1.0 + _SLACK):
         return True
@@ -127,8 +127,9 @@ def least_dipole_link(ratio, y, q):
     """Return the link of a node with a dipole for an axis y of any length, rounding taken off."""
     square, length, other = dot(q, q), norm(y), cross(ratio.dipole, q)
     both = max(0.0, abs(dot(cross(y, q), other)) - 4.0 * ROUND * length * square)
-    own = max(0.0, norm(other) - ROUND * norm(q))
-    return ((1.0 - ratio.leak) * both * both / square + ratio.leak * (length * own) ** 2) / (square * square)
+    leaking = max(0.0, norm(other) - ROUND * norm(q))
+    link = (1.0 - ratio.leak) * both * both / square + ratio.leak * (length * leaking) ** 2
+    return link / (square * square)
 
 
 @inner_kernel
@@ -180,13 +181,13 @@ def curvatures(ratio, weight, level, cell, across):
     b = 4.0 * weight * length * kappa * square
     c = 6.0 * weight * (length * square) ** 2
     if has_dipole(ratio.dipole):
-        b, c = b * SLOPE, c * (1.0 + SLOPE * SLOPE / 3.0)
+        b, c = b * VECTOR_SLOPE, c * (1.0 + VECTOR_SLOPE * VECTOR_SLOPE / 3.0)
     for j in range(ratio.shares.shape[0]):
         near = clearance(ratio.sets, j, minus(row(ratio.centres, j), cell.d)) - swing
         if not near > 0.0:
             return math.inf, math.inf, math.inf
         kappa, has = 1.0 / near, has_dipole(row(ratio.sets.dipoles, j))
-        slope, bend = (SLOPE, BEND) if has else (1.0, 2.0)
+        slope, bend = (VECTOR_SLOPE, VECTOR_BEND) if has else (1.0, 2.0)
         most = across[j] + lean * kappa + slope * swing * length * kappa**2  # no corner is farther off
         part = 2.0 * level * ratio.shares[j] * most * kappa**2
         b += slope * part
@@ -240,7 +241,7 @@ def least_corner(corners, nu, mu):
 
 @inner_kernel
 def margin(errors, cell, corners, nu, mu, rest):
-    """Return how far F is from being negative in a cell, with the best of the multipliers or none."""
+    """Bound F from below in a cell, with the best of the multipliers or none."""
     lean, swing, most = norm(cell.x_half), norm(cell.d_half), -math.inf
     for trial in range(4):
         of_cone, of_ball = nu if trial & 1 else 0.0, mu if trial & 2 else 0.0

@@ -33,7 +33,7 @@ from nullpose.solver.kernels.vectors import (
 )
 
 ROUND = 4e-15  # of a cross product of two vectors, relative to the product of their lengths
-_HAIR = 1e-13  # of a bound: what its few operations may lose
+_ROUNDING = 1e-13  # of a bound: what its few operations may lose
 _MOST_PARTS = 64
 _TRIALS = 14  # slopes tried for a part
 _QUICK_TRIALS = 3
@@ -71,7 +71,7 @@ class Form(NamedTuple):
 
 @inner_kernel
 def has_dipole(axis):
-    """Return whether the axis of an antenna on the ground is that of a dipole; it is zero for others."""
+    """Check whether the axis of an antenna on the ground is that of a dipole; it is zero for others."""
     return dot(axis, axis) > 0.0
 
 
@@ -162,7 +162,7 @@ def largest_form(form, q, semi):
         bound += pull[i] * pull[i] / (m - values[i]) if m > values[i] else 0.0
         total = along(total, x[i], (vectors[0, i], vectors[1, i], vectors[2, i]))
     place = along(q, 1.0, times(semi, scaled(1.0 / max(1.0, norm(total)), total)))
-    return bound + m + _HAIR * (size + m), place
+    return bound + m + _ROUNDING * (size + m), place
 
 
 @inner_kernel
@@ -196,7 +196,7 @@ def climb(y, axis, leak, q, semi, place):
             break
         new_place = along(q, 1.0, times(semi, over(normal, length)))
         new, _, slope = link_and_slopes(y, new_place, axis, leak)
-        if not new > best * (1.0 + _HAIR):
+        if not new > best * (1.0 + _ROUNDING):
             break
         best, place = new, new_place
     return best, place
@@ -258,7 +258,7 @@ def strongest_in_ellipsoid(y, q, frame, semi, axis, leak, tolerance):
     root = math.sqrt(best)
     return (
         root,
-        max(root, math.sqrt(upper) * (1.0 + _HAIR) + 4.0 * ROUND / math.sqrt(nearest)),
+        max(root, math.sqrt(upper) * (1.0 + _ROUNDING) + 4.0 * ROUND / math.sqrt(nearest)),
         combination(frame, place),
     )
 
@@ -301,7 +301,7 @@ def least_distance(q, semi):
 
 @inner_kernel
 def clearance_of(radius, axes, semi, j, q):
-    """Return what ``clearance`` does; compiled without the branch where there are no axes."""
+    """Do what ``clearance`` does; compiled without the branch where there are no axes."""
     if axes is not None:  # noqa: SIM102  this test alone is decided when it is compiled
         if radius < 0.0:
             return least_distance(components(rows(axes[j]), q), row(semi, j))
@@ -310,7 +310,7 @@ def clearance_of(radius, axes, semi, j, q):
 
 @inner_kernel
 def strongest_of(sets, axes, semi, j, y, q, leak, tolerance):
-    """Return what ``strongest_link`` does; compiled without the branch where there are no axes."""
+    """Do what ``strongest_link`` does; compiled without the branch where there are no axes."""
     radius, dipole = sets.radii[j], row(sets.dipoles, j)
     if axes is not None:  # noqa: SIM102  this test alone is decided when it is compiled
         if radius < 0.0:

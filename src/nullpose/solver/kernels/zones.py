@@ -22,12 +22,12 @@ MOST_ALTERNATIVES = 4
 
 _FENCE = 2
 _CYLINDER = 1
-_HAIR = 1e-9  # relative: what an edge may miss a box by and still count as meeting it
+_ROUNDING = 1e-9  # relative: what an edge may miss a box by and still count as meeting it
 
 
 @kernel
 def in_polygon(edges, first, last, x, y):
-    """Return whether a point lies inside a closed chain of edges (even-odd rule)."""
+    """Check whether a point lies inside a closed chain of edges (even-odd rule)."""
     inside = False
     for e in range(first, last):
         x1, y1, x2, y2 = edges[e]
@@ -38,7 +38,7 @@ def in_polygon(edges, first, last, x, y):
 
 @kernel
 def in_zone(domain, z, p):
-    """Return whether a zone forbids a position."""
+    """Check whether a zone forbids a position."""
     kind, first, last, edges = (
         domain.zone_kind[z],
         domain.zone_start[z],
@@ -55,10 +55,10 @@ def in_zone(domain, z, p):
 
 @inner_kernel
 def meets(edge, row):
-    """Return whether a segment meets the rectangle of a row's box, or comes within a hair of it."""
+    """Check whether a segment meets the rectangle of a row's box, or comes within a hair of it."""
     x, y, hx, hy = row[CENTRE], row[CENTRE + 1], row[HALF], row[HALF + 1]
     x1, y1, x2, y2 = edge[0] - x, edge[1] - y, edge[2] - x, edge[3] - y
-    slack = _HAIR * (1.0 + abs(x) + abs(y) + hx + hy)
+    slack = _ROUNDING * (1.0 + abs(x) + abs(y) + hx + hy)
     if min(x1, x2) > hx + slack or max(x1, x2) < -hx - slack:
         return False
     if min(y1, y2) > hy + slack or max(y1, y2) < -hy - slack:
@@ -73,9 +73,9 @@ def middle_inside(edge, row):
     """Return the middle of the part of a segment that lies in the rectangle of a row's box."""
     low, high = 0.0, 1.0
     for i in range(2):
-        start, way = edge[i] - row[CENTRE + i], edge[2 + i] - edge[i]
-        if way != 0.0:
-            a, b = (-row[HALF + i] - start) / way, (row[HALF + i] - start) / way
+        start, change = edge[i] - row[CENTRE + i], edge[2 + i] - edge[i]
+        if change != 0.0:
+            a, b = (-row[HALF + i] - start) / change, (row[HALF + i] - start) / change
             low, high = max(low, min(a, b)), min(high, max(a, b))
     share = 0.5 * (low + high)
     return edge[0] + share * (edge[2] - edge[0]), edge[1] + share * (edge[3] - edge[1])
@@ -101,29 +101,29 @@ def polygon_alternatives(domain, z, row, sides, counts):
     )
     fence = kind == _FENCE
     met = 0
-    one = two = first
+    earlier = later = first
     for e in range(first, last):
         if meets(edges[e], row):
             met += 1
             if met > 2:
                 return UNCLEAR
-            one, two = two if met == 2 else e, e
+            earlier, later = later if met == 2 else e, e
     if met == 0:
         inside = in_polygon(edges, first, last, row[CENTRE], row[CENTRE + 1])
         return OUTSIDE if inside == fence else FORBIDDEN
-    fill_side(edges[one], not fence, sides[0, 0])
+    fill_side(edges[earlier], not fence, sides[0, 0])
     counts[0] = 1
     if met == 1:
         return 1
-    fill_side(edges[two], not fence, sides[0, 1])
-    x, y = middle_inside(edges[two], row)
-    there = sides[0, 0, 1] * x + sides[0, 0, 2] * y - sides[0, 0, 4]
-    x, y = middle_inside(edges[one], row)
-    here = sides[0, 1, 1] * x + sides[0, 1, 2] * y - sides[0, 1, 4]
-    if there > 0.0 and here > 0.0:  # each edge on the other's allowed side: both constraints hold
+    fill_side(edges[later], not fence, sides[0, 1])
+    x, y = middle_inside(edges[later], row)
+    beyond_first = sides[0, 0, 1] * x + sides[0, 0, 2] * y - sides[0, 0, 4]
+    x, y = middle_inside(edges[earlier], row)
+    beyond_second = sides[0, 1, 1] * x + sides[0, 1, 2] * y - sides[0, 1, 4]
+    if beyond_first > 0.0 and beyond_second > 0.0:  # each edge on the other's allowed side: both hold
         counts[0] = 2
         return 1
-    if there < 0.0 and here < 0.0:
+    if beyond_first < 0.0 and beyond_second < 0.0:
         for m in range(5):
             sides[1, 0, m] = sides[0, 1, m]
         counts[1] = 1
@@ -163,7 +163,7 @@ def zone_alternatives(domain, z, row, sides, counts):
         count = polygon_alternatives(domain, z, row, sides, counts)
         if count < 0:
             return count
-    slack = _HAIR * (1.0 + abs(bottom) + abs(top))
+    slack = _ROUNDING * (1.0 + abs(bottom) + abs(top))
     for end in range(2):
         if top > high - slack if end == 1 else bottom < low + slack:
             sides[count, 0, :] = 0.0

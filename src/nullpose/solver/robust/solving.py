@@ -11,11 +11,11 @@ from nullpose.physics.gain import worst_polarised
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
+from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.by_scheme import solve_by_scheme
 from nullpose.solver.compiling import limit_clock, precompile, working_clock
 from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
-from nullpose.solver.proof import INTERRUPT
 from nullpose.solver.result import Result, Stats, provenance
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.robust.exchange import Exchange

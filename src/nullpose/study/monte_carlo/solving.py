@@ -23,7 +23,7 @@ from nullpose.solver import (
     solve,
     solve_many,
 )
-from nullpose.solver.proof import INTERRUPT
+from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.robust import RobustDetails
 from nullpose.study.evaluation import pose_faults
 from nullpose.study.monte_carlo.case import StudyCase
