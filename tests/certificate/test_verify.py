@@ -61,13 +61,8 @@ def test_the_default_gap_is_proved(certified: Callable) -> None:
 
 @pytest.mark.parametrize(("nodes", "jammers"), [(5, 1), (5, 2), (8, 1), (8, 3)])
 def test_many_nodes_are_proved(nodes: int, jammers: int, random_scene: Callable, certified: Callable) -> None:
-    """Random scenes where forms may have a duality gap, so that axes may have to be split."""
-    certificate = certified(random_scene(10 * nodes + jammers, nodes, jammers))
-    accepted(certificate)
-    if (nodes, jammers) == (5, 1):
-        cells = certificate.trees[0].leaves.cell[:, 0] >= 0
-        assert np.any(cells)
-        assert np.any(certificate.trees[0].leaves.sides[cells] > 0.0)
+    """Random scenes where forms may have a duality gap."""
+    accepted(certified(random_scene(10 * nodes + jammers, nodes, jammers)))
 
 
 def test_cells_are_proved(celled: Certificate) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nullpose.certificate import Certificate, verify
-from nullpose.certificate.certificate import OFF_BAND, TOWARDS
+from nullpose.certificate.certificate import OFF_BAND
 from nullpose.scenario import Airframe, Scenario
 
 AIRFRAMES = {
@@ -86,16 +86,21 @@ def test_multipliers_of_the_band_are_needed(name: str, flown: Callable) -> None:
         assert "is not excluded" in rejected(replace(certificate, trees=(replace(tree, leaves=leaves),)))
 
 
-def test_level_axes_are_proved_in_cells(random_scene: Callable, put_together: Callable) -> None:
-    """With many nodes level axes are cut into cells, and those on top of the cube are out of reach."""
+def test_level_axes_are_proved_in_cells(
+    random_scene: Callable, put_together: Callable, cut_into_cells: Callable
+) -> None:
+    """Level axes may be cut into cells, and those on top of the cube are out of reach."""
     scenario = with_airframe(random_scene(51, 5, 1), preset="level", mount_deg=90.0)
-    certificate = put_together(scenario, gap=1e-2)
+    certificate = cut_into_cells(put_together(scenario, gap=1e-2))
     leaves = certificate.trees[0].leaves
+    top = leaves.face == 2
+    columns = {"test": OFF_BAND, "point": -1, "mix": -1}
+    columns = {name: np.where(top, value, getattr(leaves, name)) for name, value in columns.items()}
+    leaves = replace(leaves, **columns)
+    certificate = replace(certificate, trees=(replace(certificate.trees[0], leaves=leaves),))
+    assert np.any(top)
+    assert np.any((leaves.face >= 0) & ~top)
     assert verify(certificate).proved
-    assert np.any(leaves.test == OFF_BAND)
-    inside = (leaves.cell[:, 0] >= 0) & (leaves.test != OFF_BAND)
-    assert np.any(inside)
-    assert not np.any(leaves.test == TOWARDS)
     row = int(np.flatnonzero(leaves.test == OFF_BAND)[0])
     for face in (-1, 0, 1):
         cell = leaves.cell.copy()
@@ -105,15 +110,19 @@ def test_level_axes_are_proved_in_cells(random_scene: Callable, put_together: Ca
         assert not verify(replace(certificate, trees=trees)).proved
 
 
-def test_cells_are_proved_within_bands(random_scene: Callable, put_together: Callable) -> None:
-    """With many nodes bands are cut into cells, which need their multipliers."""
+def test_cells_are_proved_within_bands(
+    random_scene: Callable, put_together: Callable, cut_into_cells: Callable
+) -> None:
+    """Cells of a band are proved with the band's multipliers, which they need."""
     scenario = with_airframe(random_scene(57, 8, 3), tilt_max_deg=10.0, mount_deg=90.0)
-    certificate = put_together(scenario, gap=1e-2)
+    certificate = cut_into_cells(put_together(scenario, gap=1e-2))
     leaves = certificate.trees[0].leaves
+    celled = (leaves.face >= 0) & (leaves.band != 0.0)
+    assert np.any(celled)
     assert verify(certificate).proved
-    celled = leaves.cell[:, 0] >= 0
-    assert np.any(celled & (leaves.band != 0.0))
-    assert np.any(leaves.test == OFF_BAND)
+    leaves = replace(leaves, band=np.where(celled, 0.0, leaves.band))
+    changed = replace(certificate, trees=(replace(certificate.trees[0], leaves=leaves),))
+    assert "is not excluded" in rejected(changed)
 
 
 def test_poses_that_the_vehicle_cannot_take_are_rejected(flown: Callable) -> None:
