@@ -225,7 +225,7 @@ def _rendered(template: str, page: Mapping[str, object]) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    return environment.get_template(template).render(page)
+    return str(environment.get_template(template).render(page))
 
 
 def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, ...]]:
