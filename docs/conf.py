@@ -44,7 +44,7 @@ nitpick_ignore_regex = [
     ),
     (
         r"py:.*",
-        r".*(ArrayLike|NDArray|FloatArray|IntArray|float64|Path|PathLike|Callable|Sequence|Mapping|Iterable)",
+        r".*(ArrayLike|NDArray|FloatArray|IntArray|float64|Axes|Details|Path|PathLike|Callable|Sequence|Mapping|Iterable)",
     ),
 ]
 

@@ -34,7 +34,7 @@ def compare_antennas(
     Args:
         scenario: states another antenna than the paper's, on the drone or on the ground.
         on_progress: called with how many of the two solves are done.
-        options: as for :func:`nullpose.solve`.
+        options: as for :func:`nullpose.solver.solve`.
 
     Raises:
         UsageError: every antenna is the paper's; a bad seed or limit.

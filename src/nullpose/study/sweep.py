@@ -46,7 +46,7 @@ def sweep(
         values: what to set it to, in its own unit.
         schemes: which cases to solve.
         on_progress: called after each solve with how many are done and how many there are.
-        options: as for :func:`nullpose.solve`.
+        options: as for :func:`nullpose.solver.solve`.
 
     Raises:
         ScenarioError: the path does not exist, or a value makes no valid scenario.
@@ -219,7 +219,7 @@ def plan_sweep(
         points: how many values.
         log: space the values by a constant ratio.
         schemes: the cases to solve, each of which must apply; without it all that do.
-        options: as for :func:`nullpose.solve`.
+        options: as for :func:`nullpose.solver.solve`.
 
     Raises:
         UsageError: not exactly one path to vary, a bad range or limit, or a scheme that does not apply.

@@ -38,7 +38,7 @@ def compare_airframes(
         cases: the vehicles, by the tilt that they take, the omnidirectional one among them; without it
             those of :func:`cases_of`.
         on_progress: called after each vehicle with how many are done and how many there are.
-        options: as for :func:`nullpose.solve`.
+        options: as for :func:`nullpose.solver.solve`.
 
     Raises:
         UsageError: a bad seed or limit.
