@@ -107,4 +107,5 @@ def signals_handled(handler: Callable[[int, FrameType | None], object], *names: 
         yield
     finally:
         for number, old in before.items():
-            signal.signal(number, old)
+            if signal.getsignal(number) is handler:  # a verb that is ending ignores it from then on
+                signal.signal(number, old)

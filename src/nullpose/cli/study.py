@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -73,6 +74,7 @@ def run(
         with StudyBar() as bar:
             found = run_study(loaded, out, scheduler=scheduler, workers=workers, chunk=chunk, on_progress=bar)
     except KeyboardInterrupt:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C must not disturb the end
         say("interrupted; the parts so far are kept, and the same command goes on from there", err=True)
         raise typer.Exit(INTERRUPTED) from None
     tell(found, words_of, json_output)

@@ -66,7 +66,7 @@ def test_one_at_fault(spec: Spec, monkeypatch: pytest.MonkeyPatch) -> None:
         return solve_many(scenarios, **options)
 
     monkeypatch.setattr(solving, "solve_many", broken)
-    monkeypatch.setattr("nullpose.study.grid.solve", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr(solving, "solve", lambda *_, **__: 1 / 0)
     rows = _without_time(rows_of(study, 0, 7))
     for before, after in zip(whole, rows, strict=True):
         if after["scene"] == 3:
