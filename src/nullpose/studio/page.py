@@ -20,9 +20,10 @@ from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio import exports
 from nullpose.studio.camera import aim, canvas_px
 from nullpose.studio.case import case_named, new_scenario
+from nullpose.studio.controls import NO_CASE
 from nullpose.studio.edits import entries_of, with_typed, without
 from nullpose.studio.look import DARK, LIGHT
-from nullpose.studio.panel import NO_CASE, Panel, by_hand
+from nullpose.studio.panel import Panel, by_hand
 from nullpose.studio.picking import clicked
 from nullpose.studio.readout import failure_html
 from nullpose.studio.session import Session, opened

@@ -84,11 +84,7 @@ class State:
         return self.scenario, self.case, self.compared, self.text, self.opened
 
     def with_scene_of(self, other: State) -> State:
-        """Return the state with another one's scene.
-
-        Args:
-            other: the other.
-        """
+        """Return the state with another one's scene."""
         return replace(
             self,
             scenario=other.scenario,
@@ -99,11 +95,7 @@ class State:
         )
 
     def with_event(self, event: Event) -> State:
-        """Return the state with something that was found.
-
-        Args:
-            event: of any version; it replaces the one before of its kind and case.
-        """
+        """Return the state with an event in place of the one before of its kind and case."""
         events = {**self.events, (type(event), getattr(event, "case", None)): event}
         if isinstance(event, Answer):
             events.pop((Notice, None), None)
@@ -165,11 +157,7 @@ class State:
         return (self.case,) if self.compared is None else (self.case, self.compared)
 
     def letter(self, slot: int) -> str:
-        """Return the letter of one of two cases, "A: " or "B: "; empty for one case.
-
-        Args:
-            slot: 0 for the chosen case, 1 for the compared one.
-        """
+        """Return the letter of one of two cases, "A: " or "B: "; empty for one case."""
         return "" if self.compared is None else f"{'AB'[slot]}: "
 
     def points(self) -> Iterator[tuple[Key, GroundPoint]]:
@@ -179,19 +167,11 @@ class State:
                 yield (kind, index), point
 
     def members(self, kind: Kind) -> tuple[Any, ...]:
-        """Return a list of the scenario.
-
-        Args:
-            kind: which.
-        """
+        """Return a list of the scenario."""
         return tuple(getattr(self.scenario.airspace if kind == "no_fly" else self.scenario, kind))
 
     def with_members(self, kind: Kind, members: Iterable[Any]) -> State:
         """Return the state with another list in the scenario.
-
-        Args:
-            kind: which.
-            members: the points or zones that it is to hold.
 
         Raises:
             ScenarioError: the scenario would be faulty.
@@ -203,10 +183,6 @@ class State:
 
     def moved(self, key: Key, position_m: ArrayLike) -> State:
         """Return the state with one ground point elsewhere, to a millimetre.
-
-        Args:
-            key: which point.
-            position_m: (3,) metres.
 
         Raises:
             ScenarioError: the scenario would be faulty.
@@ -232,9 +208,6 @@ class State:
 
     def with_power_db(self, power_db: float) -> State:
         """Return the state with all jammers' powers scaled alike, so that the strongest has this one.
-
-        Args:
-            power_db: power of the strongest jammer over that of the strongest transmitter, dB.
 
         Raises:
             ScenarioError: the scenario would be faulty.
@@ -262,9 +235,6 @@ class State:
 
     def with_power_text(self, text: str) -> State:
         """Return the state with the jamming power that was typed; see :meth:`with_power_db`.
-
-        Args:
-            text: a number of decibels, in the range that a page offers.
 
         Raises:
             ScenarioError: it is no number, or out of that range.
@@ -299,17 +269,9 @@ class State:
         return replace(self, text=self.text and toml_like(self.text, self.scenario))
 
     def with_case(self, case: Case) -> State:
-        """Return the state with another case chosen.
-
-        Args:
-            case: one that has a meaning for the scenario.
-        """
+        """Return the state with another case chosen."""
         return replace(self, case=case, compared=None if self.compared == case else self.compared)
 
     def with_compared(self, case: Case | None) -> State:
-        """Return the state with another case set beside the chosen one, or none.
-
-        Args:
-            case: the second case; the chosen one counts as none.
-        """
+        """Return the state with another case set beside the chosen one, or none."""
         return replace(self, compared=None if case == self.case else case)

@@ -42,13 +42,13 @@ def test_body_and_rod_have_the_attitude(
 ) -> None:
     """The body's rotation is that of the convention; with the mount's it puts the rod onto the axis."""
     pose = Pose(result.pose.position_m, roll, pitch, yaw, mount)
-    drone.show(
+    drone.render(
         answer_of(1, OPTIMUM, replace(result, pose=pose)),
         "",
         50.0,
         (0.0, 1.0),
         [60.0, -40.0, 30.0],
-        pattern=True,
+        has_pattern=True,
     )
     body, rod = (SO3(drone._parts[name].wxyz).as_matrix() for name in ("body", "antenna"))
     assert body == pytest.approx(rotation_world_from_body(roll, pitch, yaw), abs=1e-6)

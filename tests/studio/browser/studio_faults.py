@@ -224,7 +224,8 @@ def test_a_link_has_the_legends_colour(
         ]
         way = np.linspace(node.position_m, answer.result.pose.position_m, 60)[12:30]
         far = [np.abs(_around(picture, camera, point, 2) - legend).max(axis=1).min() for point in way]
-        assert np.median(far) < 0.05, f"{link.node}: {far}"
+        # of the sampled part a label may hide more than half; a link of another colour has none of it
+        assert np.quantile(far, 0.25) < 0.05, f"{link.node}: {far}"
 
 
 def test_grid_and_airspace_grow_with_a_drag(ours: Any, shown: Shown, paper: Scenario) -> None:
@@ -260,12 +261,13 @@ from nullpose import load
 from nullpose.solver.kernels.branch import branch
 from nullpose.studio.answer import Answer
 from nullpose.studio.session import Session
+from nullpose.studio.state import State
 found = threading.Event()
 def told(event):
     if isinstance(event, Answer) and not found.is_set():
         print(event.result.pose is not None, len(branch.entries), flush=True)
         found.set()
-Session(load({path!r}), on_event=told).start()
+Session(State(scenario=load({path!r})), on_event=told).start()
 found.wait(300)
 import os; os._exit(0)
 """
