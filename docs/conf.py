@@ -18,6 +18,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "docstrings",
     "offline_math",
+    "reference",
     "validation",
 ]
 exclude_patterns = ["_build", "_ext"]

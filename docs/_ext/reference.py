@@ -1,0 +1,126 @@
+"""Tables that the pages take from the program: the keys of a scenario file, and the options of a verb."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any, ClassVar
+
+import typer
+from docutils import nodes
+from docutils.parsers.rst import directives
+from docutils.statemachine import StringList
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+import nullpose
+from nullpose.cli.app import app
+
+SCHEMA = nullpose.json_schema()
+CODE = re.compile(
+    r"(?<![\w`])(--[a-z][a-z-]*|\[{1,2}[a-z][\w.]*\]{1,2}|(?:[\w*]+\.)*[a-z]+(?:_[a-z0-9]+)+(?:=[\w.]*\w)?)(?!\w)"
+)
+POINTS = ("nodes", "jammers", "eavesdroppers")
+
+
+def table_schema(entry: dict[str, Any]) -> dict[str, Any] | None:
+    """Find the schema of the table that a key holds, or a list of; None for a value."""
+    reference = entry.get("$ref") or entry.get("items", {}).get("$ref")
+    return SCHEMA["$defs"][reference.rsplit("/", 1)[-1]] if reference else None
+
+
+def schema_at(path: str) -> dict[str, Any]:
+    """Find the schema of a table by its path: "", "airspace.no_fly"."""
+    schema = SCHEMA
+    for name in path.split(".") if path else ():
+        schema = table_schema(schema["properties"][name])
+    return schema
+
+
+def keys_of(path: str) -> dict[str, dict[str, Any]]:
+    """Collect the keys of a table that hold a value; "places" are those that all points share."""
+    schema = schema_at("nodes" if path == "places" else path)
+    found = {key: entry for key, entry in schema["properties"].items() if table_schema(entry) is None}
+    if path in (*POINTS, "places"):
+        shared = set.intersection(*(set(schema_at(name)["properties"]) for name in POINTS))
+        found = {key: entry for key, entry in found.items() if (key in shared) == (path == "places")}
+    required = schema.get("required", ())
+    return {key: {**entry, "required": key in required} for key, entry in found.items()}
+
+
+def allowed(entry: dict[str, Any]) -> str:
+    """Describe the values that a key takes."""
+    if "enum" in entry:
+        return ", ".join(f'`"{value}"`' for value in entry["enum"])
+    ends = [f"{entry[end]:g}".replace("e+0", "e") for end in ("minimum", "maximum") if end in entry]
+    numbers = " to ".join(ends)
+    if "items" not in entry:
+        return numbers or "text"
+    least, most = entry["minItems"], entry["maxItems"]
+    length = f"{least}" if least == most else f"{least} to {most:,}"
+    inner = entry["items"]
+    kind = "lists of" if "items" in inner else "numbers,"
+    lists = f"{length} {kind} {allowed(inner)}"
+    return f"{numbers}, or {lists}" if numbers else lists
+
+
+def default(entry: dict[str, Any]) -> str:
+    """Describe what counts where the key is left out."""
+    return (
+        "required"
+        if entry["required"]
+        else f"`{entry['default']}`"
+        if entry.get("default") is not None
+        else ""
+    )
+
+
+def marked(text: str) -> str:
+    """Put the names of keys, tables and options into code, and make the text fit for a cell."""
+    text = " ".join(text.split()).replace("|", "\\|")
+    return re.sub(CODE, r"`\1`", text)
+
+
+def key_rows(path: str) -> Iterator[str]:
+    """Yield the lines of the table of a table's keys."""
+    yield from ("| key | what | default | allowed |", "|---|---|---|---|")
+    for key, entry in keys_of(path).items():
+        yield f"| `{key}` | {marked(entry['description'])} | {default(entry)} | {allowed(entry)} |"
+
+
+def option_rows(verb: str) -> Iterator[str]:
+    """Yield the lines of the table of a verb's options."""
+    command: Any = typer.main.get_command(app)
+    for name in verb.split():
+        command = command.commands[name]
+    yield from ("| option | what |", "|---|---|")
+    for option in command.params:
+        names = [name for name in (*option.opts, *option.secondary_opts) if name.startswith("--")]
+        if names and not getattr(option, "hidden", False):
+            metavar = f" {option.metavar}" if option.metavar else ""
+            shown = option.show_default if isinstance(option.show_default, str) else option.default
+            ending = f" Default: {shown}." if shown and shown is not True and not option.required else ""
+            shown_names = ", ".join(f"`{name}{metavar}`" for name in names)
+            yield f"| {shown_names} | {marked(option.help + ending)} |"
+
+
+class Table(SphinxDirective):
+    """A table of the program: `{keys} airspace`, `{options} study run`."""
+
+    optional_arguments = 1
+    final_argument_whitespace = True
+    option_spec: ClassVar = {"class": directives.class_option}
+
+    def run(self) -> list[nodes.Node]:
+        """Parse the table's lines as those of the page."""
+        rows = key_rows if self.name == "keys" else option_rows
+        container = nodes.container()
+        self.state.nested_parse(StringList(list(rows(" ".join(self.arguments)))), 0, container)
+        return container.children
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Register the directives."""
+    app.add_directive("keys", Table)
+    app.add_directive("options", Table)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
