@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from claims.study import JammingStudy
 from nullpose.report.certainty import Certainty
-from nullpose.report.numbers import rounded_up
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +23,7 @@ class Claim:
         measure: returns the following, from the data; the certainty apart.
         holds: whether the data bear it out.
         finding: one or two sentences with the decisive numbers.
-        evidence: the numbers, by name with their unit.
+        levels: rows of numbers at single powers, by name with their unit.
         proved: what follows from the certified bounds, given that all values are certified.
         holds_up_to: the largest P_M/P up to which it holds, where that is less than all swept.
         holds_from: the smallest P_M/P from which it holds on, where that is more than the least swept.
@@ -40,7 +39,7 @@ class Claim:
     measure: Callable[[JammingStudy], dict[str, Any]]
     holds: bool = False
     finding: str = ""
-    evidence: Mapping[str, Any] = field(default_factory=dict)
+    levels: Sequence[Mapping[str, Any]] = ()
     proved: str = ""
     holds_up_to: float | None = None
     holds_from: float | None = None
@@ -66,16 +65,6 @@ class Claim:
     def is_certified(self) -> bool:
         """Whether it rests on values, each of them certified."""
         return self.certainty.certified == self.certainty.values > 0
-
-    @property
-    def certainty_words(self) -> str:
-        """How many values of each status it rests on."""
-        rests_on, gap = self.certainty, self.certainty.largest_relative_gap
-        return (
-            f"{rests_on.values} values: {rests_on.certified} certified, {rests_on.gap_not_reached} with a "
-            f"bound outside the requested gap, {rests_on.best_found} best found without a bound; largest "
-            f"relative gap {'none' if gap is None else rounded_up(gap)}"
-        )
 
     @property
     def proved_words(self) -> str:

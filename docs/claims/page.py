@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from claims.claim import Claim
 from claims.claims import CLAIMS
@@ -51,20 +51,13 @@ def claims_page(reproduction: Reproduction, claims: tuple[Claim, ...]) -> str:
 
 def _section(claim: Claim) -> Iterator[str]:
     yield f"## {claim.claim}"
-    yield f"*{claim.verdict.capitalize()}.* {claim.finding}"
+    yield f"*{claim.verdict.capitalize()}* ({claim.source}). {claim.finding}"
     yield (
-        f"- Claimed in: {claim.source} (`{claim.id}`).\n"
         f"- How it was decided: {claim.method}\n"
-        f"- It rests on {claim.certainty_words}.\n"
-        f"- Proved: {claim.proved_words}\n"
+        f"- Proved, from {claim.certainty.certified} certified values: {claim.proved_words}\n"
         f"- Not proved: {claim.unproved}"
     )
-    single = {name: value for name, value in claim.evidence.items() if name != "levels"}
-    yield "\n".join(f"- {_words(name)}: {_cell(value)}" for name, value in single.items())
-    levels = [
-        {_words(name): _cell(value) for name, value in row.items()}
-        for row in claim.evidence.get("levels", ())
-    ]
+    levels = [{_words(name): _cell(value) for name, value in row.items()} for row in claim.levels]
     yield _table(levels) if levels else ""
 
 
@@ -81,10 +74,6 @@ def _words(name: str) -> str:
 
 
 def _cell(value: object) -> str:
-    if value is None:
-        return "never"
-    if isinstance(value, Mapping):
-        return ", ".join(f"{_words(name)} {_cell(item)}" for name, item in value.items())
     if isinstance(value, list):
         return f"({', '.join(map(_cell, value))})"
     if isinstance(value, float):

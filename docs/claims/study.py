@@ -50,7 +50,7 @@ class JammingStudy:
         self._rows = {(row.scheme, row.value): row for row in self.table.rows}
 
     def at(self, scheme: str, level: float) -> ResultRow:
-        """Return the pose of a scheme at a jamming level, solved now if it has not been yet.
+        """Find the pose of a scheme at a jamming level, solved now if it has not been yet.
 
         Args:
             scheme: the scheme's name.
@@ -91,14 +91,6 @@ class JammingStudy:
         """
         return search_as_printed(self.scenario, level)
 
-    def printed_equidistant_at(self, level: float) -> PrintedPoint:
-        """Return the best one of those equally far from both nodes.
-
-        Args:
-            level: P_M/P, a power ratio.
-        """
-        return search_as_printed(self._plane, level)
-
     def _row(self, name: str, level: float, scheme: str, scenario: Scenario) -> ResultRow:
         row = self._rows.get((name, level))
         if row is None:
@@ -107,7 +99,7 @@ class JammingStudy:
         return row
 
     def lead(self, scheme: str, other: str, level: float) -> Lead:
-        """Return how far one scheme's smallest SINR is above another's.
+        """Measure how far one scheme's smallest SINR is above another's.
 
         Args:
             scheme: the scheme's name.
@@ -119,7 +111,7 @@ class JammingStudy:
     def holds_up_to(
         self, condition: Callable[[float], bool], levels: Sequence[float] | None = None
     ) -> float | None:
-        """Return the last level up to which a condition holds, nothing if it fails at the first.
+        """Find the last level up to which a condition holds, nothing if it fails at the first.
 
         Every level before it was looked at; between the last that holds and the first that fails the level is
         bisected.
@@ -136,7 +128,7 @@ class JammingStudy:
         return holding
 
     def holds_from(self, condition: Callable[[float], bool]) -> float | None:
-        """Return the smallest level from which a condition holds, nothing if it fails at the last.
+        """Find the smallest level from which a condition holds, nothing if it fails at the last.
 
         Args:
             condition: what is asked of a level.
@@ -154,7 +146,7 @@ def bound_db(row: ResultRow) -> float:
 
 
 def lead_of(row: ResultRow, other: ResultRow) -> Lead:
-    """Return how far one row's smallest SINR is above another's.
+    """Measure how far one row's smallest SINR is above another's.
 
     Args:
         row: of a sweep.
@@ -173,7 +165,7 @@ def _bisected(condition: Callable[[float], bool], holding: float, failing: float
 
 
 def level_words(level: float | None) -> str:
-    """Return a level in words.
+    """Write a level in words.
 
     Args:
         level: P_M/P; None for none.
@@ -182,7 +174,7 @@ def level_words(level: float | None) -> str:
 
 
 def printed_apart_m(study: JammingStudy) -> float:
-    """Return by how much the printed form's distances to the two nodes differ at most, metres.
+    """Measure by how much the printed form's distances to the two nodes differ at most, metres.
 
     Args:
         study: with the positions.
