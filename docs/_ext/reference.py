@@ -1,4 +1,4 @@
-"""Tables that the pages take from the program: the keys of a scenario file, and the options of a verb."""
+"""Tables that the pages take from the program: keys of scenario and study files, options of a verb."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ from sphinx.util.docutils import SphinxDirective
 
 import nullpose
 from nullpose.cli.app import app
+from nullpose.scenario.json_schema import _TomlSchema
+from nullpose.study.monte_carlo.spec import StudySpec
 
-SCHEMA = nullpose.json_schema()
+SCENARIO = nullpose.json_schema()
+STUDY = StudySpec.model_json_schema(schema_generator=_TomlSchema)
 CODE = re.compile(
     r"(?<![\w`])(--[a-z][a-z-]*|\[{1,2}[a-z][\w.]*\]{1,2}|(?:[\w*]+\.)*[a-z]+(?:_[a-z0-9]+)+(?:=[\w.]*\w)?)(?!\w)"
 )
@@ -25,14 +28,17 @@ POINTS = ("nodes", "jammers", "eavesdroppers")
 
 def table_schema(entry: dict[str, Any]) -> dict[str, Any] | None:
     """Find the schema of the table that a key holds, or a list of; None for a value."""
-    reference = entry.get("$ref") or entry.get("items", {}).get("$ref")
-    return SCHEMA["$defs"][reference.rsplit("/", 1)[-1]] if reference else None
+    name = (entry.get("$ref") or entry.get("items", {}).get("$ref", "")).rsplit("/", 1)[-1]
+    if not name or name == "Distribution":  # or a number in its place
+        return None
+    return (SCENARIO["$defs"] | STUDY["$defs"])[name]
 
 
 def schema_at(path: str) -> dict[str, Any]:
-    """Find the schema of a table by its path: "", "airspace.no_fly"."""
-    schema = SCHEMA
-    for name in path.split(".") if path else ():
+    """Find the schema of a table by its path: "", "airspace.no_fly", "study", "study.cases"."""
+    first, _, rest = path.partition(".")
+    schema, names = (STUDY, rest) if first == "study" else (SCENARIO, path)
+    for name in names.split(".") if names else ():
         schema = table_schema(schema["properties"][name])
     return schema
 
@@ -40,7 +46,8 @@ def schema_at(path: str) -> dict[str, Any]:
 def keys_of(path: str) -> dict[str, dict[str, Any]]:
     """Collect the keys of a table that hold a value; "places" are those that all points share."""
     schema = schema_at("nodes" if path == "places" else path)
-    found = {key: entry for key, entry in schema["properties"].items() if table_schema(entry) is None}
+    is_case = path == "study.cases"  # whose tables have no sections of their own
+    found = {key: entry for key, entry in schema["properties"].items() if is_case or not table_schema(entry)}
     if path in (*POINTS, "places"):
         shared = set.intersection(*(set(schema_at(name)["properties"]) for name in POINTS))
         found = {key: entry for key, entry in found.items() if (key in shared) == (path == "places")}
@@ -50,29 +57,39 @@ def keys_of(path: str) -> dict[str, dict[str, Any]]:
 
 def allowed(entry: dict[str, Any]) -> str:
     """Describe the values that a key takes."""
+    if table_schema(entry):
+        return "a table"
+    if "$ref" in entry:
+        return "a number, or a [distribution](#what-drawn-points-keep)"
     if "enum" in entry:
         return ", ".join(f'`"{value}"`' for value in entry["enum"])
-    ends = [f"{entry[end]:g}".replace("e+0", "e") for end in ("minimum", "maximum") if end in entry]
+    ends = [
+        f"{entry[end]:g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
+        for end in ("minimum", "maximum")
+        if end in entry
+    ]
     numbers = " to ".join(ends)
+    if entry.get("type") == "boolean":
+        return "true, false"
     if "items" not in entry:
         return numbers or "text"
+    if "maxItems" not in entry:
+        return "a table"
     least, most = entry["minItems"], entry["maxItems"]
     length = f"{least}" if least == most else f"{least} to {most:,}"
     inner = entry["items"]
-    kind = "lists of" if "items" in inner else "numbers,"
-    lists = f"{length} {kind} {allowed(inner)}"
+    if inner["type"] == "integer":
+        return "a whole number, or two"
+    kind = "lists of" if "items" in inner else "texts" if inner["type"] == "string" else "numbers,"
+    lists = f"{length} {kind} {allowed(inner) if 'minimum' in inner or 'items' in inner else ''}".rstrip(", ")
     return f"{numbers}, or {lists}" if numbers else lists
 
 
 def default(entry: dict[str, Any]) -> str:
     """Describe what counts where the key is left out."""
-    return (
-        "required"
-        if entry["required"]
-        else f"`{entry['default']}`"
-        if entry.get("default") is not None
-        else ""
-    )
+    if entry["required"]:
+        return "required"
+    return "" if entry.get("default") is None else f"`{entry['default']}`"
 
 
 def marked(text: str) -> str:

@@ -5,12 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from nullpose.scenario.section import Section
-from nullpose.study.monte_carlo import StudyCase, StudySpec, load_spec
+from nullpose.study.monte_carlo import load_spec
 from nullpose.study.monte_carlo.distribution import Distribution
-from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes
 from nullpose.study.monte_carlo.rows import schema_of
-from nullpose.study.monte_carlo.scene import SceneBase
+from reference import key_rows, keys_of
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
@@ -30,33 +28,18 @@ def _first_cells(text: str) -> list[set[str]]:
     return tables
 
 
-def _keys(*kinds: type[Section]) -> set[str]:
-    return {key for kind in kinds for key in kind.model_fields}
+@pytest.mark.parametrize("path", ["study", "study.nodes", "study.cases"])
+def test_keys_are_on_the_page(path: str) -> None:
+    """The page shows the keys of a spec, each with its meaning."""
+    assert f"```{{keys}} {path}\n" in PAGE
+    assert len(list(key_rows(path))) == 2 + len(keys_of(path)) > 2
+    assert all(entry["description"] for entry in keys_of(path).values())
 
 
-def test_keys_at_the_top() -> None:
-    """Those that hold a value; tables have sections of their own."""
-    tables = {"scene", "nodes", "jammers", "eavesdroppers", "cases", "sweep"}
-    assert _first_cells(_section("### At the top")) == [_keys(StudySpec) - tables]
-
-
-def test_keys_of_the_scene() -> None:
-    """Those that no scenario file has; the others are named in the text."""
-    (found,) = _first_cells(_section("### `[scene]`"))
-    assert found == {"file", "files", "objective"}
-    assert found <= _keys(SceneBase)
-
-
-def test_keys_of_what_is_drawn() -> None:
-    """Layouts of all kinds in the first table, distributions in the second."""
-    points, distribution = _first_cells(_section(DRAWN))
-    assert points == _keys(Nodes, Jammers, Eavesdroppers)
-    assert distribution == _keys(Distribution)
-
-
-def test_keys_of_a_case() -> None:
-    """Each has a row."""
-    assert _first_cells(_section("### `[[cases]]`")) == [_keys(StudyCase)]
+def test_keys_of_a_distribution() -> None:
+    """Each has a row, and so have those of the scene that no scenario file has."""
+    assert _first_cells(_section(DRAWN)) == [set(Distribution.model_fields)]
+    assert _first_cells(_section("### `[scene]`")) == [{"file", "files", "objective"}]
 
 
 def test_columns_of_a_row() -> None:
