@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
-from nullpose.scenario.areas import Area, Areas, areas_of, corners_of
+from nullpose.scenario.areas import Area, areas_of, corners_of
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import Raw, RawTable, refusal
 from nullpose.scenario.geo_file import Feature
@@ -27,8 +27,22 @@ _HALVES_M = (REACH_M, 3e4, 1.5e4, 8e3, 4e3, 2e3)  # of squares about the origin
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
-def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> tuple[RawTable, Areas]:
-    """Add the zones of a file to a raw airspace after its own, with their account.
+class Filled(NamedTuple):
+    """A raw airspace with what a file holds.
+
+    Args:
+        airspace: raw.
+        notes: on what became of the file's features.
+        places: of areas in the file, by their path in the scenario.
+    """
+
+    airspace: RawTable
+    notes: list[str]
+    places: Mapping[str, str]
+
+
+def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> Filled:
+    """Add the zones of a file to a raw airspace after its own.
 
     Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
 
@@ -56,12 +70,14 @@ def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> tu
         words = " and ".join(f"{key} = {ends}" for key, ends in bounds.items()) or "the airspace of the file"
     if words:
         areas.remarks.append(f"they are cut to {words}, since all have too many corners")
-    zones = [zone for area in areas.areas for zone in area.zones()]
-    return {**airspace, **bounds, "no_fly": [*listed, *zones]}, areas
+    zones = [(zone, area.place) for area in areas.areas for zone in area.zones()]
+    places = {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(zones, len(listed))}
+    filled = {**airspace, **bounds, "no_fly": [*listed, *(zone for zone, _ in zones)]}
+    return Filled(filled, areas.account(), places)
 
 
-def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> tuple[RawTable, Areas]:
-    """Give a raw airspace the fence of a file, with its account.
+def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> Filled:
+    """Give a raw airspace the fence of a file.
 
     The fence's holes are zones, and its altitudes bound those of the airspace.
 
@@ -85,7 +101,9 @@ def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> tu
     ]
     fenced = {**airspace, "geofence_lat_lon_deg": corners_of(polygon.exterior)}
     fenced |= {"no_fly": [*holes, *airspace.get("no_fly", ())]} if holes else {}
-    return fenced | dict(_altitudes(airspace, areas.areas[0], ground_m)), areas
+    fenced |= dict(_altitudes(airspace, areas.areas[0], ground_m))
+    places = {"airspace.geofence_lat_lon_deg": areas.areas[0].place}
+    return Filled(fenced, areas.account(is_fence=True), places)
 
 
 def _altitudes(airspace: Raw, fence: Area, ground_m: Ground) -> Iterator[tuple[str, list[float]]]:

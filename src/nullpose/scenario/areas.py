@@ -99,8 +99,8 @@ class Areas:
         """Leave out what lies outside a box of degrees."""
         self.areas = [area for area in self.areas if area.cut(box)]
 
-    def account(self, is_fence: bool = False) -> Iterator[str]:
-        """Yield a line that says what became of all features, then a line for each kind of remark.
+    def account(self, is_fence: bool = False) -> list[str]:
+        """Say in a line what became of all features, then in a line each kind of remark.
 
         Args:
             is_fence: whether they are a fence, whose holes are zones; no line where there is nothing to say.
@@ -121,15 +121,17 @@ class Areas:
             ", ".join(f"{key} = {ends}" for key, ends in limits.items()): limits,
         }
         words = [part for part, is_so in parts.items() if is_so]
-        if len(words) > 1 or not is_fence:
-            yield "; ".join(words)
-        yield from self.remarks
+        lines = ["; ".join(words)] if len(words) > 1 or not is_fence else []
         names: dict[str, list[str]] = {}
         for area in areas:
             for remark in area.remarks:
                 names.setdefault(remark, []).append(area.name or area.place)
-        for remark, (first, *others) in names.items():
-            yield f'"{first}"{f" (and so {len(others)} more)" if others else ""} {remark}'
+        more = {remark: f" (and so {len(others) - 1} more)" for remark, others in names.items() if others[1:]}
+        return [
+            *lines,
+            *self.remarks,
+            *(f'"{first}"{more.get(remark, "")} {remark}' for remark, (first, *_) in names.items()),
+        ]
 
 
 def counted(numbers: Mapping[str, int]) -> str:

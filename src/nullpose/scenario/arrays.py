@@ -1,13 +1,22 @@
-"""Arrays of a scenario's numbers."""
+"""Arrays of a scenario's numbers, each made once and read-only."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.antenna import GroundAntennas, unit_axis
 from nullpose.errors import UsageError
+from nullpose.scenario.units import power_w, ratio_from_db
+
+if TYPE_CHECKING:
+    from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
+    from nullpose.scenario.radio import Receiver
+
 
 Floats = NDArray[np.float64]
 
@@ -17,6 +26,111 @@ def read_only(values: ArrayLike, shape: Sequence[int]) -> NDArray[np.float64]:
     array = np.array(values, dtype=np.float64).reshape(shape)
     array.flags.writeable = False
     return array
+
+
+def _stacked(kinds: str, key: str, *shape: int) -> cached_property[Floats]:
+    """Make the array of what the points of some kinds have."""
+    return cached_property(
+        lambda table: read_only([getattr(point, key) for point in _points_of(table, kinds)], (-1, *shape))
+    )
+
+
+def _antennas(kinds: str) -> cached_property[GroundAntennas | None]:
+    """Make the antennas of the points of some kinds; None where all are isotropic."""
+
+    def stack(table: object) -> GroundAntennas | None:
+        points = _points_of(table, kinds)
+        if all(point.antenna == "isotropic" and point.gain_dbi == 0.0 for point in points):
+            return None
+        axes = [unit_axis(point.antenna_axis) if point.leak < 1.0 else np.zeros(3) for point in points]
+        numbers = [(point.largest_gain, point.leak) for point in points]
+        return GroundAntennas(read_only(axes, (-1, 3)), *read_only(numbers, (-1, 2)).T)
+
+    return cached_property(stack)
+
+
+def _points_of(table: object, kinds: str) -> list[Any]:
+    return [point for kind in kinds.split() for point in getattr(table, kind)]
+
+
+class PointArrays:
+    """What a scenario has of its points; sources are the nodes, then the jammers."""
+
+    if TYPE_CHECKING:
+        nodes: tuple[Node, ...]
+        jammers: tuple[Jammer, ...]
+        eavesdroppers: tuple[Eavesdropper, ...]
+        receiver: Receiver
+
+    node_positions_m = _stacked("nodes", "position_m", 3)
+    """Positions of the nodes [m], (n_nodes, 3)."""
+    node_powers_w = _stacked("nodes", "transmit_power_w")
+    """Transmit powers of the nodes [W], (n_nodes,)."""
+    node_required_sinr = _stacked("nodes", "required_sinr")
+    """What each node's SINR is divided by to give its margin, linear, (n_nodes,)."""
+    node_antennas = _antennas("nodes")
+    """The nodes' antennas; None where all are isotropic."""
+    jammer_positions_m = _stacked("jammers", "position_m", 3)
+    """Positions of the jammers [m], (n_jammers, 3)."""
+    jammer_powers_w = _stacked("jammers", "transmit_power_w")
+    """Transmit powers of the jammers [W], (n_jammers,)."""
+    jammer_uncertainty_m = _stacked("jammers", "uncertainty_matrix_m", 3, 3)
+    """Matrices of the jammers' uncertainty sets [m], (n_jammers, 3, 3)."""
+    jammer_antennas = _antennas("jammers")
+    """The jammers' antennas; None where all are isotropic."""
+    source_positions_m = _stacked("nodes jammers", "position_m", 3)
+    """Positions of the sources [m], (n_nodes + n_jammers, 3)."""
+    source_powers_w = _stacked("nodes jammers", "transmit_power_w")
+    """Transmit powers of the sources [W], (n_nodes + n_jammers,)."""
+    source_antennas = _antennas("nodes jammers")
+    """The sources' antennas; None where all are isotropic."""
+    eavesdropper_positions_m = _stacked("eavesdroppers", "position_m", 3)
+    """Positions of the eavesdroppers [m], (n_eavesdroppers, 3)."""
+    eavesdropper_uncertainty_m = _stacked("eavesdroppers", "uncertainty_matrix_m", 3, 3)
+    """Matrices of the eavesdroppers' uncertainty sets [m], (n_eavesdroppers, 3, 3)."""
+    eavesdropper_antennas = _antennas("eavesdroppers")
+    """The eavesdroppers' antennas; None where all are isotropic."""
+
+    @property
+    def node_names(self) -> tuple[str, ...]:
+        """Names of the nodes, in order."""
+        return tuple(node.name for node in self.nodes)
+
+    @property
+    def jammer_names(self) -> tuple[str, ...]:
+        """Names of the jammers, in order."""
+        return tuple(jammer.name for jammer in self.jammers)
+
+    @property
+    def eavesdropper_names(self) -> tuple[str, ...]:
+        """Names of the eavesdroppers, in order."""
+        return tuple(eavesdropper.name for eavesdropper in self.eavesdroppers)
+
+    @cached_property
+    def eavesdropper_noise_w(self) -> Floats:
+        """Noise of the eavesdroppers' receivers [W], (n_eavesdroppers,)."""
+        return read_only([self._noise_w(eavesdropper) for eavesdropper in self.eavesdroppers], (-1,))
+
+    @cached_property
+    def node_noise_w(self) -> Floats:
+        """Noise and jamming at the nodes' own receivers [W], (n_nodes,); for the downlink.
+
+        The jamming is as stated, or ``sum_j g0 J_j / |s_k - m_j|^2``, in line of sight, times
+        the largest gains of both antennas whatever their directions.
+        """
+        return read_only([self._noise_w(node) + self._jamming_w(node) for node in self.nodes], (-1,))
+
+    def _noise_w(self, point: Node | Eavesdropper) -> float:
+        return power_w(point.noise_w, point.noise_dbm) or self.receiver.noise_power_w
+
+    def _jamming_w(self, node: Node) -> float:
+        jamming_w = power_w(node.jamming_w, node.jamming_dbm)
+        if jamming_w > 0.0:
+            return jamming_w
+        distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
+        gains = [ratio_from_db(node.gain_dbi + jammer.gain_dbi) for jammer in self.jammers]
+        powers_w = self.receiver.reference_gain * self.jammer_powers_w * gains
+        return float(np.sum(powers_w / distance_squared))
 
 
 def rows_of_points(kind: str, points_m: ArrayLike, power_w: ArrayLike) -> list[dict[str, object]]:
@@ -30,16 +144,18 @@ def rows_of_points(kind: str, points_m: ArrayLike, power_w: ArrayLike) -> list[d
     Raises:
         UsageError: shapes that do not go together.
     """
-    places, powers = _numbers(f"{kind}s_m", points_m), _numbers(f"{kind}_power_w", power_w)
-    if places.size and (places.ndim != 2 or places.shape[1] != 3):
-        wanted = "(n, 3), a row of east, north and up in metres for each"
-        advice = "try its transpose, .T" if places.ndim == 2 and len(places) == 3 else ""
-        if places.shape[-1:] == (2,):
-            advice = "add a column of heights, such as zeros"
-        if places.shape == (3,):
-            advice = "for one point write [[east, north, up]]"
-        message = f"{kind}s_m: given shape {places.shape}; allowed: {wanted}"
-        raise UsageError(f"{message}; {advice}" if advice else message)
+    try:
+        places, powers = np.asarray(points_m, dtype=np.float64), np.asarray(power_w, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"{kind}s_m, {kind}_power_w: given values that make no array of numbers; allowed: numbers in "
+            "rows of equal length"
+        ) from None
+    if places.size and places.shape[1:] != (3,):
+        raise UsageError(
+            f"{kind}s_m: given shape {places.shape}; allowed: (n, 3), a row of east, north and up in metres "
+            "for each; try its transpose .T, [[east, north, up]] for one point, or zeros for heights"
+        )
     places = places.reshape(-1, 3)
     if powers.shape not in ((), (len(places),)):
         raise UsageError(
@@ -48,12 +164,3 @@ def rows_of_points(kind: str, points_m: ArrayLike, power_w: ArrayLike) -> list[d
         )
     rows = zip(places.tolist(), np.broadcast_to(powers, len(places)).tolist(), strict=True)
     return [{"position_m": place, "power_w": power} for place, power in rows]
-
-
-def _numbers(name: str, values: ArrayLike) -> Floats:
-    try:
-        return np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise UsageError(
-            f"{name}: given values that make no array of numbers; allowed: numbers in rows of equal length"
-        ) from None

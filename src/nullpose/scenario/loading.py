@@ -5,8 +5,10 @@ from __future__ import annotations
 import logging
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path, PurePath
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +17,7 @@ from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
 from nullpose.scenario.faults import ONLY_LOCAL, Raw, RawTable, refusal
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
-from nullpose.scenario.node_files import ListedNode, fault_in_file, nodes_of_csv, nodes_of_features
+from nullpose.scenario.node_files import ListedNode, nodes_of_csv, nodes_of_features
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import (
@@ -31,6 +33,9 @@ _NODES_KEY, _FENCE_KEY, _ZONES_KEY = "nodes_from", "geofence_from", "no_fly_from
 _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
 _AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
 _EARLY = re.compile(r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b")
+_FENCES = {"geofence_m", "geofence_lat_lon_deg"}
+_STEP = re.compile(r"(?=[.\[])")
+_MEMBER = re.compile(r"[\w.]+\[\d+\]")
 _LOG = logging.getLogger("nullpose")
 
 
@@ -70,8 +75,7 @@ def load(
             "", "it is nested too deeply to be read, or has a number beyond 1e308", source
         ) from None
     except ScenarioError as error:
-        faults = [files.placed(fault) for fault in error.faults]
-        raise ScenarioError(faults, error.source or source) from None
+        raise ScenarioError(error.faults, error.source or source) from None
     return apply_overrides(scenario, late)
 
 
@@ -161,118 +165,107 @@ class _NamedFiles:
 
     def __init__(self, folder: Path, allow_outside: bool, on_note: Callable[[str], object]) -> None:
         self._folder, self._allow_outside, self._on_note = folder, allow_outside, on_note
-        self._origins: dict[str, str] = {}  # of fence and zones, by their place in the scenario
+        self._faults: list[Fault] = []
+        self._places: dict[str, str] = {}  # in the files, of tables and values by their path in the scenario
 
     def scenario(self, tables: RawTable) -> Scenario:
-        """Read the scenario of raw tables.
+        """Read the scenario of raw tables, and refuse it with the faults of all files.
 
         Raises:
             ScenarioError: with its faults.
         """
         has_zones = _named_files(tables)[f"airspace.{_ZONES_KEY}"] is not None
-        tables = self._with_areas(self._with_antenna(tables))
+        if "antenna" in tables:
+            tables |= {"antenna": self._antenna(tables["antenna"])}
+        if "airspace" in tables:
+            tables |= {"airspace": self._airspace(tables["airspace"], tables.get("origin"))}
         if _NODES_KEY in tables and "nodes" not in tables:
-            scenario = self._with_nodes(tables)
-        else:
+            # The nodes take the place of the key, so that faults come in the order of the file.
+            tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
+            tables["nodes"] = self._nodes(tables["nodes"])
+        try:
             scenario = Scenario.from_dict(tables)
+        except ScenarioError as error:
+            # Nodes that could not be read are not told as missing too.
+            repeated = "nodes" if self._faults and tables.get("nodes") == [] else None
+            self._faults += [self._placed(fault) for fault in error.faults if fault.path != repeated]
+        if self._faults:
+            raise ScenarioError(self._faults)
         if has_zones:
             _require_nodes_in_reach(scenario)
         return scenario
 
-    def placed(self, fault: Fault) -> Fault:
-        """Give a fault of an area its place in the file that it is from."""
-        for place, origin in self._origins.items():
-            if f"{fault.path}.".startswith((f"{place}[", f"{place}.")):
-                return Fault(f"{origin}{fault.path.removeprefix(place)}", fault.message)
-        return fault
+    def _placed(self, fault: Fault) -> Fault:
+        """Give a scenario's fault its place in the file that the value is from."""
+        message = _MEMBER.sub(lambda member: self._places.get(member[0], member[0]), fault.message)
+        steps = _STEP.split(fault.path)
+        for count in range(len(steps), 0, -1):
+            if place := self._places.get("".join(steps[:count])):
+                return Fault("".join([place, *steps[count:]]), message)
+        return Fault(fault.path, message)
 
-    def _path(self, file: object, kind: FileKind, key: str) -> Path:
+    @contextmanager
+    def _reading(self, label: str) -> Iterator[None]:
+        """Collect the faults of a file, in whose place the rest of the scenario is judged without it."""
+        try:
+            yield
+        except ScenarioError as error:
+            self._faults += [_in_file(label, fault) for fault in error.faults]
+
+    def _path(self, file: object, kind: FileKind, place: str = "") -> Path:
         if not isinstance(file, str) or not file.strip():
             raise refusal(
-                key, f'got {described(file)}, must be the name of {kind.noun}, as in "{kind.usual_name}"'
+                place, f'got {described(file)}, must be the name of {kind.noun}, as in "{kind.usual_name}"'
             )
         if PurePath(file).suffix.lower() not in kind.endings:
             raise refusal("", f"the name must end in one of {', '.join(kind.endings)}, which tells the kind")
-        return inside(self._folder, file, self._allow_outside, key)
+        return inside(self._folder, file, self._allow_outside, place)
 
-    def _features(self, path: Path, kind: FileKind, key: str) -> list[Feature]:
-        return features_of(file_content(path, kind, self._folder, key, MOST_BYTES), path)
+    def _features(self, path: Path, kind: FileKind, place: str = "") -> list[Feature]:
+        return features_of(file_content(path, kind, self._folder, place, MOST_BYTES), path)
 
-    def _with_antenna(self, tables: RawTable) -> RawTable:
+    def _antenna(self, antenna: Any) -> Any:
         """Fill in what the file of an antenna holds."""
-        antenna = tables.get("antenna")
         file = antenna.get("file") if isinstance(antenna, dict) else None
-        if not isinstance(antenna, dict) or not isinstance(file, str) or "harmonics" in antenna:
-            return tables
-        path = inside(self._folder, file, self._allow_outside, "antenna.file")
-        try:
-            return tables | {"antenna": with_harmonics(antenna, path)}
-        except ScenarioError as error:
-            raise _of_file(f"antenna.file: {file}", error) from None
+        if not isinstance(file, str) or "harmonics" in antenna:
+            return antenna
+        with self._reading(f"antenna.file: {file}"):
+            return with_harmonics(antenna, inside(self._folder, file, self._allow_outside))
+        return antenna | {"harmonics": [[1.0]]}
 
-    def _with_areas(self, tables: RawTable) -> RawTable:
-        """Fill in the fence and the zones of other files; what is at fault is refused with the rest."""
-        airspace = tables.get("airspace")
+    def _airspace(self, airspace: Any, origin: object) -> Any:
+        """Fill in the fence and the zones of other files."""
         if not isinstance(airspace, dict) or not isinstance(airspace.get("no_fly", []), list):
-            return tables
-        if _FENCE_KEY in airspace and not {"geofence_m", "geofence_lat_lon_deg"} & airspace.keys():
-            airspace = self._with_area_file(airspace, _FENCE_KEY, tables.get("origin"))
-        if _ZONES_KEY in airspace:
-            airspace = self._with_area_file(airspace, _ZONES_KEY, tables.get("origin"))
-        return tables | {"airspace": airspace}
+            return airspace
+        for key, fill in ((_FENCE_KEY, with_fence), (_ZONES_KEY, with_zones)):
+            if key not in airspace or (fill is with_fence and _FENCES & airspace.keys()):
+                continue
+            file, label = airspace[key], f"airspace.{key}: {airspace[key]}"
+            airspace = {other: value for other, value in airspace.items() if other != key}
+            with self._reading(label):
+                features = self._features(self._path(file, _AREA_FILE), _AREA_FILE)
+                airspace, notes, places = fill(airspace, features, origin)
+                for note in notes:
+                    self._on_note(f"{file}: {note}")
+                self._places |= {path: f"{label}: {place}" for path, place in places.items()}
+        return airspace
 
-    def _with_area_file(self, airspace: Raw, key: str, origin: object) -> RawTable:
-        file, label = airspace[key], f"airspace.{key}: {airspace[key]}"
-        rest = {other: value for other, value in airspace.items() if other != key}
-        try:
-            features = self._features(self._path(file, _AREA_FILE, ""), _AREA_FILE, "")
-            filled, areas = (with_fence if key == _FENCE_KEY else with_zones)(rest, features, origin)
-        except ScenarioError as error:
-            raise _of_file(label, error) from None
-        for line in areas.account(is_fence=key == _FENCE_KEY):
-            self._on_note(f"{file}: {line}")
-        if key == _FENCE_KEY:
-            self._origins["airspace.geofence_lat_lon_deg"] = f"{label}: {areas.areas[0].place}"
-            return filled
-        places = [area.place for area in areas.areas for _ in area.zones()]
-        first = len(filled["no_fly"]) - len(places)
-        self._origins |= {
-            f"airspace.no_fly[{index}]": f"{label}: {place}" for index, place in enumerate(places, first)
-        }
-        return filled
-
-    def _with_nodes(self, tables: RawTable) -> Scenario:
-        """Read the scenario whose nodes another file lists; faults name the place in either file."""
-        file = tables[_NODES_KEY]
-        nodes: Sequence[ListedNode] = ()
-        faults: list[Fault] = []
-        try:
-            nodes = self._listed_nodes(file)
-        except ScenarioError as error:
-            faults = [fault if fault.path == _NODES_KEY else _in_file(file, fault) for fault in error.faults]
-        for node in nodes:
-            if node.fault:
-                faults.append(_in_file(file, Fault(f"{node.where}{node.fault.path}", node.fault.message)))
-        # The nodes take the place of the key, so that faults come in the order of the file.
-        whole = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
-        try:
-            scenario = Scenario.from_dict(whole | {"nodes": [dict(node.values) for node in nodes]})
-        except ScenarioError as error:
-            # Nodes that could not be read are not told as missing too.
-            between = [fault for fault in error.faults if nodes or fault.path != "nodes"]
-            faults += filter(None, (fault_in_file(fault, file, nodes) for fault in between))
-        if faults:
-            raise ScenarioError(faults)
-        return scenario
-
-    def _listed_nodes(self, file: object) -> list[ListedNode]:
-        path = self._path(file, _NODES_FILE, _NODES_KEY)
-        if path.suffix.lower() == ".csv":
-            return nodes_of_csv(file_text(path, _NODES_FILE, self._folder, _NODES_KEY))
-        nodes, notes = nodes_of_features(self._features(path, _NODES_FILE, _NODES_KEY))
-        for note in notes:
-            self._on_note(f"{file}: {note}")
-        return nodes
+    def _nodes(self, file: object) -> list[Raw]:
+        """Read the nodes that another file lists."""
+        nodes: list[ListedNode] = []
+        unread: list[Fault] = []  # of nodes
+        with self._reading(f"{file}"):
+            path = self._path(file, _NODES_FILE, _NODES_KEY)
+            if path.suffix.lower() == ".csv":
+                nodes += nodes_of_csv(file_text(path, _NODES_FILE, self._folder, _NODES_KEY), unread)
+            else:
+                features = self._features(path, _NODES_FILE, _NODES_KEY)
+                nodes += nodes_of_features(features, unread, lambda note: self._on_note(f"{file}: {note}"))
+        self._faults += [_in_file(file, fault) for fault in unread]
+        for index, node in enumerate(nodes):
+            for key, place in node.places.items():
+                self._places[f"nodes[{index}].{key}".removesuffix(".")] = f"{file}: {place}"
+        return [node.values for node in nodes]
 
 
 def _require_nodes_in_reach(scenario: Scenario) -> None:
@@ -287,9 +280,7 @@ def _require_nodes_in_reach(scenario: Scenario) -> None:
             )
 
 
-def _of_file(label: str, error: ScenarioError) -> ScenarioError:
-    return ScenarioError([_in_file(label, fault) for fault in error.faults])
-
-
-def _in_file(file: object, fault: Fault) -> Fault:
-    return Fault(f"{file}: {fault.path}" if fault.path else f"{file}", fault.message)
+def _in_file(label: object, fault: Fault) -> Fault:
+    if fault.path == _NODES_KEY:  # which stands in the scenario's own file
+        return fault
+    return Fault(f"{label}: {fault.path}" if fault.path else f"{label}", fault.message)

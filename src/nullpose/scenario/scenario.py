@@ -3,38 +3,36 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterable, Mapping
 from typing import Annotated, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from pydantic import Field
 
-from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna, GroundAntennas, unit_axis
+from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna
 from nullpose.antenna.from_file import ESTIMATE
 from nullpose.errors import WrongTypeError
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
-from nullpose.scenario.arrays import read_only, rows_of_points
+from nullpose.scenario.arrays import PointArrays, rows_of_points
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
-from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
+from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.rules import Choice, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.toml_file import toml_text
-from nullpose.scenario.units import Label, Title, power_w, ratio_from_db
+from nullpose.scenario.units import Label, Title, ratio_from_db
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described
 
 _Objective = Annotated[str, Choice("an objective", RECORDS)]
 
 
-class Scenario(Section):
+class Scenario(Section, PointArrays):
     """Nodes, jammers, a receiver and an airspace, in one world frame: east, north, up (ENU), in metres.
 
     Args:
@@ -241,108 +239,9 @@ class Scenario(Section):
         return self.receiver.reference_gain * ratio_from_db(self.antenna_gain_dbi)
 
     @property
-    def node_names(self) -> tuple[str, ...]:
-        """Names of the nodes, in order."""
-        return tuple(node.name for node in self.nodes)
-
-    @property
-    def jammer_names(self) -> tuple[str, ...]:
-        """Names of the jammers, in order."""
-        return tuple(jammer.name for jammer in self.jammers)
-
-    @cached_property
-    def node_positions_m(self) -> NDArray[np.float64]:
-        """Positions of the nodes [m], (n_nodes, 3), read-only."""
-        return read_only([node.position_m for node in self.nodes], (-1, 3))
-
-    @cached_property
-    def node_powers_w(self) -> NDArray[np.float64]:
-        """Transmit powers of the nodes [W], (n_nodes,), read-only."""
-        return read_only([node.transmit_power_w for node in self.nodes], (-1,))
-
-    @cached_property
-    def jammer_positions_m(self) -> NDArray[np.float64]:
-        """Positions of the jammers [m], (n_jammers, 3), read-only."""
-        return read_only([jammer.position_m for jammer in self.jammers], (-1, 3))
-
-    @cached_property
-    def jammer_powers_w(self) -> NDArray[np.float64]:
-        """Transmit powers of the jammers [W], (n_jammers,), read-only."""
-        return read_only([jammer.transmit_power_w for jammer in self.jammers], (-1,))
-
-    @cached_property
-    def source_positions_m(self) -> NDArray[np.float64]:
-        """Positions of the nodes, then of the jammers [m], (n_nodes + n_jammers, 3), read-only."""
-        return read_only([point.position_m for point in (*self.nodes, *self.jammers)], (-1, 3))
-
-    @cached_property
-    def source_powers_w(self) -> NDArray[np.float64]:
-        """Transmit powers of the nodes, then of the jammers [W], (n_nodes + n_jammers,), read-only."""
-        return read_only([point.transmit_power_w for point in (*self.nodes, *self.jammers)], (-1,))
-
-    @property
-    def eavesdropper_names(self) -> tuple[str, ...]:
-        """Names of the eavesdroppers, in order."""
-        return tuple(eavesdropper.name for eavesdropper in self.eavesdroppers)
-
-    @cached_property
-    def eavesdropper_positions_m(self) -> NDArray[np.float64]:
-        """Positions of the eavesdroppers [m], (n_eavesdroppers, 3), read-only."""
-        return read_only([eavesdropper.position_m for eavesdropper in self.eavesdroppers], (-1, 3))
-
-    @cached_property
-    def eavesdropper_noise_w(self) -> NDArray[np.float64]:
-        """Noise of the eavesdroppers' receivers [W], (n_eavesdroppers,), read-only."""
-        return read_only([self._own_noise_w(eavesdropper) for eavesdropper in self.eavesdroppers], (-1,))
-
-    @cached_property
-    def node_noise_w(self) -> NDArray[np.float64]:
-        """Noise and jamming at the nodes' own receivers [W], (n_nodes,), read-only; for the downlink.
-
-        The jamming is as stated, or ``sum_j g0 J_j / |s_k - m_j|^2``, in line of sight, times
-        the largest gains of both antennas whatever their directions.
-        """
-        return read_only([self._own_noise_w(node) + self._jamming_w(node) for node in self.nodes], (-1,))
-
-    @cached_property
-    def node_required_sinr(self) -> NDArray[np.float64]:
-        """What each node's SINR is divided by to give its margin, linear, (n_nodes,), read-only."""
-        return read_only([node.required_sinr for node in self.nodes], (-1,))
-
-    @cached_property
     def has_margins(self) -> bool:
         """Whether any node states a weight or a required SINR."""
         return any(node.weight is not None or node.min_sinr_db is not None for node in self.nodes)
-
-    @cached_property
-    def jammer_uncertainty_m(self) -> NDArray[np.float64]:
-        """Matrices of the jammers' uncertainty sets [m], (n_jammers, 3, 3), read-only."""
-        return read_only([jammer.uncertainty_matrix_m for jammer in self.jammers], (-1, 3, 3))
-
-    @cached_property
-    def eavesdropper_uncertainty_m(self) -> NDArray[np.float64]:
-        """Matrices of the eavesdroppers' uncertainty sets [m], (n_eavesdroppers, 3, 3), read-only."""
-        return read_only([each.uncertainty_matrix_m for each in self.eavesdroppers], (-1, 3, 3))
-
-    @cached_property
-    def node_antennas(self) -> GroundAntennas | None:
-        """The nodes' antennas; None where all are isotropic."""
-        return _antennas_of(self.nodes)
-
-    @cached_property
-    def jammer_antennas(self) -> GroundAntennas | None:
-        """The jammers' antennas; None where all are isotropic."""
-        return _antennas_of(self.jammers)
-
-    @cached_property
-    def source_antennas(self) -> GroundAntennas | None:
-        """The nodes' antennas, then the jammers'; None where all are isotropic."""
-        return _antennas_of((*self.nodes, *self.jammers))
-
-    @cached_property
-    def eavesdropper_antennas(self) -> GroundAntennas | None:
-        """The eavesdroppers' antennas; None where all are isotropic."""
-        return _antennas_of(self.eavesdroppers)
 
     @property
     def states_antennas(self) -> bool:
@@ -362,18 +261,6 @@ class Scenario(Section):
         """Least and greatest ``u_z^2`` of the axes that the airframe reaches; (0, 1) for all of them."""
         return (0.0, 1.0) if self.airframe is None else self.airframe.axis_band
 
-    def _own_noise_w(self, point: Node | Eavesdropper) -> float:
-        return power_w(point.noise_w, point.noise_dbm) or self.receiver.noise_power_w
-
-    def _jamming_w(self, node: Node) -> float:
-        jamming_w = power_w(node.jamming_w, node.jamming_dbm)
-        if jamming_w > 0.0:
-            return jamming_w
-        distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
-        gains = [ratio_from_db(node.gain_dbi + jammer.gain_dbi) for jammer in self.jammers]
-        powers_w = self.receiver.reference_gain * self.jammer_powers_w * gains
-        return float(np.sum(powers_w / distance_squared))
-
 
 def require_scenario(value: object) -> None:
     """Refuse what is no scenario, such as the path of its file, with advice.
@@ -390,11 +277,3 @@ def require_scenario(value: object) -> None:
     if isinstance(value, str | os.PathLike):
         advice = f"try Scenario.from_file({os.fspath(value)!r})"
     raise WrongTypeError(f"scenario: got {described(value)}; must be a Scenario; {advice}")
-
-
-def _antennas_of(points: Sequence[GroundPoint]) -> GroundAntennas | None:
-    if all(point.antenna == "isotropic" and point.gain_dbi == 0.0 for point in points):
-        return None
-    axes = [unit_axis(point.antenna_axis) if point.leak < 1.0 else np.zeros(3) for point in points]
-    numbers = [(point.largest_gain, point.leak) for point in points]
-    return GroundAntennas(read_only(axes, (-1, 3)), *read_only(numbers, (-1, 2)).T)
