@@ -12,7 +12,7 @@ from nullpose.report.numbers import MINUS
 from nullpose.scenario import Scenario
 from nullpose.solver import Result
 from nullpose.studio.answer import Notice, Progress, answer_of
-from nullpose.studio.card import bar_html, card_html, gap_words, proof_html
+from nullpose.studio.card import Bar, card_html, gap_words, proof
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.field_map import MAPS, FieldMap
 from nullpose.studio.readout import readout_html
@@ -104,32 +104,23 @@ def test_the_value_is_marked_at_its_place_on_the_scale(proved: State) -> None:
         assert "overlay-tick" not in unmarked
 
 
-def _width(bar: str) -> float:
-    """Return how much of the bar is open, per cent."""
-    found = re.search(r"width:([0-9.]+)%", bar)
-    assert found is not None
-    return float(found.group(1))
-
-
 def test_the_bar_closes_as_the_gap_falls_to_the_one_aimed_at() -> None:
     """It is open without a bound and at 100 %, half open half way on the log scale, and all but closed."""
-    widths = [_width(bar_html("", gap, 1e-6, "")) for gap in (np.inf, 1.0, 1e-3, 1e-6, 1e-8)]
-    assert widths[:2] == [100.0, 100.0]
-    assert widths[2] == pytest.approx(51.0)
-    assert widths[3] == widths[4] == 2.0
+    shares = [Bar(gap, 1e-6, "").share for gap in (np.inf, 1.0, 1e-3, 1e-6, 1e-8)]
+    assert shares == pytest.approx([100.0, 100.0, 51.0, 2.0, 2.0])
 
 
 def test_the_bar_follows_the_proof_of_the_present_scene(result: Result) -> None:
     """Open for what a search finds; then the gap and boxes that the solver reports; closed when proved."""
     state = State(scenario=_PAPER).with_event(answer_of(1, OPTIMUM, solve(_PAPER, certify=False)))
-    assert _width(proof_html(state)) == 100.0
+    assert proof(state).share == 100.0
     state = state.with_event(Progress(version=1, case=OPTIMUM, gap=0.12, target=1e-4, boxes=12345))
-    assert "Gap 12 % so far: 12,345 boxes examined" in proof_html(state)
-    assert 50.0 < _width(proof_html(state)) < 100.0
+    assert "Gap 12 % so far: 12,345 boxes examined" in card_html(state)
+    assert 50.0 < proof(state).share < 100.0
     state = state.with_event(answer_of(1, OPTIMUM, result))
-    assert _width(proof_html(state)) == 2.0
-    assert f"Gap 1e-6: proved in {result.stats.boxes:,} boxes" in proof_html(state)
-    assert _width(proof_html(replace(state, version=2))) == 100.0
+    assert f"Gap 1e-6: proved in {result.stats.boxes:,} boxes" in card_html(state)
+    assert "width:2.0%" in card_html(state)
+    assert proof(replace(state, version=2)).share == 100.0
 
 
 @pytest.mark.parametrize(("gap", "words"), [(1.0, "100 %"), (0.034, "3.4 %"), (2e-5, "2e-5")])

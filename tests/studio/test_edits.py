@@ -10,7 +10,7 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.case import new_scenario
 from nullpose.studio.edits import ADDED, entries_of, with_added, with_fence, with_typed, without
-from nullpose.studio.state import State
+from nullpose.studio.state import Key, State
 from nullpose.studio.toml_like import toml_like
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -28,8 +28,7 @@ def test_what_is_typed_unchanged_changes_nothing(name: str) -> None:
         *(("no_fly", i) for i in range(len(view.members("no_fly")))),
     ]
     for key in keys:
-        entries = entries_of(view, key)
-        assert with_typed(view, entries, {entry.path: entry.text for entry in entries}) is view
+        assert all(with_typed(view, entry, entry.text) is view for entry in entries_of(view, key))
 
 
 @pytest.mark.parametrize("what", ["node", "jammer", "no-fly zone"])
@@ -60,27 +59,28 @@ def test_the_last_node_stays() -> None:
         without(State(scenario=new_scenario()), ("nodes", 0))
 
 
+def _typed(view: State, key: Key | None, path: str, text: str) -> State:
+    (entry,) = (entry for entry in entries_of(view, key) if entry.path == path)
+    return with_typed(view, entry, text)
+
+
 def test_a_tilt_limit_comes_and_goes() -> None:
     """A number limits the tilt, "any" frees it, and the mount alone leaves it free."""
-
-    def typed(view: State, path: str, text: str) -> State:
-        return with_typed(view, entries_of(view, None), {path: text})
-
-    limited = typed(PAPER, "airframe.tilt_max_deg", "30")
+    limited = _typed(PAPER, None, "airframe.tilt_max_deg", "30")
     assert limited.scenario.airframe is not None
     assert np.degrees(limited.scenario.airframe.tilt_max_rad) == pytest.approx(30.0)
-    assert typed(limited, "airframe.tilt_max_deg", "any").scenario.axis_band == (0.0, 1.0)
-    mounted = typed(PAPER, "airframe.mount_deg", "90").scenario
+    assert _typed(limited, None, "airframe.tilt_max_deg", "any").scenario.axis_band == (0.0, 1.0)
+    mounted = _typed(PAPER, None, "airframe.mount_deg", "90").scenario
     assert mounted.airframe is not None
     assert (mounted.airframe.mount_deg, mounted.axis_band) == (90.0, (0.0, 1.0))
 
 
-def test_all_faults_of_what_is_typed_are_told() -> None:
-    """A name that is taken and a negative power are both told, by path."""
-    entries = entries_of(PAPER, ("jammers", 0))
+@pytest.mark.parametrize(("key", "text"), [("power_w", "-3"), ("name", "S1")])
+def test_what_is_not_allowed_is_told_by_path(key: str, text: str) -> None:
+    """A negative power, and a name that is taken."""
     with pytest.raises(ScenarioError) as refused:
-        with_typed(PAPER, entries, {"jammers[0].power_w": "-3", "jammers[0].name": "S1"})
-    assert {fault.path for fault in refused.value.faults} == {"jammers[0].name", "jammers[0].power_w"}
+        _typed(PAPER, ("jammers", 0), f"jammers[0].{key}", text)
+    assert [fault.path for fault in refused.value.faults] == [f"jammers[0].{key}"]
 
 
 def test_a_fence_is_drawn_and_taken_away() -> None:
@@ -88,8 +88,7 @@ def test_a_fence_is_drawn_and_taken_away() -> None:
     corners = [(-40.0, -20.0), (40.0, -20.0), (40.0, 70.0)]
     fenced = with_fence(PAPER, corners)
     assert np.allclose(fenced.scenario.airspace.geofence_m, corners)
-    entries = entries_of(fenced, None)
-    assert with_typed(fenced, entries, {"airspace.geofence_m": ""}) == PAPER
+    assert _typed(fenced, None, "airspace.geofence_m", "") == PAPER
 
 
 def test_comments_go_with_a_renamed_point_and_not_with_another_of_its_name() -> None:
@@ -112,8 +111,8 @@ power_w = 2.0   # measured
 """
     view = State(scenario=scenario_from_text(text.encode(), ""), text=text)
     key = ("jammers", 0)
-    typed = {"jammers[0].name": "roof", "jammers[0].position_m[0]": "18"}
-    renamed = with_typed(view, entries_of(view, key), typed).moved(key, (19.0, 15.0, 4.0))
+    moved = _typed(view, key, "jammers[0].position_m[0]", "18")
+    renamed = _typed(moved, key, "jammers[0].name", "roof").moved(key, (19.0, 15.0, 4.0))
     expected = text.replace('"M1"', '"roof"').replace("[17.0", "[19.0")
     assert toml_like(renamed.text, renamed.scenario) == expected
     other = with_added(without(view, key), "jammer", (30.0, 30.0), 50.0)

@@ -54,7 +54,7 @@ def test_kinds_differ_in_colour(look: Look) -> None:
 @LOOKS
 def test_the_panels_words_are_read(look: Look) -> None:
     """What is written in the panel has a contrast of 4.5 to 1 against it."""
-    texts: Iterable[str] = (plot._INK, readout._NOTE, *(tone for tone, _ in readout._TONES.values()))
+    texts: Iterable[str] = [tone.colour for tone in readout.TONES]
     written = [_pair(text)[look.dark] for text in texts]
     for colour in [*written, *map(css, look.slots)]:
         assert _contrast(colour, PANELS[look.dark]) >= 4.5, colour
@@ -64,7 +64,7 @@ def test_the_panels_words_are_read(look: Look) -> None:
 @LOOKS
 def test_the_plots_curves_stand_out(look: Look, curve: str) -> None:
     """Every curve and the ring have a contrast of 3 to 1 against the panel."""
-    for colour in (lit(CURVES[curve].colour), plot._RING):
+    for colour in (lit(CURVES[curve].colour), plot.RING):
         assert _contrast(_pair(colour)[look.dark], PANELS[look.dark]) >= 3.0
 
 

@@ -71,7 +71,7 @@ def test_the_worst_node_has_the_smallest_number(unsure: Scenario) -> None:
     robust = case_named("Robust pose")
     guarded = answer_of(1, robust, solve(unsure, robust=True, certify=False))
     html = readout_html(State(scenario=unsure, case=robust).with_event(guarded))
-    (table,) = re.findall(r'<table data-np="guaranteed".*</table>', html)
+    (table,) = re.findall(r'<table data-np="guaranteed".*</table>', html, re.DOTALL)
     found = re.findall(r"<td>(\w+)</td><td[^>]*>([^<]+)</td><td[^>]*>([^<]+)</td><td>([^<]*)</td>", table)
     numbers = {row[0]: float(row[2].replace(MINUS, "-")) for row in found}
     (worst,) = (row[0] for row in found if "worst" in row[3])

@@ -220,7 +220,8 @@ def test_powers_in_dbm_stay_in_dbm() -> None:
     """Those that are typed, those that the slider sets, and that of a point that is added."""
     text, scenario = EXAMPLES["field"]
     view = State(scenario=scenario, text=text)
-    typed = with_typed(view, entries_of(view, ("nodes", 0)), {"nodes[0].power_dbm": "17.5"})
+    (power,) = (entry for entry in entries_of(view, ("nodes", 0)) if entry.path == "nodes[0].power_dbm")
+    typed = with_typed(view, power, "17.5")
     saved = with_added(typed.with_power_db(3.0), "jammer", (10.0, 20.0), 100.0).written.text
     assert "power_w =" not in saved
     assert "power_dbm = 17.5\n" in saved

@@ -48,6 +48,11 @@ class Answer:
         return objective.quantity.in_unit(objective.value)
 
     @property
+    def unit(self) -> str:
+        """Its unit."""
+        return self.result.objective.quantity.unit
+
+    @property
     def bound_text(self) -> str:
         """The upper bound as a text, as in "upper bound 4.1234"; empty without one."""
         objective = self.result.objective

@@ -48,7 +48,7 @@ def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> None:
         scenario: the scene.
         pose: of the drone, if there is one.
     """
-    matter, size_m = _matter_m(scenario, pose), scene_size_m(scenario)
+    matter, size_m = matter_m(scenario, pose), scene_size_m(scenario)
     canvas, (right_of, below) = canvas_px(camera), CARD_PX
     whole, *others = (
         _fit(canvas, camera.fov, matter, corner) for corner in ((0.0, 0.0), (right_of, 0.0), (0.0, below))
@@ -91,8 +91,13 @@ def _fit(canvas: FloatArray, fov_rad: float, points_m: FloatArray, corner_px: tu
     return _Fit(position, distance_m, 0.5 * canvas + seen * [1.0, -1.0] / slope)
 
 
-def _matter_m(scenario: Scenario, pose: Pose | None) -> FloatArray:
-    """Return the ends of points with labels, of the drone and of the ground's grid, (n, 3) metres."""
+def matter_m(scenario: Scenario, pose: Pose | None) -> FloatArray:
+    """Return the ends of points with labels, of the drone and of the ground's grid, (n, 3) metres.
+
+    Args:
+        scenario: the scene.
+        pose: of the drone, if there is one.
+    """
     size_m, (low, high, _) = scene_size_m(scenario), grid_m(scenario)
     points = [point.position_m for point in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)]
     ground = [[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])]

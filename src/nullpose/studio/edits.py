@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from nullpose.antenna import GROUND_ANTENNAS
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import (
+    Airframe,
     Eavesdropper,
     GroundPoint,
     Jammer,
@@ -51,6 +52,16 @@ _ALIKE = (
 )  # to the last of its kind
 _ANY = "any"  # typed for a tilt without a limit
 _FREE = Override("airframe.preset", "omnidirectional")
+_FREE_AIRFRAME = Airframe(preset="omnidirectional")
+_VEHICLE = {
+    "airframe.tilt_max_deg": "tilt limit (deg)",
+    "airframe.mount_deg": "antenna mount (deg)",
+    "airspace.altitude_m[0]": "lowest altitude (m)",
+    "airspace.altitude_m[1]": "highest altitude (m)",
+    "airspace.geofence_m": "fence corners (m)",
+    "airspace.margin_m": "margin to fence, zones (m)",
+    "airspace.keep_out_m": "distance to points (m)",
+}
 _DIRECTIONS = ("east (m)", "north (m)", "up (m)")
 _SHAPES = {
     "box": {"x_m": "west, east (m)", "y_m": "south, north (m)"},
@@ -131,8 +142,7 @@ def with_fence(state: State, corners_m: ArrayLike) -> State:
         ScenarioError: they make no fence.
     """
     corners = tuple((round(float(x), 2), round(float(y), 2)) for x, y in np.asarray(corners_m))
-    airspace = state.scenario.airspace.model_copy(update={"geofence_m": corners})
-    return state.with_scenario(state.scenario.model_copy(update={"airspace": airspace}))
+    return state.with_scenario(apply_overrides(state.scenario, [Override("airspace.geofence_m", corners)]))
 
 
 def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
@@ -169,15 +179,18 @@ def _keys(member: GroundPoint | NoFlyZone) -> dict[str, str]:
 
 
 def _vehicle_entries(scenario: Scenario) -> Iterator[Entry]:
-    airframe, airspace = scenario.airframe, scenario.airspace
-    tilt_deg = 180.0 if airframe is None else math.degrees(airframe.tilt_max_rad)
-    yield Entry("airframe.tilt_max_deg", "tilt limit (deg)", _ANY if tilt_deg >= 180.0 else _text(tilt_deg))
-    yield Entry("airframe.mount_deg", "antenna mount (deg)", _text(airframe.mount_deg if airframe else 0.0))
-    for i, label in enumerate(("lowest altitude (m)", "highest altitude (m)")):
-        yield Entry(f"airspace.altitude_m[{i}]", label, _text(airspace.altitude_m[i]))
-    yield Entry("airspace.geofence_m", "fence corners (m)", _text(airspace.geofence_m))
-    yield Entry("airspace.margin_m", "margin to fence, zones (m)", _text(airspace.margin_m))
-    yield Entry("airspace.keep_out_m", "distance to points (m)", _text(airspace.keep_out_m))
+    airframe, airspace = scenario.airframe or _FREE_AIRFRAME, scenario.airspace
+    tilt_deg = math.degrees(airframe.tilt_max_rad)
+    values = (
+        _ANY if tilt_deg >= 180.0 else tilt_deg,
+        airframe.mount_deg,
+        *airspace.altitude_m,
+        airspace.geofence_m,
+        airspace.margin_m,
+        airspace.keep_out_m,
+    )
+    for (path, label), value in zip(_VEHICLE.items(), values, strict=True):
+        yield Entry(path, label, _text(value))
 
 
 def _text(value: Any) -> str:
@@ -189,33 +202,30 @@ def _text(value: Any) -> str:
     return f"{value + 0.0:.12g}" if isinstance(value, float) else str(value)
 
 
-def with_typed(state: State, entries: Iterable[Entry], texts: Mapping[str, str]) -> State:
-    """Return the state with the values that were typed.
+def with_typed(state: State, entry: Entry, text: str) -> State:
+    """Return the state with a value that was typed.
 
     Args:
         state: before.
-        entries: what could be typed.
-        texts: what was, by path; where it is what it was, nothing changes.
+        entry: which value.
+        text: what was typed; where it is what it was, nothing changes.
 
     Raises:
-        ScenarioError: with every value that is not allowed.
+        ScenarioError: the value is not allowed.
     """
-    overrides: list[Override] = []
-    for entry in entries:
-        typed = texts.get(entry.path, entry.text).strip()
-        if typed == entry.text:
-            continue
-        if entry.path.startswith("airframe.") and not overrides and state.scenario.airframe is None:
-            overrides.append(_FREE)
-        if entry.path == "airframe.tilt_max_deg" and typed in ("", _ANY):
-            overrides.append(_FREE)
-        elif entry.options or not typed or entry.path.endswith(".name"):
-            overrides.append(Override(entry.path, typed or None))
-        else:
-            overrides.append(parse_override(f"{entry.path}={typed.replace(MINUS, '-')}"))
-    typed_in = state.with_scenario(apply_overrides(state.scenario, overrides)) if overrides else state
-    names = [override for override in overrides if override.path.endswith(".name")]
-    if names:  # by itself in the text, where a point that has moved too would be taken for another one
-        renamed = state.written.with_scenario(apply_overrides(state.scenario, names)).written
-        return replace(typed_in, text=renamed.text)
-    return typed_in
+    typed, path, scenario = text.strip(), entry.path, state.scenario
+    if typed == entry.text:
+        return state
+    if path.endswith(
+        ".name"
+    ):  # by itself in the text, where a point that moves too would be taken for another
+        renamed = apply_overrides(scenario, [Override(path, typed or None)])
+        return state.written.with_scenario(renamed).written
+    if path == "airframe.tilt_max_deg" and typed in ("", _ANY):
+        override = _FREE
+    elif entry.options or not typed:
+        override = Override(path, typed or None)
+    else:
+        override = parse_override(f"{path}={typed.replace(MINUS, '-')}")
+    is_first = path.startswith("airframe.") and scenario.airframe is None
+    return state.with_scenario(apply_overrides(scenario, [_FREE, override] if is_first else [override]))

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from nullpose.errors import UsageError
 from nullpose.report.numbers import MINUS
 from nullpose.studio.answer import Answer, signed
-from nullpose.studio.camera import aim
+from nullpose.studio.camera import aim, matter_m
 from nullpose.studio.card import card_html
-from nullpose.studio.ground import grid_m
 from nullpose.studio.guard import look_html
 from nullpose.studio.look import LIGHT, Look, scale_colours
 from nullpose.studio.opening import LOOPBACK, open_server, unannounced
@@ -140,11 +139,8 @@ def scene_png(state: State, client: ClientHandle, look: Look) -> bytes:
         UsageError: the present scene is not solved yet, a part of it is too far away, or the browser does
             not answer.
     """
-    answers, camera = current_answers(state), client.camera
-    low, high, _ = grid_m(state.scenario)
-    corners = [[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])]
-    seen_m = np.vstack([corners, answers[0].result.pose.position_m])
-    far_m = float(np.linalg.norm(seen_m - camera.position, axis=1).max())
+    camera, pose = client.camera, current_answers(state)[0].result.pose
+    far_m = float(np.linalg.norm(matter_m(state.scenario, pose) - camera.position, axis=1).max())
     if far_m > _FAR_M:
         raise UsageError(
             f"a part of the scene is {far_m:.0f} m from the camera, and a picture holds {_FAR_M:.0f} m; move "
@@ -157,22 +153,19 @@ def scene_png(state: State, client: ClientHandle, look: Look) -> bytes:
         raise UsageError(
             "the browser has drawn no picture; bring its tab to the front and try again"
         ) from error
-    return _with_legend(drawn, state, [row for answer in answers for row in _rows(state, answer)], look)
+    return _with_legend(drawn, state, look)
 
 
-def _rows(state: State, answer: Answer) -> tuple[str, str]:
-    """Write an answer in two rows."""
-    unit = answer.result.objective.quantity.unit
-    bound = answer.bound_text and f", {answer.bound_text} {unit}"
-    numbers = f"{signed(answer.shown_value, 4)} {unit} {answer.value_words}{bound}"
-    return numbers, f"{answer.case.label}: {state.status(answer.case)}"
-
-
-def _with_legend(drawn: NDArray[Any], state: State, rows: list[str], look: Look) -> bytes:
+def _with_legend(drawn: NDArray[Any], state: State, look: Look) -> bytes:
     """Set a picture on the page's ground, with rows of text and the map's colours below it."""
     from matplotlib.colors import to_rgb
     from matplotlib.figure import Figure
 
+    rows: list[str] = []
+    for answer in current_answers(state):
+        bound = answer.bound_text and f", {answer.bound_text} {answer.unit}"
+        rows.append(f"{signed(answer.shown_value, 4)} {answer.unit} {answer.value_words}{bound}")
+        rows.append(f"{answer.case.label}: {state.status(answer.case)}")
     height, width = drawn.shape[:2]
     strip, ink, ground = int(_ROW * max(len(rows) + 1, 5) * width), _INK[look.dark], _GROUND[look.dark]
     share = drawn[..., 3:] / 255.0

@@ -19,14 +19,14 @@ from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio import exports
 from nullpose.studio.camera import aim, canvas_px
-from nullpose.studio.case import case_named, new_scenario
+from nullpose.studio.case import case_named, cases_of, new_scenario
 from nullpose.studio.controls import NO_CASE
-from nullpose.studio.edits import entries_of, with_typed, without
+from nullpose.studio.edits import Entry, with_typed, without
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.panel import Panel, by_hand
 from nullpose.studio.picking import clicked
 from nullpose.studio.readout import failure_html
-from nullpose.studio.session import Session, opened
+from nullpose.studio.session import Session
 from nullpose.studio.stage import Stage
 from nullpose.studio.state import Key, State
 
@@ -57,7 +57,7 @@ class Page:
         self._aimed: tuple[int, bool] | None = None  # at which scene, and whether with its drone
         self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None  # canvas and position
         self._is_folded = False
-        state = opened(scenario, text)
+        state = State(scenario=scenario, case=cases_of(scenario)[0], text=text)
         self.session = Session(state, on_change=self._changed, on_event=lambda event: self.render())
         self.panel = Panel(client.gui, self._typed, dark=dark)
         self.stage = Stage(client.scene, self._look, self._dragged)
@@ -218,11 +218,8 @@ class Page:
         self.change(lambda state: state.with_power_text(text), name="The jamming power")
         self.panel.power_text.value = self.session.state.power_text  # also if viser has it already
 
-    def _typed(self, path: str, text: str) -> None:
-        state = self.session.state
-        keys = (None, state.selected) if state.selected else (None,)
-        entries = [entry for key in keys for entry in entries_of(state, key) if entry.path == path]
-        self.change(lambda state: with_typed(state, entries, {path: text}), name="What was typed")
+    def _typed(self, entry: Entry, text: str) -> None:
+        self.change(lambda state: with_typed(state, entry, text), name="What was typed")
 
     def _delete(self) -> None:
         key = self.session.state.selected
@@ -251,7 +248,8 @@ class Page:
             if is_resized and np.allclose(self._fit[1], camera.position, rtol=1e-3):
                 self.aim()
         with self._lock:
-            self.stage.face(camera.position)
+            self.stage.eye_m = camera.position
+            self.stage.render(self.session.state)
 
     def _picture(self, state: State) -> bytes:
         return exports.scene_png(state, self._client, self._look)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -11,11 +11,10 @@ from nullpose.objectives import Quantity
 from nullpose.studio.card import card_html
 from nullpose.studio.case import cases_of
 from nullpose.studio.controls import NO_CASE, TABS
-from nullpose.studio.drawing import put
 from nullpose.studio.edits import Entry, entries_of
 from nullpose.studio.picking import FENCE
 from nullpose.studio.plot import power_plot_svg
-from nullpose.studio.readout import about_html, failure_html, readout_html, tool_html
+from nullpose.studio.readout import failure_html, macros, readout_html
 from nullpose.studio.session import History
 from nullpose.studio.state import POWER_DB
 
@@ -26,7 +25,7 @@ _HOW = "Click on the ground to place the {}. Escape ends it."
 _FENCE_HOW = (
     "Click the corners of the fence on the ground; click the first one again to close it ({} so far)."
 )
-_Shape = tuple[tuple[str, tuple[str, ...]], ...]
+_Look = tuple[str, tuple[str, ...]]  # of a field: its label and its options
 
 
 class Panel(SimpleNamespace):
@@ -36,11 +35,11 @@ class Panel(SimpleNamespace):
 
     Args:
         gui: the page's interface.
-        on_typed: called with the path of a typed value and its text.
+        on_typed: called with a typed value and its text.
         dark: whether it is dark.
     """
 
-    def __init__(self, gui: GuiApi, on_typed: Callable[[str, str], object], *, dark: bool = False) -> None:
+    def __init__(self, gui: GuiApi, on_typed: Callable[[Entry, str], object], *, dark: bool = False) -> None:
         super().__init__()
         shown = {"show_logo": False, "show_share_button": False}
         gui.configure_theme(control_width="large", dark_mode=dark, **shown)
@@ -48,7 +47,7 @@ class Panel(SimpleNamespace):
         gui.set_panel_label("nullpose studio")
         folder = gui.add_folder("What am I looking at?")
         with folder:
-            gui.add_html(about_html())
+            gui.add_html(str(macros().about()))
             close = gui.add_button("Got it", hint="Close this explanation.")
         close.on_click(lambda event: folder.remove())
         self.overlay = gui.add_html("", visible=False)  # shown by the frame's script
@@ -93,7 +92,7 @@ class Panel(SimpleNamespace):
         self._selected.render(entries)
         self._vehicle.render(entries_of(state, None))
         how = _FENCE_HOW.format(len(state.corners_m)) if state.tool == FENCE else _HOW.format(state.tool)
-        put(self.tool, content=tool_html(how if state.tool else ""))
+        put(self.tool, content=str(macros().tool(how if state.tool else "")))
         put(self.faults, content=state.faults or failure_html(None))
         put(self.readout, content=readout_html(state))
         put(self.overlay, content=card_html(state))
@@ -112,54 +111,49 @@ class Panel(SimpleNamespace):
 class _Fields:
     """Values as fields in a folder of the panel: typed or chosen, and taken one by one."""
 
-    def __init__(self, gui: GuiApi, folder: Any, on_typed: Callable[[str, str], object]) -> None:
+    def __init__(self, gui: GuiApi, folder: Any, on_typed: Callable[[Entry, str], object]) -> None:
         self._gui, self._folder, self._on_typed = gui, folder, on_typed
-        self._entries: Sequence[Entry] = ()
-        self._groups: dict[_Shape, tuple[Any, list[Any]]] = {}  # hidden and kept: to remove one costs more
+        self._entries: dict[_Look, Entry] = {}
+        self._fields: dict[_Look, Any] = {}  # hidden and kept: to remove one costs more
 
-    def render(self, entries: Sequence[Entry]) -> None:
+    def render(self, entries: Iterable[Entry]) -> None:
         """Show values; what is being typed stays while they are as they were."""
-        if entries == self._entries:
+        before, self._entries = self._entries, {(entry.label, entry.options): entry for entry in entries}
+        if self._entries == before:
             return
-        self._entries, shape = entries, _shape(entries)
-        if entries and shape not in self._groups:
-            self._groups[shape] = self._built(entries)
-        for other, (group, _) in self._groups.items():
-            put(group, visible=other == shape)
-        for entry, control in zip(entries, self._controls, strict=True):
-            put(control, value=entry.text)
+        for look, field in self._fields.items():
+            put(field, visible=look in self._entries)
+        for place, (look, entry) in enumerate(self._entries.items()):
+            if look not in self._fields:
+                self._fields[look] = self._added(entry)
+            put(self._fields[look], value=entry.text, order=float(place))
 
-    @property
-    def _controls(self) -> list[Any]:
-        return self._groups[_shape(self._entries)][1] if self._entries else []
-
-    def _built(self, entries: Sequence[Entry]) -> tuple[Any, list[Any]]:
-        """Make a group with its fields."""
-        gui, controls = self._gui, []
+    def _added(self, entry: Entry) -> Any:
+        gui, look = self._gui, (entry.label, entry.options)
+        hint = f"{entry.path.rpartition('.')[2]}; Enter takes it, and so does leaving the field."
+        add = partial(gui.add_dropdown, options=entry.options) if entry.options else gui.add_text
         with self._folder:
-            group = gui.add_folder(None)
-        with group:
-            for index, entry in enumerate(entries):
-                hint = f"{entry.path.rpartition('.')[2]}; Enter takes it, and so does leaving the field."
-                more: dict[str, Any] = {"initial_value": entry.text, "hint": hint}
-                if entry.options:
-                    control: Any = gui.add_dropdown(entry.label, entry.options, **more)
-                else:
-                    control = gui.add_text(entry.label, **more)
-                control.on_update(by_hand(partial(self._typed, _shape(entries), index)))
-                controls.append(control)
-        return group, controls
+            field: Any = add(entry.label, initial_value=entry.text, hint=hint)
+        field.on_update(by_hand(partial(self._typed, look)))
+        return field
 
-    def _typed(self, shape: _Shape, index: int, text: str) -> None:
-        if shape != _shape(self._entries):
+    def _typed(self, look: _Look, text: str) -> None:
+        if look not in self._entries:
             return  # something else is selected by now
-        self._on_typed(self._entries[index].path, text)
-        self._groups[shape][1][index].value = self._entries[index].text  # also if viser has it already
+        self._on_typed(self._entries[look], text)
+        self._fields[look].value = self._entries[look].text  # also if viser has it already
 
 
-def _shape(entries: Sequence[Entry]) -> _Shape:
-    """Return the traits of entries on which their fields depend."""
-    return tuple((entry.label, entry.options) for entry in entries)
+def put(handle: Any, **values: object) -> None:
+    """Set what differs of a control: what is set as it was would be sent all the same.
+
+    Args:
+        handle: of viser's.
+        values: by their names.
+    """
+    for name, value in values.items():
+        if getattr(handle, name) != value:
+            setattr(handle, name, value)
 
 
 def by_hand(action: Callable[[Any], object]) -> Any:

@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from html import escape
 from typing import NamedTuple
 
 from nullpose.problem.schemes import Scheme
-from nullpose.report.figures.style import CURVES, Curve, curve_of
+from nullpose.report.figures.style import CURVES, curve_of
+from nullpose.report.numbers import MINUS
 from nullpose.studio.answer import PowerCurve
 from nullpose.studio.look import either, lit, round_steps
+from nullpose.studio.readout import macros
 from nullpose.studio.state import POWER_DB
 
-_WIDTH, _HEIGHT = 340, 214
-_LEFT, _RIGHT, _TOP, _BOTTOM = 42, 332, 30, 180
+_LEFT, _RIGHT, _TOP, _BOTTOM = 42, 332, 30, 180  # as in the template
 _MOST_SPAN = 30.0
-_INK = either("#111", "#ddd")
-_GRID = either("#ddd", "#444")
-_RING = either("#d55e00", "#ff8a3c")
-_INSIDE = (  # a drawing of its own, which cuts off what leaves it
-    f'x="{_LEFT}" y="{_TOP}" width="{_RIGHT - _LEFT}" height="{_BOTTOM - _TOP}" '
-    f'viewBox="{_LEFT} {_TOP} {_RIGHT - _LEFT} {_BOTTOM - _TOP}"'
-)
+RING = either("#d55e00", "#ff8a3c")
+"""Colour of the ring at the present value."""
+
+_Points = list[tuple[float, float]]
 
 
 class _Frame(NamedTuple):
@@ -53,32 +50,35 @@ def power_plot_svg(
         value: the present value in the unit shown; None if there is none that is current.
         unit: as in "dB".
     """
+    template = macros("plot.svg.jinja")
     if power_db is None:
-        style = "padding:2px 10px;font-size:12px"
-        return f'<div data-np="plot" style="{style}">No jammer has a power to vary.</div>'
-    lines = {} if curve is None else _lines(curve)
-    now = [] if value is None or not math.isfinite(value) else [value]
-    values = [y for points in lines.values() for _, y in points] + now
-    high = max(values, default=5.0)
-    low = min([max(min(values, default=-5.0), high - _MOST_SPAN), *now])
-    margin = max(0.5, 0.08 * (high - low))
-    frame = _Frame(low - margin, high + margin)
+        return str(template.no_plot())
+    lines, now = {} if curve is None else _lines(curve), None
+    frame = _frame([y for points in lines.values() for _, y in points], value)
+    if POWER_DB[0] <= power_db <= POWER_DB[1]:
+        x, y = frame.at(power_db, math.nan if value is None else value)
+        now = x, y if math.isfinite(y) else None
     is_old = curve is None or curve.version != version
     state = "outdated" if is_old else "current" if curve is not None and curve.complete else "growing"
-    curves = "".join(_polyline(curve_of(scheme), points, frame) for scheme, points in lines.items())
-    ring = _ring(frame, power_db, now) if POWER_DB[0] <= power_db <= POWER_DB[1] else ""
-    return (
-        f'<div data-np="plot" data-state="{state}" style="padding:0 6px">'
-        f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" width="100%" font-family="sans-serif" font-size="10.5" '
-        f'role="img" aria-label="value against jamming power">{_axes(frame, unit)}'
-        f'<g opacity="{0.35 if is_old else 1.0}"><svg {_INSIDE}>{curves}</svg></g>'
-        f"{_legend(lines)}{ring}</svg></div>"
-    )
+    powers_db = range(int(POWER_DB[0]), int(POWER_DB[1]) + 1, 10)
+    powers = [(frame.at(tick_db, 0.0)[0], f"{tick_db}".replace("-", MINUS)) for tick_db in powers_db]
+    steps = round_steps(*frame, 6)[1:-1]
+    values = [(frame.at(0.0, step)[1], f"{step:g}".replace("-", MINUS)) for step in steps]
+    curves = [_curve(scheme, points, frame) for scheme, points in lines.items()]
+    return str(template.plot(state, unit, curves, powers, values, now, RING))
 
 
-def _lines(curve: PowerCurve) -> dict[str, list[tuple[float, float]]]:
+def _frame(values: list[float], value: float | None) -> _Frame:
+    now = [value] if value is not None and math.isfinite(value) else []
+    high = max([*values, *now], default=5.0)
+    low = min([max(min([*values, *now], default=-5.0), high - _MOST_SPAN), *now])
+    margin = max(0.5, 0.08 * (high - low))
+    return _Frame(low - margin, high + margin)
+
+
+def _lines(curve: PowerCurve) -> dict[str, _Points]:
     """Return each scheme's powers and values, in the order of the legend."""
-    lines: dict[str, list[tuple[float, float]]] = {scheme: [] for scheme in CURVES}
+    lines: dict[str, _Points] = {scheme: [] for scheme in CURVES}
     for row in curve.table.rows:
         value = row.objective.quantity.in_unit(row.objective.value)
         if math.isfinite(value):
@@ -86,52 +86,12 @@ def _lines(curve: PowerCurve) -> dict[str, list[tuple[float, float]]]:
     return {scheme: points for scheme, points in lines.items() if points}
 
 
-def _ring(frame: _Frame, power_db: float, now: Iterable[float]) -> str:
-    """Draw a line at the present power, and a ring on it at the present value if there is one."""
-    x, top = frame.at(power_db, frame.high)
-    rings = "".join(
-        f'<circle data-np="now" cx="{x:.1f}" cy="{frame.at(power_db, value)[1]:.1f}" r="5" fill="none" '
-        f'stroke="{_RING}" stroke-width="2.5"/>'
-        for value in now
-    )
-    line = f'<line x1="{x:.1f}" y1="{top}" x2="{x:.1f}" y2="{_BOTTOM}" stroke="#888" stroke-dasharray="1 3"/>'
-    return line + rings
-
-
-def _axes(frame: _Frame, unit: str) -> str:
-    parts = [_text(0.5 * (_LEFT + _RIGHT), _HEIGHT - 5, "middle", "strongest jammer over strongest node, dB")]
-    for value in round_steps(*frame, 6)[1:-1]:
-        y = frame.at(0.0, value)[1]
-        parts.append(f'<line x1="{_LEFT}" y1="{y:.1f}" x2="{_RIGHT}" y2="{y:.1f}" stroke="{_GRID}"/>')
-        parts.append(_text(_LEFT - 5, y + 3.5, "end", f"{value:g}"))
-    powers_db = range(int(POWER_DB[0]), int(POWER_DB[1]) + 1, 10)
-    parts += [
-        _text(frame.at(power_db, 0.0)[0], _BOTTOM + 14, "middle", f"{power_db}") for power_db in powers_db
-    ]
-    turned = f'transform="translate(10 {0.5 * (_TOP + _BOTTOM):.0f}) rotate(-90)"'
-    return "".join(parts) + f'<text {turned} text-anchor="middle" fill="{_INK}">{escape(unit)}</text>'
-
-
-def _text(x: float, y: float, anchor: str, text: str) -> str:
-    minus = escape(text).replace("-", "&#8722;")
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{_INK}">{minus}</text>'
-
-
-def _polyline(curve: Curve, points: Iterable[tuple[float, float]], frame: _Frame) -> str:
-    path = " ".join("{:.1f},{:.1f}".format(*frame.at(*point)) for point in points)
-    return f'<polyline points="{path}" fill="none" {_stroke(curve)} stroke-width="{curve.width}"/>'
-
-
-def _stroke(curve: Curve) -> str:
-    dashes = "" if isinstance(curve.line, str) else " ".join(f"{length:g}" for length in curve.line[1])
-    return f'stroke="{lit(curve.colour)}" stroke-dasharray="{dashes}"'
-
-
-def _legend(schemes: Iterable[str]) -> str:
-    x, parts = 4.0, []
-    for scheme in schemes:
-        short, stroke = Scheme(scheme).record.short, _stroke(curve_of(scheme))
-        parts.append(f'<line x1="{x:.0f}" y1="10" x2="{x + 20:.0f}" y2="10" {stroke} stroke-width="2.4"/>')
-        parts.append(_text(x + 24, 14, "start", short))
-        x += 30 + 5.6 * len(short)
-    return "".join(parts)
+def _curve(scheme: str, points: Iterable[tuple[float, float]], frame: _Frame) -> dict[str, object]:
+    look = curve_of(scheme)
+    return {
+        "name": Scheme(scheme).record.short,
+        "points": " ".join("{:.1f},{:.1f}".format(*frame.at(*point)) for point in points),
+        "colour": lit(look.colour),
+        "dashes": "" if isinstance(look.line, str) else " ".join(f"{length:g}" for length in look.line[1]),
+        "width": look.width,
+    }

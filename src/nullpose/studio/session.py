@@ -6,8 +6,6 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from nullpose.scenario import Scenario
-from nullpose.studio.case import cases_of
 from nullpose.studio.state import Event, State
 from nullpose.studio.worker import REST_S, Worker
 
@@ -153,13 +151,3 @@ class Session:
         with self.still:
             self.history = replace(self.history, present=self.state.with_event(event))
         self._on_event(event)
-
-
-def opened(scenario: Scenario, text: str = "") -> State:
-    """Return the state in which a page begins: the first case that has a meaning.
-
-    Args:
-        scenario: the scene.
-        text: of the file that it is from; empty without a file.
-    """
-    return State(scenario=scenario, case=cases_of(scenario)[0], text=text)

@@ -1,36 +1,42 @@
-"""A state drawn in 3-D, in a page and in an exported scene: ground, map and drones."""
+"""A page's scene, and an exported one: ground, map and drones of a state, drawn with what differs."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from viser import SceneApi
 
 from nullpose.report.numbers import MINUS
-from nullpose.studio.drawing import FLAT, add_label, add_lines
-from nullpose.studio.drone import Drone
+from nullpose.studio.drawing import FLAT, Shape, Shapes, label, lines
+from nullpose.studio.drone import drone_shapes
 from nullpose.studio.field_map import Scale
-from nullpose.studio.ground import Ground, OnDrag, scene_size_m
+from nullpose.studio.ground import ground_shapes, scene_size_m
 from nullpose.studio.look import LIGHT, Look, round_steps, scale_colours
-from nullpose.studio.readout import drone_text
-from nullpose.studio.state import State
+from nullpose.studio.state import Key, State
 from nullpose.study.value_map import Field
+
+OnDrag = Callable[[Key, NDArray[np.float64], str], None]
+"""Called with a point's key, its new position and the phase of the drag."""
 
 _OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
 _LIFT_M = 0.05  # of the map off the grid on the ground
 _FINER = 6  # pixels for each step of the map's grid
 _FADE = 4.0  # how steeply the map fades in at its edges
 _MOST_LABELS = 4
+_MOVABLE = {"position", "wxyz", "scale", "text", "font_screen_scale", "points", "colors", "vertices"}
+"""The values that a shape can have anew; for others it is added again."""
 
 
 class Stage:
-    """The scene of one page, which draws its states: of each only the difference to the one before.
+    """The scene of one page, which shows its states: of each only the difference to the one before.
 
     Args:
         scene: viser's.
         look: the colours.
-        on_drag: called with a point's key, its new position and the phase of the drag; None for a scene
-            whose points are not dragged.
+        on_drag: None for a scene whose points are not dragged.
 
     Attributes:
         size_m: of the scene as it is drawn, metres.
@@ -38,10 +44,10 @@ class Stage:
     """
 
     def __init__(self, scene: SceneApi, look: Look = LIGHT, on_drag: OnDrag | None = None) -> None:
-        self._scene, self._look = scene, look
-        self._ground = Ground(scene, on_drag, look)
-        self._drones = [Drone(scene, slot, look) for slot in (0, 1)]
-        self._map: object = None
+        self._scene, self._look, self._on_drag = scene, look, on_drag
+        self._shapes: Shapes = {}
+        self._handles: dict[str, Any] = {}
+        self._map: tuple[object, Shapes] = (None, {})
         self.size_m = np.inf
         self.eye_m: ArrayLike = np.ones(3)
 
@@ -54,59 +60,69 @@ class Stage:
         size_m = scene_size_m(state.scenario)
         if not _OTHER_SIZE[0] < size_m / self.size_m < _OTHER_SIZE[1]:
             self.size_m = size_m
-        self._ground.render(state, self.size_m)
         shown = state.field_map, state.map_name
-        if shown != self._map:
-            self._map = shown
-            self._scene.remove_by_name("/map")
-            if state.scale is not None:
-                _draw_map(self._scene, state.scale, self._look)
-        for slot, drone in enumerate(self._drones):
-            answer = state.answer(state.cases[slot]) if slot < len(state.cases) else None
-            if answer is None or len(answer.result.links) != len(state.scenario.nodes):
-                drone.hide()
-                continue
-            sizes = self.size_m, state.link_range_db, self.eye_m
-            drone.render(answer, drone_text(state, slot), *sizes, has_pattern=state.has_pattern)
+        if shown != self._map[0]:
+            self._map = shown, {} if state.scale is None else _map_shapes(state.scale, self._look)
+        shapes = ground_shapes(state, self.size_m, self._look, has_arrows=self._on_drag is not None)
+        for slot in range(len(state.cases)):
+            shapes |= drone_shapes(state, slot, self.size_m, self.eye_m, self._look)
+        self._show(shapes | self._map[1])
 
-    def face(self, eye_m: ArrayLike) -> None:
-        """Turn the patterns' openings towards the camera.
+    def _show(self, shapes: Shapes) -> None:
+        for name in self._shapes.keys() - shapes.keys():
+            self._scene.remove_by_name(name)
+            del self._shapes[name]
+        for name, shape in shapes.items():
+            before, values = self._shapes.get(name, Shape("", {})), shape.values
+            anew = {key: each for key, each in values.items() if not _same(before.values.get(key), each)}
+            if before.kind != shape.kind or not anew.keys() <= _MOVABLE:
+                self._add(name, shape)
+            else:
+                for key, value in anew.items():
+                    setattr(self._handles[name], key, value)
+            self._shapes[name] = shape
 
-        Args:
-            eye_m: (3,) where it stands, metres.
-        """
-        self.eye_m = eye_m
-        for drone in self._drones:
-            drone.face(eye_m)
+    def _add(self, name: str, shape: Shape) -> None:
+        handle = self._handles[name] = getattr(self._scene, f"add_{shape.kind}")(name, **shape.values)
+        if shape.key is not None and self._on_drag is not None:
+
+            async def on_update(event: Any, key: Key = shape.key, on_drag: OnDrag = self._on_drag) -> None:
+                on_drag(key, np.array(event.target.position, dtype=float), event.phase)
+
+            handle.on_update(on_update)
 
 
-def _draw_map(scene: SceneApi, scale: Scale, look: Look) -> None:
+def _same(before: Any, value: Any) -> bool:
+    if before is value:
+        return True
+    return np.array_equal(before, value) if isinstance(value, np.ndarray) else before == value
+
+
+def _map_shapes(scale: Scale, look: Look) -> Shapes:
     """Draw a map as a coloured plane with contours, a little above its altitude."""
     field, (low, high) = scale.field, scale.ends
     east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + _LIFT_M
     width = float(east[-1] + east[1] - 2.0 * east[0])
-    height = float(north[-1] - north[0] + east[1] - east[0])
-    scene.add_image(
-        "/map/colours",
-        _image(field, low, high, look.map_alpha),
-        width,
-        height,
-        format="png",
-        wxyz=(0.0, 1.0, 0.0, 0.0),  # the image's rows run towards the south
-        position=(0.5 * (east[0] + east[-1]), 0.5 * (north[0] + north[-1]), altitude_m),
-        **FLAT,
-    )
+    plane = {
+        "image": _image(field, low, high, look.map_alpha),
+        "render_width": width,
+        "render_height": float(north[-1] - north[0] + east[1] - east[0]),
+        "format": "png",
+        "wxyz": np.array([0.0, 1.0, 0.0, 0.0]),  # the image's rows run towards the south
+        "position": np.array([0.5 * (east[0] + east[-1]), 0.5 * (north[0] + north[-1]), altitude_m]),
+    }
+    shapes = {"/map/colours": Shape("image", plane | FLAT)}
     contours = _contours(field, low, high)
     if contours:
-        lines = [line for level in contours.values() for line in level]
-        flat = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
-        raised = np.insert(flat, 2, altitude_m + 1e-3 * width, axis=-1)
-        add_lines(scene, "/map/contours", raised, look.contour, 1.3)
+        segments = [np.stack([line[:-1], line[1:]], axis=1) for level in contours.values() for line in level]
+        raised = np.insert(np.concatenate(segments), 2, altitude_m + 1e-3 * width, axis=-1)
+        shapes["/map/contours"] = lines(raised, look.contour, 1.3)
     for level in list(contours)[:: max(1, len(contours) // _MOST_LABELS)]:
         points = np.concatenate(contours[level])
         x, y = points[np.argmax(points[:, 0])]  # eastmost: in front, beside the labels of the points
         text = f"{level:g} {field.unit}".replace("-", MINUS)
-        add_label(scene, f"/map/level-{level:g}", text, (x, y, altitude_m), 0.7, "center-center")
+        shapes[f"/map/level-{level:g}"] = label(text, (x, y, altitude_m), 0.7, "center-center")
+    return shapes
 
 
 def _image(field: Field, low: float, high: float, map_alpha: int) -> NDArray[np.uint8]:

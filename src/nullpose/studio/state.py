@@ -28,6 +28,7 @@ Event = Answer | Notice | FieldMap | PowerCurve | Progress
 """What a worker finds for a version of the scene."""
 
 KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "no_fly")
+_SCENE = ("scenario", "case", "compared", "text", "opened")
 _ROUND_M = 3  # digits of a metre that a dragged position keeps
 _ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field has all of them
 _LINK_RANGE_DB = (-6.0, 12.0)  # of the links' colours before there is a map
@@ -81,18 +82,11 @@ class State:
     @property
     def scene(self) -> tuple[object, ...]:
         """What is solved, undone and saved; the other fields are only what is shown."""
-        return self.scenario, self.case, self.compared, self.text, self.opened
+        return tuple(getattr(self, name) for name in _SCENE)
 
     def with_scene_of(self, other: State) -> State:
         """Return the state with another one's scene."""
-        return replace(
-            self,
-            scenario=other.scenario,
-            case=other.case,
-            compared=other.compared,
-            text=other.text,
-            opened=other.opened,
-        )
+        return replace(self, **{name: getattr(other, name) for name in _SCENE})
 
     def with_event(self, event: Event) -> State:
         """Return the state with an event in place of the one before of its kind and case."""
@@ -155,10 +149,6 @@ class State:
     def cases(self) -> tuple[Case, ...]:
         """The cases to solve, the chosen one first."""
         return (self.case,) if self.compared is None else (self.case, self.compared)
-
-    def letter(self, slot: int) -> str:
-        """Return the letter of one of two cases, "A: " or "B: "; empty for one case."""
-        return "" if self.compared is None else f"{'AB'[slot]}: "
 
     def points(self) -> Iterator[tuple[Key, GroundPoint]]:
         """Yield every ground point with its key."""
