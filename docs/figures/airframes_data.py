@@ -94,7 +94,7 @@ def tilt_rows() -> Iterator[Row]:
         for mount_deg in MOUNTS_DEG:
             for tilt_deg in TILTS_DEG:
                 airframe = nullpose.Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
-                case = Case(name="tilt", label="", phrase="", airframe=airframe)
+                case = Case(name="tilt", airframe=airframe)
                 yield [level, mount_deg, tilt_deg, certified(case, at(level), TILT_GAP).objective.value]
 
 

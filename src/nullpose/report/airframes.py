@@ -77,7 +77,7 @@ def airframes_view(comparison: ResultTable) -> View:
 
 def case_of(row: ResultRow) -> Case:
     """Return the vehicle of a row."""
-    return row.case or Case(name=row.name, label=row.name)
+    return row.case or Case(name=row.name)
 
 
 def numbers_of(comparison: ResultTable) -> FloatArray:

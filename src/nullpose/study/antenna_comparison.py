@@ -60,7 +60,7 @@ def compare_antennas(
     results = {"promised": promised}
     results |= {name: evaluated(promised, scene, promised.pose) for name, scene in flown.items()}
     results["possible"] = possible
-    rows = (ResultRow.of(math.nan, result, Case(name=name, label=name)) for name, result in results.items())
+    rows = (ResultRow.of(math.nan, result, Case(name=name)) for name, result in results.items())
     settings = MappingProxyType(provenance(solve_options.seed) | solve_options.settings)
     return ResultTable("", tuple(rows), scenario=scenario, provenance=settings)
 

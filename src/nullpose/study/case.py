@@ -3,66 +3,296 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, TypeAdapter
 
 from nullpose.objectives import USUAL
+from nullpose.physics import Pose
 from nullpose.problem.schemes import Scheme
-from nullpose.scenario import Airframe, Antenna, Array, Scenario
+from nullpose.scenario import Airframe, Array, Scenario
+from nullpose.scenario.airframe import PRESET_TILTS_DEG
+from nullpose.scenario.faults import Place, rejection
+from nullpose.scenario.rules import Choice, Count, Quantity, Rule
+from nullpose.scenario.section import Section
+from nullpose.scenario.units import AttitudeDegrees, Label, Position
+from nullpose.scenario.ways import Ways, at_most_one
+from nullpose.scenario.wording import described
+from nullpose.study.evaluation import pose_faults
 
 OMNIDIRECTIONAL = "omnidirectional"  # the case that other vehicles are compared with
-STATED = "stated"  # the scenario's own vehicle, if it is none of the others
+FILE_VEHICLE = "stated"  # the case of the scenario's own vehicle, if it is none of the others
+
+# The vehicles of every comparison, by the tilt that they take: largest tilt and mount of the dipole [deg],
+# label in a table, phrase in a sentence. Yaw is free for all of them.
+_USUAL = {
+    "level-vertical": (0.0, 0.0, "level, vertical", "a level vehicle with a vertical dipole"),
+    "level-horizontal": (0.0, 90.0, "level, horizontal", "a level vehicle with a horizontal dipole"),
+    "tilt-10": (10.0, 90.0, "tilt 10, horizontal", "a 10 degree tilt with a horizontal dipole"),
+    "tilt-30": (30.0, 90.0, "tilt 30, horizontal", "a 30 degree tilt with a horizontal dipole"),
+    OMNIDIRECTIONAL: (180.0, 0.0, "omnidirectional", "an omnidirectional vehicle"),
+}
+_AIRFRAMES = {
+    name: Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
+    for name, (tilt_deg, mount_deg, *_) in _USUAL.items()
+}
+LEVEL = "level-vertical"  # the case that studies compare others with
+
+Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
+Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
+NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
+
+_SchemeName = Annotated[Scheme, Choice("a scheme", tuple(scheme.value for scheme in Scheme))]
+
+_BY_NAME = _AIRFRAMES | {
+    preset: Airframe(preset=preset) for preset in PRESET_TILTS_DEG if preset not in _AIRFRAMES
+}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
+@dataclass(frozen=True, slots=True)
+class _Named(Choice):
+    """A table, or a name for one."""
+
+    tables: Mapping[str, Any] = field(hash=False)
+
+    def read(self, value: object) -> Any:
+        return self.tables[Choice.read(self, value)] if isinstance(value, str) else value
+
+
+_VEHICLE = _Named("a table with tilt_max_deg and mount_deg, or a name", tuple(_BY_NAME), _BY_NAME)
+_POSE = _Named("a table with position_m, or a name", ("centroid",), {"centroid": {"position_m": "centroid"}})
+_POSITION: TypeAdapter[tuple[float, float, float]] = TypeAdapter(Position)
+_Place = Annotated[
+    tuple[float, float, float] | Literal["centroid"],
+    BeforeValidator(lambda value: value if value in ("centroid",) else _POSITION.validate_python(value)),
+]
+
+
+class _Truth(Rule):
+    """True or false, and nothing that merely resembles it."""
+
+    def read(self, value: object) -> bool:
+        if not isinstance(value, bool):
+            raise rejection(f"got {described(value)}, must be true or false, without quotes")
+        return value
+
+
+_Bool = Annotated[bool, _Truth()]
+
+
+class FixedPose(Section):
+    """A pose that is evaluated in every scene, with nothing searched and nothing proved.
+
+    Args:
+        position_m: where the drone hovers; "centroid" for the lowest allowed position over
+            the centroid of the nodes.
+        roll_deg, pitch_deg, yaw_deg: how it is turned.
+    """
+
+    header: ClassVar[str] = "a table such as { position_m = [0, 0, 20], roll_deg = 90 }"
+    unstated: ClassVar[frozenset[str]] = frozenset({"roll_deg", "pitch_deg", "yaw_deg"})
+
+    position_m: _Place = Field(
+        description="Where the drone hovers: [east, north, up], or centroid for the lowest allowed position "
+        "over the centroid of the nodes.",
+        examples=[[0.0, 25.0, 8.0]],
+    )
+    roll_deg: AttitudeDegrees = Field(default=0.0, description="Roll in degrees.", examples=[90.0])
+    pitch_deg: AttitudeDegrees = Field(default=0.0, description="Pitch in degrees.", examples=[0.0])
+    yaw_deg: AttitudeDegrees = Field(default=0.0, description="Yaw in degrees.", examples=[0.0])
+
+    def on(self, scenario: Scenario) -> Pose:
+        """Return the pose on the scenario's vehicle.
+
+        Args:
+            scenario: with its airframe, which says how the dipole is mounted.
+        """
+        roll, pitch, yaw = (math.radians(angle) for angle in (self.roll_deg, self.pitch_deg, self.yaw_deg))
+        mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
+        position_m = (
+            _over_centroid_m(scenario) if self.position_m == "centroid" else np.array(self.position_m)
+        )
+        return Pose(position_m, roll, pitch, yaw, mount_rad)
+
+
+def _over_centroid_m(scenario: Scenario) -> NDArray[np.float64]:
+    """Return the lowest allowed position over the nodes' centroid; the lowest of all if none is allowed.
+
+    It is at the lowest altitude of the airspace, on the ceiling of a no-fly zone or on a keep-out ball.
+    """
+    points_m = np.vstack([scenario.source_positions_m, scenario.eavesdropper_positions_m])
+    across_m = scenario.node_positions_m[:, :2].mean(axis=0)
+    squares_m2 = scenario.airspace.keep_out_m**2 - np.sum((points_m[:, :2] - across_m) ** 2, axis=1)
+    heights_m = [scenario.airspace.altitude_m[0], *(points_m[:, 2] + np.sqrt(np.maximum(squares_m2, 0.0)))]
+    heights_m += [zone.ceiling_m for zone in scenario.airspace.inner.no_fly if math.isfinite(zone.ceiling_m)]
+    positions_m = [np.append(across_m, height_m) for height_m in sorted(heights_m)]
+    allowed = (each for each in positions_m if not list(pose_faults(scenario, Pose(each, 0.0, 0.0))))
+    return next(allowed, np.append(across_m, heights_m[0]))
+
+
+class Case(Section):
     """One way of solving a scene.
 
     Args:
-        name: as in ``tilt-10``.
-        label: in a table, as in "tilt 10, horizontal".
-        phrase: in a sentence, as in "a 10 degree tilt with a horizontal dipole".
+        name: what tables and figures call it.
         scheme: how the pose is chosen.
-        airframe: the vehicle in place of the scene's, or None.
-        antenna: the drone's antenna in place of the scene's, or None.
-        array: several upright dipoles in place of the one, or None.
-        robust: whether the pose guarantees most under the scene's errors.
+        airframe: the vehicle in place of the scene's.
+        mount_scenes: how many scenes choose the mount of the airframe; None for the mount that it states.
+        array: several dipoles in place of the one.
+        robust: whether the pose that guarantees most under the scene's errors is asked for.
+        pose: a pose to evaluate, in place of a search.
+        certify: whether to prove anything.
+        gap: relative gap in place of the study's.
+        time_limit_s: seconds of one solve in place of the study's.
     """
 
-    name: str
-    label: str = ""
-    phrase: str = ""
-    scheme: Scheme = Scheme.OPTIMUM
-    airframe: Airframe | None = None
-    antenna: Antenna | None = None
-    array: Array | None = None
-    robust: bool = False
+    header: ClassVar[str] = "a case, in a table of its own headed [[cases]]"
+    letter: ClassVar[str] = "C"
+    ways: ClassVar[tuple[Ways, ...]] = (
+        at_most_one("airframe", "array"),
+        at_most_one("scheme", "robust", "array", "pose"),
+    )
+
+    name: Label = Field(
+        default="",
+        description="What tables and figures call it. Left out: C1, C2, ... by its place in the file.",
+        examples=["tilt-10"],
+    )
+    scheme: _SchemeName | None = Field(
+        default=None,
+        description=f"How the pose is chosen. Left out: {Scheme.OPTIMUM.value}.",
+        examples=[Scheme.VERTICAL.value],
+    )
+    airframe: Annotated[Airframe, _VEHICLE] | None = Field(
+        default=None,
+        description="The vehicle in place of the scene's: level-vertical, level-horizontal, tilt-10, "
+        "tilt-30, omnidirectional, a preset, or a table with tilt_max_deg and mount_deg, which may be best.",
+        examples=["tilt-10"],
+    )
+    mount_scenes: Annotated[int, Count("a number of scenes", 1, 1e6, "more take longer")] | None = Field(
+        default=None,
+        description='With mount_deg = "best": number of scenes that choose the mount. Left out: 64.',
+        examples=[64],
+    )
+    array: Array | None = Field(
+        default=None,
+        description="An array on a level vehicle: elements, layout and spacing_wavelengths.",
+        examples=[{"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5}],
+    )
+    robust: _Bool | None = Field(
+        default=None,
+        description="True: the pose that guarantees most under the scene's errors.",
+        examples=[True],
+    )
+    pose: Annotated[FixedPose, _POSE] | None = Field(
+        default=None,
+        description="A pose to evaluate in every scene, with nothing searched or proved: a table, or "
+        "centroid.",
+        examples=[{"position_m": [0.0, 25.0, 8.0], "roll_deg": 90.0}],
+    )
+    certify: _Bool | None = Field(
+        default=None, description="False: search only, and prove nothing.", examples=[False]
+    )
+    gap: Gap | None = Field(
+        default=None, description="Relative gap of this case, in place of the study's.", examples=[1e-2]
+    )
+    time_limit_s: Seconds | None = Field(
+        default=None,
+        description="Seconds of one solve of this case, in place of the study's.",
+        examples=[30.0],
+    )
+
+    @classmethod
+    def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
+        """Returns the raw table without ``robust = false``; scenes that choose it for a best mount."""
+        vehicle = data.get("airframe")
+        if isinstance(vehicle, Mapping) and vehicle.get("mount_deg") == "best":
+            data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
+        return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
+
+    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+        """Returns the fault that something is asked of a proof where there is none."""
+        if self.mount_scenes is not None and self.airframe is None:
+            yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'
+        for key in ("certify", "gap", "time_limit_s"):
+            if self.pose is not None and getattr(self, key) is not None:
+                yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
 
     @property
-    def airframe_or_any(self) -> Airframe:
-        """The vehicle; one that takes every attitude if it is the scene's."""
-        return self.airframe or Airframe(tilt_max_deg=180.0)
+    def is_best_pose(self) -> bool:
+        """Whether the best pose of a vehicle with one dipole is asked for, everything being as stated."""
+        return not self.robust and self._is_free
+
+    @property
+    def _is_free(self) -> bool:
+        return self.array is None and self.pose is None and self.scheme in (None, Scheme.OPTIMUM)
+
+    @property
+    def usual(self) -> str:
+        """The name of the usual vehicle whose pose it is, by the axes that it reaches; empty if none."""
+        if self.scheme is Scheme.VERTICAL:
+            return LEVEL
+        band = self.airframe.axis_band if self.airframe is not None and self._is_free else None
+        return next((name for name, usual in _AIRFRAMES.items() if usual.axis_band == band), "")
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it is the best pose of a vehicle with one dipole that does not tilt."""
+        tilts = self.airframe is None or not self._is_free or self.airframe.tilt_max_rad > 0.0
+        return self.scheme is Scheme.VERTICAL or not tilts
+
+    @property
+    def label(self) -> str:
+        """Its name in a table, as in "tilt 10, horizontal"."""
+        if self.array is not None:
+            return f"array of {self.array.elements}, digital"
+        if self.name == FILE_VEHICLE and self.airframe is not None:
+            return f"file: tilt {_degrees(self.airframe.tilt_max_rad)}, mount {self.airframe.mount_deg:g}"
+        if self.scheme is not None:
+            return self.scheme.label
+        return _USUAL[self.name][2] if self.name in _USUAL else self.name
+
+    @property
+    def phrase(self) -> str:
+        """What it is in a sentence, as in "a 10 degree tilt with a horizontal dipole"."""
+        if self.pose is not None:
+            return f"the given pose {self.name}"
+        if self.array is not None:
+            return f"a level vehicle with an array of {self.array.elements} with digital combining"
+        if self.scheme is not None and self.scheme not in (Scheme.OPTIMUM, Scheme.VERTICAL):
+            return f"the {self.scheme.label.lower()} pose"
+        if self.airframe is None and not self.usual:
+            return f"the case {self.name}"
+        phrase = _USUAL[self.usual][3] if self.usual else _mounted(self.airframe or Airframe(tilt_max_deg=0))
+        if self.name == FILE_VEHICLE:
+            phrase = f"the file's vehicle ({phrase})"
+        chosen = f" (the best mount tried, on up to {self.mount_scenes} scenes)" if self.mount_scenes else ""
+        return f"{phrase}{chosen}{' in its robust pose' if self.robust else ''}"
+
+    def mounted(self, mount_deg: float, **changes: Any) -> Case:
+        """Return the case with its airframe's dipole at another mount.
+
+        Args:
+            mount_deg: of the airframe that the case states.
+            changes: of the case, by key.
+        """
+        airframe = {**self.to_dict()["airframe"], "mount_deg": mount_deg}
+        return self.model_copy(update={"airframe": airframe, **changes})
 
     def on(self, scenario: Scenario) -> Scenario:
-        """Put this case's vehicle and antenna into a scenario; an array of the scenario's goes."""
+        """Put this case's vehicle into a scenario; an array of the scenario's goes."""
         changes: dict[str, Any] = {"array": self.array}
         if self.airframe is not None or self.array is not None:
             changes["airframe"] = self.airframe
-        if self.antenna is not None:
-            changes["antenna"] = self.antenna
         return scenario.model_copy(update=changes)
 
 
-# The vehicles of every comparison, by the tilt that they take. Yaw is free for all of them.
 AIRFRAME_CASES: tuple[Case, ...] = tuple(
-    Case(name=name, label=label, phrase=phrase, airframe=Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg))
-    for name, label, phrase, tilt_deg, mount_deg in (
-        ("level-vertical", "level, vertical", "a level vehicle with a vertical dipole", 0.0, 0.0),
-        ("level-horizontal", "level, horizontal", "a level vehicle with a horizontal dipole", 0.0, 90.0),
-        ("tilt-10", "tilt 10, horizontal", "a 10 degree tilt with a horizontal dipole", 10.0, 90.0),
-        ("tilt-30", "tilt 30, horizontal", "a 30 degree tilt with a horizontal dipole", 30.0, 90.0),
-        (OMNIDIRECTIONAL, "omnidirectional", "an omnidirectional vehicle", 180.0, 0.0),
-    )
+    Case(name=name, airframe=airframe) for name, airframe in _AIRFRAMES.items()
 )
 
 ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries
@@ -80,51 +310,22 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     Args:
         scenario: with or without an airframe or an array.
     """
-    vehicles, airframe, array = AIRFRAME_CASES, scenario.airframe, scenario.array or _ARRAY
-    bands = [case.airframe_or_any.axis_band for case in vehicles]
-    if airframe is not None and airframe.axis_band not in bands:
-        tilting = (*vehicles, _own_vehicle(airframe))
-        vehicles = tuple(sorted(tilting, key=lambda case: case.airframe_or_any.tilt_max_rad))
+    airframes, array = dict(_AIRFRAMES), scenario.array or _ARRAY
+    if scenario.airframe is not None and not Case(airframe=scenario.airframe).usual:
+        airframes[FILE_VEHICLE] = scenario.airframe
+    by_tilt = sorted(airframes.items(), key=lambda each: each[1].tilt_max_rad)
+    vehicles = tuple(Case(name=name, airframe=airframe) for name, airframe in by_tilt)
     if scenario.objective != USUAL or scenario.states_antennas:
         return vehicles
-    arrays = (
-        Case(
-            name=f"array-{size}-digital",
-            label=f"array of {size}, digital",
-            phrase=array_phrase(size),
-            airframe=AIRFRAME_CASES[0].airframe,
-            array=array.model_copy(update={"elements": size}),
-        )
-        for size in sorted({*ARRAY_SIZES, array.elements})
-    )
-    return (*vehicles, *arrays)
+    sized = (array.model_copy(update={"elements": size}) for size in sorted({*ARRAY_SIZES, array.elements}))
+    return (*vehicles, *(Case(name=f"array-{each.elements}-digital", array=each) for each in sized))
 
 
-def mounted_phrase(airframe: Airframe) -> str:
-    """Write a vehicle in a sentence, as in "a 20 degree tilt with the dipole mounted at 45 degrees".
-
-    Args:
-        airframe: any.
-    """
-    tilt, mount = _degrees(airframe.tilt_max_rad), _degrees(airframe.mount_rad)
+def _mounted(airframe: Airframe) -> str:
+    tilt = _degrees(airframe.tilt_max_rad)
     vehicle = f"a {tilt} degree tilt" if airframe.tilt_max_rad else "a level vehicle"
-    return f"{vehicle} with the dipole mounted at {mount} degrees"
-
-
-def array_phrase(elements: int) -> str:
-    """Write a vehicle with an array in a sentence.
-
-    Args:
-        elements: of the array.
-    """
-    return f"a level vehicle with an array of {elements} with digital combining"
+    return f"{vehicle} with the dipole mounted at {airframe.mount_deg:g} degrees"
 
 
 def _degrees(angle_rad: float) -> str:
     return f"{round(math.degrees(angle_rad), 6):g}"
-
-
-def _own_vehicle(airframe: Airframe) -> Case:
-    label = f"file: tilt {_degrees(airframe.tilt_max_rad)}, mount {_degrees(airframe.mount_rad)}"
-    phrase = f"the file's vehicle ({mounted_phrase(airframe)})"
-    return Case(name=STATED, label=label, phrase=phrase, airframe=airframe)

@@ -84,7 +84,7 @@ def sweep(
         if result.interrupted:
             raise KeyboardInterrupt
         found[scheme].append(result)
-        case = Case(name=scheme.value, label=scheme.label, scheme=scheme)
+        case = Case(name=scheme.value, scheme=scheme)
         rows[value, scheme] = ResultRow.of(value, result, case)
         if on_progress is not None:
             on_progress(len(rows), len(order) * len(applicable))

@@ -13,7 +13,7 @@ from nullpose.scenario import Scenario
 from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
 from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
-from nullpose.study.case import OMNIDIRECTIONAL, STATED, Case, cases_of
+from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL, Case, cases_of
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 
 TOLERANCE = 0.01  # a vehicle suffices if it reaches no less than the omnidirectional one but for this share
@@ -103,7 +103,7 @@ def arrays(table: ResultTable) -> tuple[ResultRow, ...]:
 
 def own_vehicle(table: ResultTable) -> ResultRow | None:
     """Look up the scenario's own vehicle; None if it is one of the usual ones."""
-    return next((row for row in table.rows if row.name == STATED), None)
+    return next((row for row in table.rows if row.name == FILE_VEHICLE), None)
 
 
 def share(table: ResultTable, row: ResultRow) -> float | None:

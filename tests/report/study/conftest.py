@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from nullpose.report.study.cases import report_cases
-from nullpose.report.study.summary import Summary, gather, summarise
+from nullpose.report.study.summary import Summary, summarise
 from nullpose.study.monte_carlo import StudySpec, read_study
 from nullpose.study.monte_carlo.folder import Folder
 from nullpose.study.monte_carlo.rows import Row, as_parquet, row_of
@@ -109,7 +109,7 @@ def summed(make: Make) -> Callable[..., Summary]:
         cells: Any, *, requirement: float | None = None, against: str | None = None, **given: Any
     ) -> Summary:
         table = read_study(make(cells, **given))
-        return summarise(table, gather(table), report_cases(table.spec, against), requirement)
+        return summarise(table, report_cases(table.spec, against), requirement)
 
     return summed_up
 

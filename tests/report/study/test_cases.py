@@ -36,12 +36,12 @@ def test_vehicles_have_their_phrases(specify: Specify) -> None:
     cases = report_cases(
         specify(*({"name": f"v{n}", "airframe": c.name} for n, c in enumerate(AIRFRAME_CASES)))
     )
-    assert [case.phrase for case in cases] == [case.phrase for case in AIRFRAME_CASES]
-    assert [case.is_level for case in cases] == [True, True, False, False, False]
-    (stated,) = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 10.0, "mount_deg": 90.0}}))
-    assert (stated.role, stated.phrase) == ("tilt-10", AIRFRAME_CASES[2].phrase)
-    (other,) = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 20.0, "mount_deg": 45.0}}))
-    assert (other.role, other.phrase) == ("", "a 20 degree tilt with the dipole mounted at 45 degrees")
+    assert list(cases["phrase"]) == [case.phrase for case in AIRFRAME_CASES]
+    stated = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 10.0, "mount_deg": 90.0}}))
+    assert list(stated.loc["x", ["usual", "phrase"]]) == ["tilt-10", AIRFRAME_CASES[2].phrase]
+    other = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 20.0, "mount_deg": 45.0}}))
+    phrase = "a 20 degree tilt with the dipole mounted at 45 degrees"
+    assert list(other.loc["x", ["usual", "phrase"]]) == ["", phrase]
 
 
 def test_what_is_no_vehicle_is_named_as_the_spec_does(specify: Specify) -> None:
@@ -54,28 +54,28 @@ def test_what_is_no_vehicle_is_named_as_the_spec_does(specify: Specify) -> None:
             {"name": "d", "pose": {"position_m": [0.0, 0.0, 9.0]}},
         )
     )
-    assert [case.phrase for case in cases] == [
+    assert list(cases["phrase"]) == [
         "the zero interference pose",
         "a level vehicle with a vertical dipole",
         "a level vehicle with an array of 4 with digital combining",
         "the given pose d",
     ]
-    assert [case.role for case in cases] == ["", "level-vertical", "", ""]
+    assert list(cases["usual"]) == ["", "level-vertical", "", ""]
 
 
 def test_the_scenes_vehicle(specify: Specify) -> None:
     """Without one of its own a case has the scene's: any attitude, what is stated, or not known if swept."""
-    assert report_cases(specify({"name": "a"}))[0].role == "omnidirectional"
+    assert report_cases(specify({"name": "a"})).loc["a", "usual"] == "omnidirectional"
     level = {"airframe": {"tilt_max_deg": 0.0}}
-    assert report_cases(specify({"name": "a"}, scene=level))[0].role == "level-vertical"
+    assert report_cases(specify({"name": "a"}, scene=level)).loc["a", "usual"] == "level-vertical"
     swept = specify({"name": "a"}, scene=level, sweep={"airframe.tilt_max_deg": [0.0, 5.0]})
-    assert (report_cases(swept)[0].role, report_cases(swept)[0].phrase) == ("", "the case a")
+    assert list(report_cases(swept).loc["a", ["usual", "phrase"]]) == ["", "the case a"]
 
 
 def test_equal_phrases_are_told_apart(specify: Specify) -> None:
     """Two cases with one vehicle carry their names."""
-    phrases = [case.phrase for case in report_cases(specify({"name": "a"}, {"name": "b", "certify": False}))]
-    assert phrases == ["an omnidirectional vehicle (a)", "an omnidirectional vehicle (b)"]
+    cases = report_cases(specify({"name": "a"}, {"name": "b", "certify": False}))
+    assert list(cases["phrase"]) == ["an omnidirectional vehicle (a)", "an omnidirectional vehicle (b)"]
 
 
 def test_what_others_are_measured_against(specify: Specify) -> None:
@@ -88,10 +88,10 @@ def test_what_others_are_measured_against(specify: Specify) -> None:
         ((free, tilt), "free"),
     ):
         sure = {"name": "sure", "airframe": "tilt-30", "robust": True}
-        *cases, robust = report_cases(specify(*given, sure))
-        assert {given[case.reference]["name"] for case in cases} == {expected}
-        assert {given[case.whole]["name"] for case in cases if case.whole is not None} == {"free"}
-        assert (robust.reference, robust.whole) == (robust.place, None)
+        cases = report_cases(specify(*given, sure))
+        assert set(cases.loc[~cases["robust"], "against"]) == {expected}
+        assert set(cases.loc[~cases["robust"], "whole"]) == {"free"}
+        assert list(cases.loc["sure", ["against", "whole"]]) == ["sure", ""]
 
 
 def test_combinations_in_words(specify: Specify) -> None:

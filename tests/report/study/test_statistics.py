@@ -9,13 +9,10 @@ from nullpose.report.study.statistics import (
     MEDIAN,
     WORST_TENTH,
     band_half_width,
+    bootstrap,
     difference,
-    draws,
-    interval_of,
     quantile,
     quantile_interval,
-    replicates_of,
-    resampled,
     share_interval,
 )
 
@@ -65,23 +62,14 @@ def test_band_and_share() -> None:
     assert np.isnan(share_interval(0, 0)).all()
 
 
-def test_resampling_is_the_quantile_of_what_is_drawn() -> None:
-    """Each column's quantile with scenes repeated as drawn, NaN left out."""
+def test_the_bootstrap_holds_the_mean() -> None:
+    """It is seeded, passes over columns that are mostly without a number, and leaves few scenes alone."""
     generator = np.random.default_rng(3)
-    columns = generator.normal(size=(40, 3))
-    columns[:5, 1] = math.nan
-    columns[:, 2] = math.nan
-    of = resampled(columns, 0.3)
-    for times in list(draws(40))[:20]:
-        drawn = np.repeat(columns, times, axis=0)
-        expected = [quantile(column, 0.3) for column in drawn.T]
-        np.testing.assert_array_equal(of(times), expected)
-
-
-def test_the_bootstrap_is_seeded() -> None:
-    """Equal studies give equal replicates, fewer where there are very many scenes."""
-    assert all(np.array_equal(one, other) for one, other in zip(draws(7), draws(7), strict=True))
-    assert len(list(draws(7))) == replicates_of(7) == 1000
-    assert replicates_of(1_000_000) == 200
-    assert interval_of(np.arange(1.0, 1001.0)) == (25.0, 975.0)
-    assert np.isnan(interval_of(np.array([1.0, math.nan]))).all()
+    columns = generator.normal(size=(400, 3))
+    columns[:, 1] = math.nan
+    ends = bootstrap(lambda drawn: drawn.mean(axis=0), columns)
+    np.testing.assert_array_equal(ends, bootstrap(lambda drawn: drawn.mean(axis=0), columns))
+    half = 1.96 * columns.std(axis=0) / math.sqrt(400)
+    np.testing.assert_allclose(ends[1] - ends[0], 2.0 * half, rtol=0.1)
+    assert np.isnan(ends[:, 1]).all()
+    assert np.isnan(bootstrap(lambda drawn: drawn.mean(axis=0), columns[:35])).all()

@@ -11,8 +11,8 @@ import pytest
 
 from nullpose import ScenarioError
 from nullpose.scenario.toml_file import toml_text
-from nullpose.study import AIRFRAME_CASES
-from nullpose.study.monte_carlo import StudyCase, StudySpec, draw_scene, load_spec
+from nullpose.study import AIRFRAME_CASES, Case
+from nullpose.study.monte_carlo import StudySpec, draw_scene, load_spec
 
 Tables = Callable[..., dict[str, Any]]
 
@@ -106,10 +106,10 @@ def test_every_fault_at_once(tmp_path: Path) -> None:
 def test_analogue_combining_is_refused() -> None:
     """A case of before that asks for it is told what arrays have; digital combining may be stated."""
     case = {"array": {"elements": 2, "layout": "linear", "spacing_wavelengths": 0.5, "combining": "digital"}}
-    assert StudyCase.from_dict(case).array.elements == 2
+    assert Case.from_dict(case).array.elements == 2
     case["array"]["combining"] = "analogue"
     with pytest.raises(ScenarioError, match=r"array\.combining.*digital combining, which nullpose solves"):
-        StudyCase.from_dict(case)
+        Case.from_dict(case)
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:

@@ -2,82 +2,65 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
-from nullpose.problem.schemes import Scheme
 from nullpose.report.numbers import unit_of
 from nullpose.scenario import Airframe
-from nullpose.study.case import AIRFRAME_CASES, OMNIDIRECTIONAL, array_phrase, mounted_phrase
-from nullpose.study.monte_carlo import StudyCase, StudySpec
+from nullpose.study.case import LEVEL, OMNIDIRECTIONAL, Case
+from nullpose.study.monte_carlo import StudySpec
 
-LEVEL = AIRFRAME_CASES[0]  # the others are compared with it
+if TYPE_CHECKING:
+    import pandas as pd
+
 MOST_SHOWN = 6  # combinations that have a panel and rows; the tables on disk have all
 
 _ANY = Airframe(tilt_max_deg=180.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReportCase:
-    """A case of a study in its report; the places are those in the spec.
+def report_cases(spec: StudySpec, against: str | None = None) -> pd.DataFrame:
+    """Describe the cases of a study, by name.
 
-    Args:
-        place: of the case.
-        name: as in the spec, for tables and figures.
-        phrase: in a sentence, as in "a 10 degree tilt with a horizontal dipole".
-        role: name of its vehicle among ``AIRFRAME_CASES``; empty if it is none, or not its best pose.
-        is_level: whether it is the best pose of a vehicle that does not tilt.
-        robust: whether its values are guaranteed under errors.
-        reference: place of the case that it is compared with: a robust one only with robust ones.
-        whole: place of the omnidirectional case among those that it is compared with; None without one.
-    """
-
-    place: int
-    name: str
-    phrase: str
-    role: str = ""
-    is_level: bool = False
-    robust: bool = False
-    reference: int = 0
-    whole: int | None = None
-
-
-def report_cases(spec: StudySpec, against: str | None = None) -> tuple[ReportCase, ...]:
-    """Name the cases of a study, in order.
-
-    The reference is the level vehicle with a vertical dipole; without one, the first that is level; without
-    any, the first case.
+    The columns are ``phrase`` (in a sentence), ``usual`` (the name of its vehicle among ``AIRFRAME_CASES``),
+    ``robust``, ``against`` (the case that it is compared with) and ``whole`` (the omnidirectional one); empty
+    where there is none. Cases are compared with the level vehicle that has a vertical dipole; without one,
+    with the first that is level; without any, with the first; robust ones among themselves.
 
     Args:
         spec: the study.
-        against: name of another reference.
+        against: name of another case to compare with.
 
     Raises:
         UsageError: there is no case of that name.
     """
+    import pandas as pd
+
     if against is not None and against not in spec.case_names:
         raise UsageError(f"against: given {against!r}; allowed: {', '.join(spec.case_names)}")
     scenes_airframe = _scenes_airframe(spec)
-    cases = [_described(place, case, scenes_airframe) for place, case in enumerate(spec.cases)]
-    times = Counter(case.phrase for case in cases)
-    return tuple(
-        replace(
-            _compared(case, [other for other in cases if other.robust is case.robust], against),
-            phrase=f"{case.phrase} ({case.name})" if times[case.phrase] > 1 else case.phrase,
-        )
-        for case in cases
+    placed = {case.name: _placed(case, scenes_airframe) for case in spec.cases}
+    cases = pd.DataFrame(
+        {
+            "phrase": {name: case.phrase for name, case in placed.items()},
+            "usual": {name: case.usual for name, case in placed.items()},
+            "robust": {name: bool(case.robust) for name, case in placed.items()},
+        }
     )
+    twice = cases["phrase"].duplicated(keep=False)
+    cases.loc[twice, "phrase"] += " (" + cases.index[twice] + ")"
+    for _, group in cases.groupby("robust"):
+        members = [placed[name] for name in group.index]
+        first = max(members, key=lambda case: (case.name == against, case.usual == LEVEL, case.is_level))
+        whole = next((case.name for case in members if case.usual == OMNIDIRECTIONAL), "")
+        cases.loc[group.index, ["against", "whole"]] = first.name, whole
+    return cases
 
 
-def _compared(case: ReportCase, group: Sequence[ReportCase], against: str | None) -> ReportCase:
-    """Choose the reference and the omnidirectional case among those of a group; the first of equals."""
-    reference = max(
-        group, key=lambda other: (other.name == against, other.role == LEVEL.name, other.is_level)
-    )
-    whole = next((other.place for other in group if other.role == OMNIDIRECTIONAL), None)
-    return replace(case, reference=reference.place, whole=whole)
+def _placed(case: Case, airframe: Airframe | None) -> Case:
+    """Give a case the scenes' vehicle if it states none."""
+    if case.airframe is not None or case.array is not None:
+        return case
+    return case.model_copy(update={"airframe": airframe})
 
 
 def _scenes_airframe(spec: StudySpec) -> Airframe | None:
@@ -88,31 +71,6 @@ def _scenes_airframe(spec: StudySpec) -> Airframe | None:
     airframes = {scene.airframe or _ANY for scene in scenes}
     is_same = len(airframes) == 1 and all(scene.array is None for scene in scenes)
     return airframes.pop() if is_same else None
-
-
-def _described(place: int, case: StudyCase, scenes_airframe: Airframe | None) -> ReportCase:
-    airframe = scenes_airframe if case.airframe is None else case.airframe
-    plain = ReportCase(place=place, name=case.name, phrase=f"the case {case.name}", robust=bool(case.robust))
-    if case.pose is not None:
-        return replace(plain, phrase=f"the given pose {case.name}")
-    if case.array is not None:
-        return replace(plain, phrase=array_phrase(case.array.elements))
-    if case.scheme is Scheme.VERTICAL:
-        return replace(plain, phrase=LEVEL.phrase, role=LEVEL.name, is_level=True)
-    if case.scheme not in (None, Scheme.OPTIMUM):
-        return replace(plain, phrase=f"the {case.scheme.label.lower()} pose")
-    if airframe is None:
-        return plain
-    same = (usual for usual in AIRFRAME_CASES if usual.airframe_or_any.axis_band == airframe.axis_band)
-    usual = next(same, None)  # two vehicles that reach the same axes are one
-    phrase = mounted_phrase(airframe) if usual is None else usual.phrase
-    chosen = f" (the best mount tried, on up to {case.mount_scenes} scenes)" if case.mount_scenes else ""
-    return replace(
-        plain,
-        phrase=f"{phrase}{chosen}{' in its robust pose' if case.robust else ''}",
-        role="" if usual is None else usual.name,
-        is_level=airframe.tilt_max_rad == 0.0,
-    )
 
 
 def shown_points(spec: StudySpec) -> list[int]:

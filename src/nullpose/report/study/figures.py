@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import cycle
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,9 +17,12 @@ from matplotlib.text import Text
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import GREY, INK, VEHICLES, Curve, draw_curve, house_style, line_style
 from nullpose.report.numbers import percent
-from nullpose.report.study.cases import ReportCase, point_words, shown_points
+from nullpose.report.study.cases import point_words, shown_points
 from nullpose.report.study.statistics import CONFIDENCE, WORST_TENTH, band_half_width
 from nullpose.report.study.summary import Summary
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Line: TypeAlias = str | tuple[int, tuple[float, ...]]
 
@@ -54,28 +57,27 @@ def step_curve(numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _distributions(summary: Summary, points: Sequence[int]) -> Figure:
-    ends = _range(summary, points)
+    ends, looks = _range(summary, points), _looks(summary.cases)
 
     def draw(axes: Axes, point: int) -> None:
-        for case, look in zip(summary.cases, _looks(summary.cases), strict=True):
-            column = summary.value[:, point, case.place]
+        for place, (look, column) in enumerate(zip(looks, summary.value[:, point].T, strict=True)):
             column = column[~np.isnan(column)]
             if len(column):
                 across, heights = step_curve(np.clip(column, *ends))
                 half = band_half_width(len(column))
                 band = np.clip(heights - half, 0.0, 1.0), np.clip(heights + half, 0.0, 1.0)
                 every = max(1, len(across) // 7)
-                start = 1 + every * case.place // len(summary.cases)  # markers of two curves stand apart
+                start = 1 + every * place // len(looks)  # markers of two curves stand apart
                 draw_curve(axes, look, across, heights, band, steps=True, every=(start, every))
-        axes.set_xlim(*ends)
-        axes.set_ylim(0.0, 1.0)
+        axes.set(xlim=ends, ylim=(0.0, 1.0))
         axes.axhline(WORST_TENTH, color=INK, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5)
         axes.set_yticks(*_SHARES)
 
     note = f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
     across = f"{summary.quantity.smallest} over the nodes  ({summary.quantity.unit})"
-    handles = [Line2D([], [], **line_style(look)) for look in _looks(summary.cases)]
-    return _panels(summary, points, draw, handles, across=across, up="CDF over scenes", note=note, height=2.2)
+    return _panels(
+        summary, points, draw, across=across, up="CDF over scenes", note=note, height=2.2, looks=looks
+    )
 
 
 def _range(summary: Summary, points: Sequence[int]) -> tuple[float, float]:
@@ -95,11 +97,11 @@ def _range(summary: Summary, points: Sequence[int]) -> tuple[float, float]:
 
 def _gains(summary: Summary, points: Sequence[int]) -> Figure:
     compared = summary.compared
-    looks = _looks(summary.cases)
+    colours = {look.label: look.colour for look in _looks(summary.cases)}
 
     def draw(axes: Axes, point: int) -> None:
         for place, case in enumerate(compared):
-            row, colour = summary.row(point, case), looks[case.place].colour
+            row, colour = summary.row(point, case), colours[case]
             ends = row["gain_worst_tenth"], row["gain_best_tenth"]
             if all(map(math.isfinite, ends)):
                 axes.plot(ends, [place - 0.14] * 2, color=colour, zorder=2.0, linewidth=5.0, alpha=0.3)
@@ -110,32 +112,32 @@ def _gains(summary: Summary, points: Sequence[int]) -> Figure:
                 if math.isfinite(row[name]):
                     axes.plot([row[name]], [place + below], marker, color=colour, markersize=4.5, zorder=3.0)
         axes.axvline(0.0, color=INK, linewidth=0.8, zorder=1.4)
-        axes.set_yticks(range(len(compared)), [case.name for case in compared], parse_math=False)
+        axes.set_yticks(range(len(compared)), compared)
         axes.set_ylim(len(compared) - 0.4, -0.6)
         axes.grid(visible=False, axis="y")
 
-    names = " or ".join(sorted({summary.cases[case.reference].name for case in compared}))
+    names = " or ".join(sorted(set(summary.cases.loc[compared, "against"])))
     across = f"gain in the {summary.quantity.smallest} over {names}  ({summary.quantity.unit})"
     note = (
         f"Disc: median gain. Diamond: gain in the worst tenth. Lines: {percent(CONFIDENCE)} confidence. "
         "Bar: 10th to 90th percentile."
     )
-    return _panels(summary, points, draw, [], across=across, note=note, height=0.6 + 0.27 * len(compared))
+    height = 0.6 + 0.27 * len(compared)
+    return _panels(summary, points, draw, across=across, note=note, height=height)
 
 
-def _looks(cases: Sequence[ReportCase]) -> list[Curve]:
+def _looks(cases: pd.DataFrame) -> list[Curve]:
     """Choose the looks of cases: usual vehicles as everywhere, guaranteed values dotted."""
     looks: list[Curve] = []
     others = zip(cycle(_COLOURS), cycle(_LINES), cycle(_MARKERS), strict=False)
-    taken: set[tuple[str, bool]] = set()
-    for case in cases:
-        if case.role in VEHICLES and (case.role, case.robust) not in taken:
-            taken.add((case.role, case.robust))
-            look = VEHICLES[case.role]
-            look = replace(look, line=(0, (1.0, 1.2)), width=look.width + 0.3) if case.robust else look
+    is_repeated = cases.duplicated(["usual", "robust"])
+    for name, case in cases.iterrows():
+        if case["usual"] in VEHICLES and not is_repeated[name]:
+            look = VEHICLES[case["usual"]]
+            look = replace(look, line=(0, (1.0, 1.2)), width=look.width + 0.3) if case["robust"] else look
         else:
             look = Curve("", *next(others), width=1.6, order=3.5)
-        looks.append(replace(look, label=case.name))
+        looks.append(replace(look, label=str(name)))
     return looks
 
 
@@ -143,14 +145,14 @@ def _panels(
     summary: Summary,
     points: Sequence[int],
     draw: Callable[[Axes, int], None],
-    handles: Sequence[Line2D],
     *,
     across: str,
     note: str,
     height: float,
     up: str = "",
+    looks: Sequence[Curve] = (),
 ) -> Figure:
-    """Set a panel for each combination of swept values, two in a row, with a legend above them."""
+    """Set a panel for each combination of swept values, two in a row, with a legend of looks above them."""
     columns = min(2, len(points))
     down = -(-len(points) // columns)
     with house_style():
@@ -161,7 +163,8 @@ def _panels(
             draw(axes, point)
         for axes in panels[len(points) :]:
             axes.remove()
-        if handles:
+        if looks:
+            handles = [Line2D([], [], **line_style(look)) for look in looks]
             figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False, fontsize=8.5)
         figure.supylabel(up, fontsize=9.5)
         figure.supxlabel(f"{across}\n", fontsize=9.5)

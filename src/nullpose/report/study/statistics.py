@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.physics.types import FloatArray
 
@@ -30,8 +29,16 @@ def quantile(values: FloatArray, share: float) -> float:
         values: numbers, shape ``(n,)``; NaN are left out.
         share: between 0 and 1.
     """
-    numbers = np.sort(values[~np.isnan(values)])
-    return float(numbers[_rank(len(numbers), share)]) if len(numbers) else math.nan
+    numbers = values[~np.isnan(values)]
+    if not len(numbers):
+        return math.nan
+    rank = min(len(numbers), max(1, math.ceil(share * len(numbers) - 1e-9))) - 1
+    return float(np.partition(numbers, rank)[rank])
+
+
+def quantiles(columns: FloatArray, share: float) -> FloatArray:
+    """Find the quantile of each column of an array, shape ``(n, k)``."""
+    return np.array([quantile(column, share) for column in columns.T])
 
 
 def quantile_interval(values: FloatArray, share: float) -> tuple[float, float]:
@@ -80,71 +87,30 @@ def share_interval(hits: int, count: int) -> tuple[float, float]:
 
 
 def difference(values: FloatArray, others: FloatArray) -> FloatArray:
-    """Subtract; 0 where both are the same infinity, which is no signal in both.
-
-    Args:
-        values: numbers, any shape.
-        others: numbers, the same shape.
-    """
+    """Subtract arrays; 0 where both are the same infinity, which is no signal in both."""
     with np.errstate(invalid="ignore"):
-        apart = np.subtract(values, others)
-    return np.asarray(np.where(np.equal(values, others), 0.0, apart))
+        return np.asarray(np.where(np.equal(values, others), 0.0, np.subtract(values, others)))
 
 
-def replicates_of(count: int) -> int:
-    """Choose the number of replicates: fewer for very many scenes, which vary little.
+def bootstrap(statistic: Callable[[FloatArray], FloatArray], values: FloatArray) -> FloatArray:
+    """Bound statistics by the percentiles of a seeded bootstrap over scenes, shape ``(2, ...)``.
 
-    Args:
-        count: how many scenes there are.
-    """
-    return min(_MOST_REPLICATES, max(_FEWEST_REPLICATES, _DRAWN // max(count, 1)))
-
-
-def resampled(columns: FloatArray, share: float) -> Callable[[NDArray[np.int64]], FloatArray]:
-    """Make a function of how often each scene is drawn: the quantile of each column then.
+    An end is NaN unless nearly all replicates have a number. Few scenes are not resampled.
 
     Args:
-        columns: numbers by scene and column; NaN are left out.
-        share: of the quantile.
+        statistic: of the values of some scenes, any shape.
+        values: by scene first.
     """
-    orders = [np.argsort(column, kind="stable")[: int(np.sum(~np.isnan(column)))] for column in columns.T]
-
-    def quantiles(times: NDArray[np.int64]) -> FloatArray:
-        found = np.full(len(orders), math.nan)
-        for place, order in enumerate(orders):
-            reached = np.cumsum(times[order])
-            if len(order) and reached[-1]:
-                rank = _rank(int(reached[-1]), share) + 1
-                found[place] = columns[order[np.searchsorted(reached, rank)], place]
-        return found
-
-    return quantiles
+    count, generator = len(values), np.random.default_rng(_SEED)
+    if count < FEW_SCENES:
+        return np.full((2, *np.shape(statistic(values))), math.nan)
+    replicates = min(_MOST_REPLICATES, max(_FEWEST_REPLICATES, _DRAWN // count))
+    drawn = [statistic(values[generator.integers(count, size=count)]) for _ in range(replicates)]
+    return np.apply_along_axis(_percentiles, 0, np.array(drawn))
 
 
-def draws(count: int) -> Iterator[NDArray[np.int64]]:
-    """Draw scenes for every replicate of a bootstrap, seeded: yield how often each is drawn.
-
-    Args:
-        count: how many scenes there are.
-    """
-    generator = np.random.default_rng(_SEED)
-    for _ in range(replicates_of(count)):
-        yield np.bincount(generator.integers(count, size=count), minlength=count)
-
-
-def interval_of(replicates: FloatArray) -> tuple[float, float]:
-    """Bound a statistic by the percentiles of a bootstrap; NaN unless nearly all replicates have a number.
-
-    Args:
-        replicates: a statistic's value in each, shape ``(n,)``.
-    """
-    numbers = np.sort(replicates[~np.isnan(replicates)])
-    if len(numbers) < 0.95 * len(replicates) or not len(numbers):
-        return math.nan, math.nan
+def _percentiles(replicates: FloatArray) -> FloatArray:
     tail = (1.0 - CONFIDENCE) / 2.0
-    return float(numbers[_rank(len(numbers), tail)]), float(numbers[_rank(len(numbers), 1.0 - tail)])
-
-
-def _rank(count: int, share: float) -> int:
-    """Find the place, from 0, of a quantile among sorted numbers."""
-    return min(count - 1, max(0, math.ceil(share * count - 1e-9) - 1))
+    if np.mean(np.isnan(replicates)) > tail * 2.0:
+        return np.array([math.nan, math.nan])
+    return np.array([quantile(replicates, tail), quantile(replicates, 1.0 - tail)])

@@ -15,9 +15,9 @@ from nullpose.files import prepare_folder, replacing, write_text
 from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
 from nullpose.report.numbers import NONE, number, percent, with_unit
-from nullpose.report.study.cases import ReportCase, point_words, report_cases, shown_points
+from nullpose.report.study.cases import point_words, report_cases, shown_points
 from nullpose.report.study.statistics import CONFIDENCE
-from nullpose.report.study.summary import STATUSES, Summary, gather, summarise
+from nullpose.report.study.summary import STATUSES, Summary, summarise
 from nullpose.study.monte_carlo import read_study
 
 if TYPE_CHECKING:
@@ -27,6 +27,11 @@ _CAPTIONS = {
     "distribution": "The distribution over scenes",
     "gain": "The gains of each case, with their confidence intervals",
 }
+_GAINS = {"gain_median": "median gain", "shift_worst_tenth": "gain in the worst tenth"}
+_REST = (
+    "; rows that are not certified count with the value of their pose, a lower bound of the optimum, failed "
+    "rows not at all, and study.csv has the reasons"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,31 +93,34 @@ def report_study(
     target = prepare_folder(Path(folder) / "report" if out is None else Path(out))
     data = target / "study.csv"
     with replacing(data) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        values = gather(table, lambda batch: file.write(_csv(batch, header=file.tell() == 0)))
-    summary = summarise(table, values, cases, requirement)
+        summary = summarise(
+            table, cases, requirement, lambda batch: file.write(_csv(batch, header=file.tell() == 0))
+        )
     figures = _write_figures(summary, prepare_folder(target / "figures"))
+    leader, proof = _leader(summary), _proof_sentence(summary)
+    answer = _gain_sentence(summary, leader)
     done = f"{summary.scenes:,} of {table.spec.n_scenes:,} scenes"
     unfinished = "" if summary.is_complete else f"This study is not finished: {done} are done."
     page: dict[str, object] = {
         "title": table.spec.name or "A study without a name",
         "unfinished": unfinished,
-        "sentences": [_gain_sentence(summary), _proof_sentence(summary)],
-        "numbers": _three_numbers(summary),
+        "sentences": [answer, proof],
+        "numbers": _three_numbers(summary, leader),
         "table": _table(summary),
         "captions": {name: _CAPTIONS[name] for name in figures},
+        "images": {name: base64.b64encode(svg.read_bytes()).decode() for name, (_, svg) in figures.items()},
         "confidence": percent(CONFIDENCE),
         "seed": table.spec.seed,
     }
-    images = {name: base64.b64encode(svg.read_bytes()).decode() for name, (_, svg) in figures.items()}
     files = (
         write_text(target / "report.md", _rendered("report.md.jinja", page)),
-        write_text(target / "report.html", _rendered("report.html.jinja", page | {"images": images})),
+        write_text(target / "report.html", _rendered("report.html.jinja", page)),
         write_text(target / "summary.csv", _csv(summary.table(), header=True)),
         data,
         *(path for pair in figures.values() for path in pair),
     )
-    notes = tuple(filter(None, (unfinished, _proof_sentence(summary))))
-    return StudyReport(answer=_gain_sentence(summary), notes=notes, summary=summary, files=files)
+    notes = tuple(filter(None, (unfinished, proof)))
+    return StudyReport(answer=answer, notes=notes, summary=summary, files=files)
 
 
 def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | None) -> float | None:
@@ -126,30 +134,33 @@ def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | Non
     return 0.0 if requirement is None and quantity.noun == "margin" else requirement
 
 
-def _leader(summary: Summary) -> ReportCase | None:
+def _leader(summary: Summary) -> str:
     """Choose the omnidirectional case, or that with the highest median gain, at the last swept values."""
-    gains = {case: summary.row(-1, case)["gain_median"] for case in summary.compared}
-    gains = {case: gain for case, gain in gains.items() if gain == gain}
-    return max(gains, key=lambda case: (case.place == case.whole, float(gains[case])), default=None)
+    gains = {case: float(summary.row(-1, case)["gain_median"]) for case in summary.compared}
+    whole = set(summary.cases["whole"])
+    return max(
+        (case for case, gain in gains.items() if gain == gain),
+        key=lambda case: (case in whole, gains[case]),
+        default="",
+    )
 
 
-def _gain_sentence(summary: Summary) -> str:
+def _gain_sentence(summary: Summary, leader: str) -> str:
     if not summary.scenes:
         return "No scene is solved yet."
-    quantity, words = summary.quantity, point_words(summary.spec, -1)
+    quantity, words, phrases = summary.quantity, point_words(summary.spec, -1), summary.cases["phrase"]
     scenes = f"Over {summary.scenes:,} scenes{f' at {words}' if words else ''}"
-    leader = _leader(summary)
-    if leader is None:
-        case = summary.cases[0]
-        levels = [with_unit(summary.row(-1, case)[name], quantity) for name in ("median", "worst_tenth")]
+    if not leader:
+        row = summary.row(-1, summary.cases.index[0])
+        levels = [with_unit(row[name], quantity) for name in ("median", "worst_tenth")]
         return (
-            f"{scenes} {case.phrase} reaches a {quantity.smallest} of {levels[0]} in the median and "
+            f"{scenes} {phrases.iloc[0]} reaches a {quantity.smallest} of {levels[0]} in the median and "
             f"{levels[1]} in the worst tenth."
         )
     gains = [f"{_cell(summary, -1, leader, name)} {quantity.unit}" for name in _GAINS]
     return (
-        f"{scenes} {leader.phrase} gains {gains[0]} in the median and {gains[1]} in the worst tenth over "
-        f"{summary.cases[leader.reference].phrase} ({percent(CONFIDENCE)} confidence in brackets)."
+        f"{scenes} {phrases[leader]} gains {gains[0]} in the median and {gains[1]} in the worst tenth over "
+        f"{phrases[summary.cases.loc[leader, 'against']]} ({percent(CONFIDENCE)} confidence in brackets)."
     )
 
 
@@ -160,26 +171,17 @@ def _proof_sentence(summary: Summary) -> str:
     if not rows:
         return ""
     kinds = [f"{count:,} {name.replace('-', ' ')}" for name, count in counts.items() if count]
-    rest = (
-        "; rows that are not certified count with the value of their pose, a lower bound of the optimum, "
-        "failed rows not at all, and study.csv has the reasons"
-    )
-    return f"Of {rows:,} rows: {', '.join(kinds)}{'' if counts['certified'] == rows else rest}."
+    return f"Of {rows:,} rows: {', '.join(kinds)}{'' if counts['certified'] == rows else _REST}."
 
 
-_GAINS = {"gain_median": "median gain", "shift_worst_tenth": "gain in the worst tenth"}
-
-
-def _three_numbers(summary: Summary) -> dict[str, str]:
+def _three_numbers(summary: Summary, leader: str) -> dict[str, str]:
     """Write the median of the reference and the two gains of the leading case, at the last combination."""
-    leader = _leader(summary)
-    reference = summary.cases[0 if leader is None else leader.reference]
-    level = with_unit(summary.row(-1, reference)["median"], summary.quantity)
-    numbers = {f"median {summary.quantity.smallest}, {reference.name}": level}
-    if leader is not None:
-        for name, words in _GAINS.items():
-            numbers[f"{words}, {leader.name}"] = with_unit(summary.row(-1, leader)[name], summary.quantity)
-    return numbers
+    quantity = summary.quantity
+    reference = summary.cases.loc[leader, "against"] if leader else summary.cases.index[0]
+    numbers = {f"median {quantity.smallest}, {reference}": summary.row(-1, reference)["median"]}
+    for name, words in _GAINS.items() if leader else ():
+        numbers[f"{words}, {leader}"] = summary.row(-1, leader)[name]
+    return {words: with_unit(value, quantity) for words, value in numbers.items()}
 
 
 def _table(summary: Summary) -> list[dict[str, str]]:
@@ -187,8 +189,8 @@ def _table(summary: Summary) -> list[dict[str, str]]:
     unit, rows = summary.quantity.unit, []
     names = {"median": "median", "worst_tenth": "worst tenth", **_GAINS}
     for point in shown_points(summary.spec):
-        for case in summary.cases:
-            row, cells = summary.row(point, case), {"case": case.name}
+        for case in summary.cases.index:
+            row, cells = summary.row(point, case), {"case": case}
             if summary.spec.swept:
                 cells["at"] = point_words(summary.spec, point)
             cells |= {f"{words}, {unit}": _cell(summary, point, case, name) for name, words in names.items()}
@@ -199,7 +201,7 @@ def _table(summary: Summary) -> list[dict[str, str]]:
     return rows
 
 
-def _cell(summary: Summary, point: int, case: ReportCase, name: str) -> str:
+def _cell(summary: Summary, point: int, case: str, name: str) -> str:
     """Write a number with its interval, as in "4.10 (3.90 to 4.30)"; without, if neither end is known."""
     row, quantity = summary.row(point, case), summary.quantity
     value, low, high = (number(row[key], quantity) for key in (name, f"{name}_low", f"{name}_high"))

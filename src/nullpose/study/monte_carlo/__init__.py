@@ -1,6 +1,5 @@
 """Studies: many random scenes, each solved in several cases over swept values."""
 
-from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.draw import draw_scene, scene_at
 from nullpose.study.monte_carlo.loading import load_spec
 from nullpose.study.monte_carlo.reading import (
@@ -14,7 +13,6 @@ from nullpose.study.monte_carlo.run import StudyProgress, run_study
 from nullpose.study.monte_carlo.spec import StudySpec
 
 __all__ = [
-    "StudyCase",
     "StudyProgress",
     "StudySpec",
     "StudyStatus",

@@ -14,7 +14,7 @@ from nullpose.scenario import Scenario, load
 from nullpose.scenario.faults import path_of
 from nullpose.scenario.loading import inside
 from nullpose.scenario.toml_file import FileKind, file_text, tables_of
-from nullpose.study.monte_carlo.case import StudyCase
+from nullpose.study.case import Case
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -133,7 +133,7 @@ def _cases_faults(spec: StudySpec, scenes: list[Scenario]) -> list[Fault]:
     return [Fault(path_of(("cases", place)), reasons[0]) for place, reasons in found.items() if reasons]
 
 
-def _meaningless(case: StudyCase, scene: Scenario) -> str:
+def _meaningless(case: Case, scene: Scenario) -> str:
     """Give the reason for which a case has no meaning in a scene; empty if it has."""
     try:
         vehicle = case.on(scene)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nullpose.study.monte_carlo.case import StudyCase
+from nullpose.study.case import Case
 from nullpose.study.monte_carlo.chunk import rows_of
 from nullpose.study.monte_carlo.draw import quantity_of
 from nullpose.study.monte_carlo.spec import StudySpec
@@ -30,7 +30,7 @@ def with_best_mounts(spec: StudySpec, on_note: Callable[[str], None]) -> StudySp
     return spec.model_copy(update={"cases": cases})
 
 
-def _with_best_mount(spec: StudySpec, case: StudyCase, on_note: Callable[[str], None]) -> StudyCase:
+def _with_best_mount(spec: StudySpec, case: Case, on_note: Callable[[str], None]) -> Case:
     best_deg, levels = 45.0, dict[float, float]()
     scenes, quantity = min(case.mount_scenes or 1, spec.n_scenes), quantity_of(spec)
     search = {"certify": None if case.pose else False}  # proofs would take three times as long

@@ -56,25 +56,25 @@ class StudyTable:
         """
         import pandas as pd
 
-        nothing = self._as_frame(schema_of(self.spec).empty_table())
-        return pd.concat(list(self.batches()) or [nothing], ignore_index=True)
+        return pd.concat(self.batches(), ignore_index=True)
 
     def batches(self) -> Iterator[pd.DataFrame]:
-        """Yield the rows part by part, each as :meth:`frame` would have them, never holding all.
+        """Yield the rows part by part, each as :meth:`frame` has them, never holding all.
 
         Raises:
             UsageError: a part is damaged.
         """
         for part in self._parts:
             yield self._read(part)
+        if not self._parts:
+            yield self._as_frame(schema_of(self.spec).empty_table())
 
     def __repr__(self) -> str:
         done = f"{self.scenes_done} of {self.spec.n_scenes} scenes"
         return f"StudyTable({self.spec.name!r}: {done}, {self.quantity.smallest})"
 
-    def _repr_html_(self) -> str | None:
-        batch = next(self.batches(), None)
-        return None if batch is None else str(batch.head(_SHOWN).to_html(index=False))
+    def _repr_html_(self) -> str:
+        return str(next(self.batches()).head(_SHOWN).to_html(index=False))
 
     def to_xarray(self) -> xr.Dataset:
         """Return all rows as arrays over scene, each swept parameter, and case.

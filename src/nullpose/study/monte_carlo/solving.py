@@ -25,8 +25,8 @@ from nullpose.solver import (
 )
 from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.robust import RobustDetails
+from nullpose.study.case import Case
 from nullpose.study.evaluation import pose_faults
-from nullpose.study.monte_carlo.case import StudyCase
 from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -35,7 +35,7 @@ At = tuple[int, int]  # a scene's number and that of a combination of swept valu
 _PLACE = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
 
 
-def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: StudyCase) -> Row:
+def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: Case) -> Row:
     """Solve a case in a scene; a failure is a row with a reason.
 
     Args:
@@ -68,7 +68,7 @@ def reason_of(error: Exception) -> str:
     return words if isinstance(error, NullposeError) else f"{type(error).__name__}: {words}"
 
 
-def _options_of(spec: StudySpec, case: StudyCase) -> SolveKeywords:
+def _options_of(spec: StudySpec, case: Case) -> SolveKeywords:
     """Collect the options of a solve of a case.
 
     Args:
@@ -116,7 +116,7 @@ def _found(
     }
 
 
-def _solved(case: StudyCase, scene: Scenario, options: SolveKeywords) -> dict[str, Any]:
+def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> dict[str, Any]:
     if case.pose is not None:
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
         faults = "; ".join(f"not allowed: {fault}" for fault in pose_faults(scene, pose))
@@ -141,7 +141,7 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
         spec: the study.
         scenes: by number and combination.
     """
-    alike: dict[str, list[StudyCase]] = defaultdict(list)  # by target and limits
+    alike: dict[str, list[Case]] = defaultdict(list)  # by target and limits
     for case in spec.cases:
         if case.is_best_pose:
             alike[repr(_options_of(spec, case))].append(case)
@@ -160,7 +160,7 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
 
 
 def _rows(
-    spec: StudySpec, cases: Sequence[StudyCase], airframe: Airframe | None, scenes: Mapping[At, Scenario]
+    spec: StudySpec, cases: Sequence[Case], airframe: Airframe | None, scenes: Mapping[At, Scenario]
 ) -> Iterator[Row]:
     """Yield the rows of cases with the same target and limits in scenes with the same vehicle."""
     began, places = time.perf_counter(), list(scenes.items())

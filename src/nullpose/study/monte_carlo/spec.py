@@ -19,7 +19,7 @@ from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.rules import Count, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Title
-from nullpose.study.monte_carlo.case import Gap, NodeLimit, Seconds, StudyCase
+from nullpose.study.case import Case, Gap, NodeLimit, Seconds
 from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Points
 from nullpose.study.monte_carlo.scene import SceneBase
 from nullpose.study.monte_carlo.sweep_axes import SweepAxes
@@ -86,8 +86,8 @@ class StudySpec(Section):
         default=None,
         description="A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene.",
     )
-    cases: Annotated[tuple[StudyCase, ...], list_of_tables("cases", fewest=1)] = Field(
-        default=(StudyCase(name=Scheme.OPTIMUM.value),),
+    cases: Annotated[tuple[Case, ...], list_of_tables("cases", fewest=1)] = Field(
+        default=(Case(name=Scheme.OPTIMUM.value),),
         description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
         "the best pose with the scene's own vehicle.",
     )
