@@ -6,13 +6,13 @@ Example:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
-from nullpose.report.comparison import Comparison
-from nullpose.report.figures.bars import draw_airframe_bars, draw_cases
+from nullpose.report.figures.bars import draw_bars
 from nullpose.report.figures.plan import draw_field, draw_plan
 from nullpose.report.figures.poses import draw_dipole
 from nullpose.report.figures.scene import draw_panel
@@ -20,7 +20,7 @@ from nullpose.report.figures.stage import ALONE, Stage
 from nullpose.report.figures.style import house_style
 from nullpose.report.figures.sweep import draw_sweep_axes
 from nullpose.solver import Result
-from nullpose.study import Field, ResultTable, value_map
+from nullpose.study import Field, ResultRow, ResultTable, value_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -144,7 +144,7 @@ def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False) -> A
     return axes
 
 
-def comparison(found: Comparison | ResultTable | Sequence[Result], ax: Axes | None = None) -> Axes:
+def comparison(found: ResultTable | Sequence[Result], ax: Axes | None = None) -> Axes:
     """Draw a bar for each case or vehicle, and a mark at its bound.
 
     Args:
@@ -160,9 +160,10 @@ def comparison(found: Comparison | ResultTable | Sequence[Result], ax: Axes | No
         >>> len(axes.patches)  # bars
         4
     """
+    if not isinstance(found, ResultTable):
+        found = ResultTable("", tuple(ResultRow.of(math.nan, result) for result in found))
     with _axes(ax, (7.0, 3.6)) as axes:
-        if isinstance(found, ResultTable):
-            draw_airframe_bars(axes, found)
-        else:
-            draw_cases(axes, found.solutions if isinstance(found, Comparison) else found)
+        draw_bars(axes, found)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="lower right", frameon=False, handlelength=1.0)
     return axes

@@ -6,7 +6,7 @@ from pathlib import Path
 from rich.console import Console
 
 from nullpose import load
-from nullpose.report.antennas import answer, antennas_view
+from nullpose.report.comparison import antennas_answer as answer, antennas_view
 from nullpose.study import compare_antennas
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

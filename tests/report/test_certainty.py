@@ -8,12 +8,13 @@ from nullpose import Pose, Status
 from nullpose.report.certainty import Certainty, certainty_lines
 from nullpose.report.numbers import rounded_up
 from nullpose.solver import Objective
-from nullpose.study import ResultRow, ResultTable
+from nullpose.study import Case, ResultRow, ResultTable
 
 POSE = Pose((0.0, 0.0, 8.0), 0.0, 0.0)
 VALUE = Objective(name="min_sinr", value=1.0, value_db=0.0)
 SEARCHED = ResultRow(
     value=1.0,
+    case=Case(name="optimum", scheme="optimum"),
     scenario=None,
     scheme="optimum",
     status=Status.BEST_FOUND,
@@ -39,7 +40,8 @@ def test_lines_name_the_curves_that_are_not_proved() -> None:
     """One line when all is proved; otherwise each curve is named with what is proved of it."""
     (line,) = certainty_lines(ResultTable("x", (PROVED,)))
     assert line.startswith("Each point is certified optimal within 9e-7 (relative)")
-    vertical, gain = replace(OPEN, scheme="vertical"), replace(SEARCHED, scheme="maximum-gain")
+    vertical = replace(OPEN, case=Case(name="vertical", scheme="vertical"))
+    gain = replace(SEARCHED, case=Case(name="maximum-gain", scheme="maximum-gain"))
     lines = certainty_lines(ResultTable("x", (PROVED, vertical, gain)))
     assert lines[0].startswith("Optimum: each point is certified optimal within 9e-7")
     assert "Vertical: all bounds are valid" in lines[1]

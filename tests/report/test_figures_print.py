@@ -5,13 +5,12 @@ from pathlib import Path
 import pytest
 
 from nullpose import Scenario, compare_airframes, load, solve, sweep
-from nullpose.report.comparison import compare_all
-from nullpose.report.figures.bars import draw_airframes, draw_comparison
+from nullpose.report.figures.bars import draw_comparison
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose, draw_result
 from nullpose.report.figures.style import WIDTHS_MM, write_figure_file
 from nullpose.report.figures.sweep import draw_sweep
-from nullpose.study import value_map
+from nullpose.study import compare_schemes, value_map
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WIDTHS = pytest.mark.parametrize("width", list(WIDTHS_MM))
@@ -26,8 +25,8 @@ def test_every_figure_has_the_width(paper: Scenario, width: str) -> None:
         draw_pose(result, width),
         draw_sweep(table, width=width),
         draw_value_map(result, value_map(result, cells=15), width),
-        draw_comparison(compare_all(paper, certify=False), width),
-        draw_airframes(compare_airframes(paper, certify=False), width),
+        draw_comparison(compare_schemes(paper, certify=False), width),
+        draw_comparison(compare_airframes(paper, certify=False), width),
     ]
     for figure in figures:
         wide, high = figure.get_size_inches() * 25.4

@@ -8,10 +8,11 @@ import pytest
 from rich.console import Console, RenderableType
 
 from nullpose import Result, Scenario, solve
-from nullpose.report.comparison import compare_all, comparison_view
+from nullpose.report.comparison import comparison_view
 from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import bound_words
 from nullpose.report.results import result_view
+from nullpose.study import compare_schemes
 
 
 def text_of(view: RenderableType, width: int = 200) -> str:
@@ -56,25 +57,28 @@ def test_the_bound_is_told_with_its_gap(optimum: Result, paper: Scenario) -> Non
 
 
 def test_a_comparison_shows_bounds_and_who_is_certified(paper: Scenario, field: Scenario) -> None:
-    """Bounds have a row of their own; statuses name their cases unless all share one."""
-    text = text_of(comparison_view(compare_all(paper)))
-    (row,) = [line for line in text.splitlines() if "upper bound (dB)" in line]
-    assert row.split()[3:] == ["0.9837041", "0.8123593", "-0.6998429", "-2.1602567"]
-    assert text.count("certified optimal") == 1
-    text = text_of(comparison_view(compare_all(field)))
-    assert "Optimum; Zero interference; Vertical: certified" in text
-    assert "Maximum gain: the upper bound is valid, but the requested gap was not reached" in text
-    assert "the bound is that of the optimum" in text
-    fast = text_of(comparison_view(compare_all(paper, certify=False)))
-    (row,) = [line for line in fast.splitlines() if "upper bound (dB)" in line]
-    assert row.split()[3:] == ["-"] * 4
-    assert "not proved" in fast
+    """Bounds are rounded up; each case has its status, and each status is explained."""
+
+    def shown(scenario: Scenario, place: int, **options: object) -> tuple[list[str], str]:
+        text = text_of(comparison_view(compare_schemes(scenario, **options)))
+        return [line.split()[place] for line in text.splitlines()[4:8]], text
+
+    values, text = shown(paper, -3)
+    assert values == ["0.9838", "0.8124", "-0.6998", "-2.1602"]
+    assert "certified: optimal within the requested gap" in text
+    statuses, text = shown(field, -1)
+    assert statuses == ["certified", "certified", "bounded", "certified"]
+    assert "bounded: the upper bound is valid, but the requested gap was not reached" in text
+    assert "Maximum gain: the bound is that of the optimum" in text
+    bounds, text = shown(paper, -3, certify=False)
+    assert bounds == ["-"] * 4
+    assert "not proved" in text
 
 
 def test_comparison_fits_a_terminal(paper: Scenario) -> None:
     """In eighty columns the four cases keep their numbers whole."""
-    text = text_of(comparison_view(compare_all(paper)), width=80)
-    for words in ("0.9836997", "0.8123549", "-0.6998473", "-2.1602611"):
+    text = text_of(comparison_view(compare_schemes(paper)), width=80)
+    for words in ("0.9837", "0.8124", "-0.6998", "-2.1603", "162.52"):
         assert words in text
     assert max(map(len, text.splitlines())) <= 80
 
@@ -86,6 +90,6 @@ def test_names_that_look_like_markup(field: Scenario) -> None:
     data["name"] = "field [1]"
     scenario = Scenario.from_dict(data)
     assert "[red]gate" in text_of(result_view(solve(scenario)))
-    text = text_of(comparison_view(compare_all(scenario)))
+    text = text_of(comparison_view(compare_schemes(scenario)))
     assert "[red]gate" in text
     assert "field [1]" in text

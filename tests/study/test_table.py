@@ -10,7 +10,8 @@ import pytest
 
 from nullpose import Link, Pose, Status
 from nullpose.solver import Objective
-from nullpose.study import ResultRow, ResultTable
+from nullpose.solver.result import Stats
+from nullpose.study import Case, ResultRow, ResultTable
 
 
 def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> ResultRow:
@@ -20,13 +21,14 @@ def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> ResultR
     objective = Objective(name="min_sinr", value=ratio, value_db=db)
     return ResultRow(
         value=value,
+        case=Case(name=scheme, scheme=scheme),
         scenario=None,
         scheme=scheme,
         status=Status.BEST_FOUND,
         objective=objective,
         pose=pose,
         links=(Link(node, {"sinr": ratio, "sinr_db": db}),),
-        stats=None,
+        stats=Stats(wall_s=0.0, starts=1, evaluations=1),
         provenance={},
         note="a, note",
     )

@@ -15,8 +15,6 @@ from nullpose.study import AIRFRAME_CASES
 from nullpose.study.vehicles import (
     arrays,
     least_sufficient,
-    omnidirectional,
-    row_of,
     share,
     suffices,
     verdict,
@@ -56,7 +54,7 @@ def test_more_tilt_is_never_worse(paper: Scenario) -> None:
     """A vehicle that reaches more axes gives at least as much, and its pose keeps to its limit."""
     found = compare_airframes(paper, cases=AIRFRAME_CASES)
     for less, more in itertools.pairwise(TILTS):
-        assert row_of(found, less).objective.value <= row_of(found, more).objective.upper_bound
+        assert found.of(less)[0].objective.value <= found.of(more)[0].objective.upper_bound
     for result in found.rows:
         assert result.pose.tilt_rad <= result.case.airframe.tilt_max_rad + 1e-9
         assert min_sinr(paper, result.pose) == pytest.approx(result.objective.value, rel=1e-12)
@@ -68,16 +66,16 @@ def test_the_least_vehicle_that_suffices(paper: Scenario) -> None:
     assert least_sufficient(found).name == "tilt-10"
     weak = compare_airframes(apply_overrides(paper, ["jammers.M.power_w=0.01"]), cases=AIRFRAME_CASES)
     assert least_sufficient(weak).name == "level-horizontal"
-    assert suffices(found, omnidirectional(found))
-    assert share(found, omnidirectional(found)) == 1.0
-    assert not suffices(found, row_of(found, "level-vertical"))
-    assert suffices(found, row_of(found, "level-vertical"), tolerance=0.6)
+    assert suffices(found, found.of("omnidirectional")[0])
+    assert share(found, found.of("omnidirectional")[0]) == 1.0
+    assert not suffices(found, found.of("level-vertical")[0])
+    assert suffices(found, found.of("level-vertical")[0], tolerance=0.6)
 
 
 def test_arrays_are_tried_on_a_level_vehicle(paper: Scenario) -> None:
     """More elements give more, and none exceeds its bound."""
     found = compare_airframes(paper)
-    sizes = [row_of(found, f"array-{size}-digital") for size in (2, 4, 8)]
+    sizes = [found.of(f"array-{size}-digital")[0] for size in (2, 4, 8)]
     assert arrays(found) == tuple(sizes)
     assert [one.objective.value for one in sizes] == sorted(one.objective.value for one in sizes)
     assert all(one.objective.value <= one.objective.upper_bound for one in sizes)
@@ -97,7 +95,7 @@ def test_guarantees_hold_what_they_say(robust: ResultTable) -> None:
 def test_a_guarantee_is_below_random_errors(robust: ResultTable) -> None:
     """With axis and jammer moved at random within the stated errors, no value falls below the guarantee."""
     rng = np.random.default_rng(4)
-    result = row_of(robust, "tilt-10")
+    result = robust.of("tilt-10")[0]
     scenario, pose = robust.scenario, result.pose
     place, axis = np.array(scenario.jammer_positions_m[0]), pose.antenna_axis
     worst = np.inf
@@ -127,7 +125,7 @@ def test_rates_are_compared_as_rates() -> None:
     found = compare_airframes(load(ROOT / "examples" / "eavesdropper.toml"))
     assert arrays(found) == ()
     assert {result.objective.name for result in found.rows} == {"min_secrecy_rate"}
-    shares = [share(found, row_of(found, name)) for name in TILTS]
+    shares = [share(found, found.of(name)[0]) for name in TILTS]
     assert all(less <= more + 1e-6 for less, more in itertools.pairwise(shares))
 
 
@@ -138,7 +136,7 @@ def test_plain_data(robust: ResultTable) -> None:
     assert data["least_sufficient"] == least_sufficient(robust).name
     row = data["rows"][2]
     assert row["airframe"] == {"tilt_max_deg": 10.0, "mount_deg": 90.0}
-    assert row["guaranteed"]["robust_pose"] == row_of(robust, "tilt-10").guaranteed.robust_pose
+    assert row["guaranteed"]["robust_pose"] == robust.of("tilt-10")[0].guaranteed.robust_pose
     assert data["share_of_omnidirectional"]["tilt-10"] == pytest.approx(0.9926, abs=1e-4)
 
 
@@ -154,4 +152,4 @@ def test_progress_counts_the_vehicles(paper: Scenario) -> None:
 def test_unknown_vehicle(robust: ResultTable) -> None:
     """Asking for a vehicle that was not tried names those that were."""
     with pytest.raises(KeyError, match="tilt-30"):
-        row_of(robust, "tilt-60")
+        robust.of("tilt-60")[0]

@@ -85,9 +85,9 @@ def compare(
     best pose for the stated antennas. Ideal: a short dipole, and isotropic antennas on the ground.
     """
     scenario = scene.read()
-    from nullpose.report.antennas import answer, antennas_view
+    from nullpose.report.comparison import antennas_answer, antennas_view
     from nullpose.study import compare_antennas
 
     with compiling_announced(), Ticker("comparing antennas") as ticker:
         found = compare_antennas(scenario, on_progress=ticker, **proof.keywords(fast))
-    tell(found, antennas_view, json_output, answer=answer(found))
+    tell(found, antennas_view, json_output, answer=antennas_answer(found))

@@ -31,19 +31,17 @@ def compare(
     """Solve under the paper's four schemes, or with several vehicles."""
     scenario = scene.read()
     prepare_outputs(scene, figure=figure, width=width)
-    from nullpose.report.airframes import airframes_view, answer_lines
-    from nullpose.report.comparison import compare_all, comparison_view
-    from nullpose.study.vehicles import compare_airframes, verdict
+    from nullpose.report.comparison import airframes_view, answer_lines, comparison_view
+    from nullpose.study.vehicles import compare_airframes, compare_schemes, verdict
 
-    solver: Any = compare_airframes if airframes else compare_all
+    solver: Any = compare_airframes if airframes else compare_schemes
     with compiling_announced(), Ticker("comparing vehicles" if airframes else "solving") as ticker:
         found = solver(scenario, on_progress=ticker, **proof.keywords(fast))
     if figure is not None:
-        from nullpose.report.figures.bars import draw_airframes, draw_comparison
+        from nullpose.report.figures.bars import draw_comparison
         from nullpose.report.figures.style import write_figure_file
 
-        drawing = draw_airframes(found, width) if airframes else draw_comparison(found, width)
-        write_figure_file(drawing, figure)
-    view: Any = airframes_view if airframes else comparison_view
+        write_figure_file(draw_comparison(found, width), figure)
+    view = airframes_view if airframes else comparison_view
     answer: dict[str, Any] = {"answer": answer_lines(found), **verdict(found)} if airframes else {}
     tell(found, view, json_output, files=[] if figure is None else [figure], **answer)

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from nullpose.problem.schemes import Scheme
 from nullpose.report.document import grouped
 from nullpose.report.numbers import capitalised, rounded_up
 from nullpose.solver import Rigour, Status
@@ -75,9 +74,9 @@ def labelled_certainty(table: ResultTable) -> list[tuple[str, str]]:
     """Pair the label of each curve of a sweep with how certain it is, curves of one status together."""
     labelled: list[tuple[str, str]] = []
     for status in Status:
-        names = [name for name in table.schemes if Certainty.of(table.of(name)).weakest is status]
-        together = Certainty.of(row for row in table.rows if row.scheme in names)
-        labelled += [(Scheme(name).label, together.sentence) for name in names]
+        names = [name for name in table.names if Certainty.of(table.of(name)).weakest is status]
+        together = Certainty.of(row for row in table.rows if row.name in names)
+        labelled += [(table.of(name)[0].label, together.sentence) for name in names]
     return labelled
 
 

@@ -1,132 +1,202 @@
-"""All the paper's cases for one scenario side by side, those that do not apply with their reason."""
+"""Schemes, vehicles and antennas compared: their values, what is proved of them, and the answer in words."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from nullpose.objectives import Quantity
-from nullpose.problem.schemes import Scheme
+from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import View, beside, document, grouped, head, table
+from nullpose.report.document import Row, View, beside, document, grouped, head, rows, table
 from nullpose.report.geometry import null_angle_rad
 from nullpose.report.links import binding_nodes
-from nullpose.report.numbers import bound_text
+from nullpose.report.numbers import bound_text, capitalised, rounded_up, with_unit
 from nullpose.report.results import pose_cells, work_words
 from nullpose.report.words import requirement_words
-from nullpose.scenario import Eavesdropper, Jammer, Scenario
-from nullpose.solver import Result, compare
+from nullpose.scenario import Eavesdropper, Jammer
+from nullpose.solver import Status
+from nullpose.study import ResultRow, ResultTable
+from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
+from nullpose.study.vehicles import TOLERANCE, arrays, difference, dipoles, least_sufficient, suffices
+
+_STATUS = {
+    Status.CERTIFIED: "certified",
+    Status.GAP_NOT_REACHED: "bounded",
+    Status.BEST_FOUND: "found",
+    Status.GIVEN: "given",
+}
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class Comparison:
-    """What each scheme makes of a scenario.
-
-    Args:
-        scenario: what was solved.
-        solutions: of the schemes that apply, in the paper's order.
-        left_out: the other schemes, each with the reason why it does not apply.
-    """
-
-    scenario: Scenario
-    solutions: tuple[Result, ...]
-    left_out: tuple[tuple[Scheme, str], ...]
-
-    @property
-    def interrupted(self) -> bool:
-        """Whether Ctrl-C ended a proof."""
-        return any(result.interrupted for result in self.solutions)
-
-    def __repr__(self) -> str:
-        absent = [f"left out: {scheme} ({reason})" for scheme, reason in self.left_out]
-        return "; ".join([f"Comparison({self.scenario.name!r}: {len(self.solutions)} cases", *absent]) + ")"
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the comparison as plain data, the scenario once for all cases."""
-        found = [result.to_dict().items() for result in self.solutions]
-        left_out = [
-            {"scheme": scheme.value, "status": "not-applicable", "reason": reason}
-            for scheme, reason in self.left_out
-        ]
-        return {
-            "scenario": self.scenario.to_dict(),
-            "cases": [{key: value for key, value in case if key != "scenario"} for case in found] + left_out,
-            "provenance": dict(self.solutions[0].provenance) if self.solutions else {},
-        }
-
-
-def compare_all(
-    scenario: Scenario, on_progress: Callable[[int, int], None] | None = None, **options: Any
-) -> Comparison:
-    """Solve a scenario in the paper's four cases, with options of :func:`nullpose.solver.compare`."""
-    reasons = [(scheme, scheme.not_applicable(scenario)) for scheme in Scheme]
-    left_out = tuple((scheme, reason) for scheme, reason in reasons if reason is not None)
-    return Comparison(scenario, tuple(compare(scenario, on_progress=on_progress, **options)), left_out)
-
-
-def comparison_view(comparison: Comparison) -> View:
-    """Set the cases of a scenario side by side, a column each, and what is to be said of them below."""
-    scenario, results = comparison.scenario, comparison.solutions
-    quantity = Quantity.of(scenario)
-    best = max((quantity.in_unit(result.objective.value) for result in results), default=math.nan)
-    groups = [
-        {result.label: _value_cells(result, best) for result in results},
-        {result.label: pose_cells(result.pose) | _null_cells(result) for result in results},
-        {result.label: _link_cells(result) for result in results},
-    ]
-    rows: list[Mapping[str, str]] = []
-    for columns in groups:
-        rows += [*beside(columns), {}]
-    bold = [f"smallest {quantity.short} ({quantity.unit})"]
-    return document(head(scenario.name), table("", rows, bold=bold), "\n".join(_lines(comparison)))
-
-
-def _lines(comparison: Comparison) -> list[str]:
-    """Write what there is to say: notes, requirements, cases that do not apply, how sure each is."""
-    results, quantity = comparison.solutions, Quantity.of(comparison.scenario)
-    labelled = [(result.label, result) for result in results]
-    absent = [(scheme.label, f"not applicable: {reason}") for scheme, reason in comparison.left_out]
-    starts = sum(result.stats.starts for result in results)
-    boxes = sum(result.stats.boxes for result in results)
-    status = {label: f"{each.status.message}{each.reason and f': {each.reason}'}" for label, each in labelled}
-    return [
-        *grouped((label, result.note) for label, result in labelled),
-        *grouped((label, requirement_words(result)) for label, result in labelled),
-        *grouped([*absent, *((label, "") for label, _ in labelled)]),
-        *grouped(status.items()),
-        *rigour_lines((label, result.rigour) for label, result in labelled),
+def comparison_view(comparison: ResultTable) -> View:
+    """Set the schemes of a scenario: values, poses and links, and what is to be said of them below."""
+    found = comparison.rows
+    quantity, best = found[0].objective.quantity, max(found, key=lambda row: row.objective.value)
+    details: list[Row] = beside({row.label: pose_cells(row.pose) | _null_cells(row) for row in found})
+    details += [{}, *beside({row.label: _link_cells(row) for row in found})]
+    starts, boxes = (sum(getattr(row.stats, name) for row in found) for name in ("starts", "boxes"))
+    labelled = [(row.label, row) for row in found]
+    lines = [
+        *grouped((label, row.note) for label, row in labelled),
+        *grouped((label, requirement_words(row)) for label, row in labelled),
+        *_absent(comparison),
+        *_proof_lines(comparison),
         f"{work_words(starts, boxes)} (all cases together)",
-        f"* worst node: the {quantity.smallest} is here",
+        f"* worst node: the {quantity.smallest} is here. Difference: from the best case.",
         "Each upper bound holds for the poses that its scheme allows.",
         "All cases use one dipole on this file's vehicle. Other vehicles and arrays: compare --airframes",
     ]
+    return document(
+        head(found[0].scenario.name),
+        "",
+        _values(found, best, "case", [row.label for row in found]),
+        table("", details),
+        "\n".join(lines),
+    )
 
 
-def _value_cells(result: Result, best: float) -> dict[str, str]:
-    objective, quantity = result.objective, result.objective.quantity
-    value, smallest = quantity.in_unit(objective.value), f"smallest {quantity.short}"
-    return {
-        f"{smallest} ({quantity.unit})": f"{value:.7f}",
-        f"upper bound ({quantity.unit})": bound_text(objective, 7),
-        **({} if quantity.is_rate else {smallest: f"{objective.value:.7g}"}),
-        f"below the best ({quantity.unit})": f"{best - value:z.4f}",
+def airframes_view(comparison: ResultTable) -> View:
+    """Set a row for each vehicle, what it guarantees under errors, what is proved, and the answer."""
+    found, count = comparison.rows, len(dipoles(comparison))
+    scenario, unit = found[0].scenario, found[0].objective.quantity.unit
+    whole = comparison.of(OMNIDIRECTIONAL)[0]
+    labels = [row.label for row in found]
+    bold = [row.label for row in found if row.name == FILE_VEHICLE]
+    nominal, robust, most = numbers_of(comparison)[2:, :count]
+    guaranteed = rows(
+        {
+            "vehicle, dipole": labels[:count],
+            "pose above": _texts(nominal, 3),
+            "robust pose": _texts(robust, 3),
+            "bound": _texts(most, 3),
+            "difference": _texts(robust - robust[found.index(whole)], 3),
+        }
+    )
+    gaps = [row.objective.relative_gap for row in found if row.objective.relative_gap is not None]
+    lines = [
+        "Omnidirectional: the vehicle can take any attitude. Difference: from that vehicle.",
+        *_absent(comparison),
+        *_proof_lines(comparison, lambda row: "arrays" if row.case.array else "one dipole"),
+        *([f"The widest relative gap between value and bound is {rounded_up(max(gaps))}."] if gaps else []),
+        *(
+            [
+                "Guaranteed: proved for every error within the stated limits. "
+                "No guarantee is computed for arrays."
+            ]
+            if scenario.is_uncertain
+            else []
+        ),
+    ]
+    return document(
+        head(scenario.name),
+        "",
+        _values(found, whole, "vehicle, dipole", labels, bold=bold, rule=count),
+        table(f"Guaranteed under the file's errors ({unit})", guaranteed, bold=bold)
+        if scenario.is_uncertain
+        else None,
+        "\n".join(lines),
+        "",
+        head("\n".join(answer_lines(comparison))),
+    )
+
+
+def antennas_view(comparison: ResultTable) -> View:
+    """Set the values with the paper's and the stated antennas, both poses side by side, and the answer."""
+    row = {row.name: row for row in comparison.rows}
+    names = {
+        "promised": "1 the paper's",
+        "received": "2 stated, pose 1",
+        "with_null": "  isotropic ground",
+        "with_ground": "  perfect null",
+        "possible": "3 stated",
     }
+    scenario = row["possible"].scenario
+    if scenario.antenna is None or scenario.antenna_record.leak == 0.0:
+        del names["with_null"], names["with_ground"]
+    best = {"paper's antennas": row["promised"], "antennas as stated": row["possible"]}
+    return document(
+        head(scenario.name),
+        "",
+        _values([row[name] for name in names], row["promised"], "antennas", list(names.values())),
+        table("Best poses", beside({label: pose_cells(each.pose) for label, each in best.items()})),
+        "Difference: from row 1.",
+        "Isotropic ground antennas lose nothing to polarisation.",
+        *_proof_lines(comparison),
+        "",
+        head(antennas_answer(comparison)),
+    )
 
 
-def _null_cells(result: Result) -> dict[str, str]:
+def _values(
+    found: Sequence[ResultRow],
+    whole: ResultRow,
+    heading: str,
+    labels: Sequence[str],
+    *,
+    bold: Sequence[str] = (),
+    rule: int = 0,
+) -> View | None:
+    """Set the value and the bound of each row, its difference from one of them, and its status.
+
+    Args:
+        found: the rows.
+        whole: the row that the others are compared with.
+        heading: of the labels.
+        labels: of the rows.
+        bold: those that stand out.
+        rule: place of a line between rows; 0 for none.
+    """
+    quantity, objectives = whole.objective.quantity, [row.objective for row in found]
+    values = np.array([quantity.in_unit(each.value) for each in objectives])
+    cells = rows(
+        {
+            heading: labels,
+            "power ratio": [None if quantity.is_rate else f"{each.value:.5g}" for each in objectives],
+            "value": _texts(values, 4),
+            "bound": [bound_text(each, 4) for each in objectives],
+            "difference": _texts(values - quantity.in_unit(whole.objective.value), 3),
+            "status": [_STATUS[row.status] for row in found],
+        }
+    )
+    if rule:
+        cells.insert(rule, {})
+    title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
+    return table(title, cells, bold=bold, left=["status"])
+
+
+def _texts(numbers: FloatArray, digits: int) -> list[str | None]:
+    texts = [f"{x:z.{digits}f}" if math.isfinite(x) else "nothing" for x in numbers.tolist()]
+    return [None if math.isnan(number) else text for number, text in zip(numbers, texts, strict=True)]
+
+
+def numbers_of(comparison: ResultTable) -> FloatArray:
+    """Convert each row's numbers to the quantity's unit, shape ``(5, n)``; NaN for none.
+
+    Its value and the bound on it; what the pose shown and the robust pose guarantee, and the bound on that.
+    """
+    columns = []
+    for row in comparison.rows:
+        kept, in_unit = row.guaranteed, row.objective.quantity.in_unit
+        numbers = [row.objective.value, row.objective.upper_bound]
+        numbers += [None] * 3 if kept is None else [kept.nominal_pose, kept.robust_pose, kept.upper_bound]
+        columns.append([math.nan if number is None else in_unit(number) for number in numbers])
+    return np.transpose(columns)
+
+
+def _null_cells(row: ResultRow) -> dict[str, str]:
     """Write how far the null is off what it is for."""
-    points: list[Jammer | Eavesdropper] = [*result.scenario.eavesdroppers]
-    if not result.objective.quantity.is_rate:
-        points += result.scenario.jammers
-    angles_rad = [(point.name, null_angle_rad(result.pose, point.position_m)) for point in points]
+    points: list[Jammer | Eavesdropper] = [*row.scenario.eavesdroppers]
+    if not row.objective.quantity.is_rate:
+        points += row.scenario.jammers
+    angles_rad = [(point.name, null_angle_rad(row.pose, point.position_m)) for point in points]
     return {f"axis to {name} (deg)": f"{math.degrees(angle_rad):.2f}" for name, angle_rad in angles_rad}
 
 
-def _link_cells(result: Result) -> dict[str, str]:
+def _link_cells(row: ResultRow) -> dict[str, str]:
     """Write each node's ratio, and its SINR, margin or rate with a mark where the node binds."""
-    quantity, links, binding = result.objective.quantity, result.links, binding_nodes(result)
+    quantity, links, binding = row.objective.quantity, row.links, binding_nodes(row)
     ratios = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
     return ratios | {
         f"{quantity.short} {link.node} ({quantity.unit})": (
@@ -134,3 +204,86 @@ def _link_cells(result: Result) -> dict[str, str]:
         )
         for link in links
     }
+
+
+def _absent(comparison: ResultTable) -> list[str]:
+    """Write why cases have no row."""
+    present = [(row.label, "") for row in comparison.rows]
+    return grouped([*((name, f"left out: {why}") for name, why in comparison.left_out.items()), *present])
+
+
+def _proof_lines(
+    comparison: ResultTable, kind_of: Callable[[ResultRow], str] = lambda row: row.label
+) -> list[str]:
+    """Write what is proved of a table's values, of poses that were given apart."""
+    solved = [row for row in comparison.rows if row.status is not Status.GIVEN]
+    statuses = dict.fromkeys(row.status for row in solved)
+    return [
+        "Bounds are rounded up.",
+        *(f"{_STATUS[status]}: {status.message.removeprefix('certified ')}" for status in statuses),
+        *grouped((row.label, row.reason) for row in solved),
+        *rigour_lines((kind_of(row), row.objective.rigour) for row in solved),
+    ]
+
+
+def answer_lines(comparison: ResultTable) -> list[str]:
+    """Answer whether the vehicle has to be omnidirectional, by the vehicles that were compared alone.
+
+    The least of them that suffices or the one that comes nearest, with one dipole and with an array.
+    """
+    least, whole = least_sufficient(comparison), comparison.of(OMNIDIRECTIONAL)[0]
+    if least is None:
+        return ["Of the vehicles compared, none with one dipole gives every node a signal in this scene."]
+    lesser = [row for row in dipoles(comparison) if row is not whole]
+    lines = [_least_line(comparison, kind) for kind in (lesser, arrays(comparison)) if kind]
+    if least is whole:
+        only = "Of the vehicles compared with one dipole, only the omnidirectional one was found to suffice."
+        lines.insert(0, f"{only} Another tilt or mount may: state it in [airframe] to compare it.")
+    for row in comparison.rows:
+        if row.name == FILE_VEHICLE and row is not least:
+            verdict = "suffices too" if suffices(comparison, row) else "does not suffice"
+            lines.append(f"{capitalised(row.case.phrase)} {verdict}: it {_reach(comparison, row)}.")
+    return lines
+
+
+def _least_line(comparison: ResultTable, found: Sequence[ResultRow]) -> str:
+    """Name the least of a kind's vehicles, in the order of what they take, that suffices or is nearest."""
+    best, verdict = max(found, key=lambda row: row.objective.value), "comes nearest"
+    least = next((row for row in found if suffices(comparison, row)), None)
+    if least is not None:
+        is_rate = best.objective.quantity.is_rate
+        within = f"{100.0 * TOLERANCE:g} %" if is_rate else f"{-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB"
+        best, verdict = least, f"is the simplest within {within} of that"
+    kind = "an array" if best.case.array else "one dipole"
+    reach = f"{capitalised(best.case.phrase)} {_reach(comparison, best)} in this scene."
+    return f"{reach} Of the vehicles compared with {kind}, it {verdict}."
+
+
+def _reach(comparison: ResultTable, row: ResultRow) -> str:
+    words = _less_or_more(difference(comparison, row), row.objective.quantity)
+    return f"reaches {words} than the omnidirectional vehicle"
+
+
+def antennas_answer(comparison: ResultTable) -> str:
+    """Say in two sentences what the stated antennas cost and what the best pose for them recovers."""
+    objectives = [comparison.of(name)[0].objective for name in ("promised", "received", "possible")]
+    quantity = objectives[0].quantity
+    promised, received, possible = (quantity.in_unit(objective.value) for objective in objectives)
+    pose, other = "The best pose for the paper's antennas", "The best pose for the stated antennas"
+    if not math.isfinite(received):
+        return (
+            f"{pose} leaves a node without signal if the antennas are the stated ones. "
+            f"{other} reaches {with_unit(possible, quantity)}."
+        )
+    return (
+        f"{pose} gives {_less_or_more(received - promised, quantity)} if the antennas are the stated ones. "
+        f"{other} gives {with_unit(abs(possible - received), quantity)} more than that."
+    )
+
+
+def _less_or_more(difference: float, quantity: Quantity) -> str:
+    """Write a difference in words, as in ``0.03 dB less`` or ``under 0.01 dB more``."""
+    size = with_unit(abs(difference), quantity)
+    if not quantity.is_rate and abs(difference) < 0.01:
+        size = f"under 0.01 {quantity.unit}"
+    return f"{size} {'less' if difference <= 0.0 else 'more'}"

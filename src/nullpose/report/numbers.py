@@ -58,14 +58,6 @@ def with_unit(value: float, quantity: Quantity) -> str:
     return f"{number(value, quantity)} {quantity.unit}"
 
 
-def less_or_more(difference: float, quantity: Quantity) -> str:
-    """Write a difference in words, as in ``0.03 dB less`` or ``under 0.01 dB more``."""
-    size = with_unit(abs(difference), quantity)
-    if not quantity.is_rate and abs(difference) < 0.01:
-        size = f"under 0.01 {quantity.unit}"
-    return f"{size} {'less' if difference <= 0.0 else 'more'}"
-
-
 def value_words(objective: Objective) -> str:
     """Write the objective's value, as in ``0.98 dB (1.25)``."""
     quantity, value = objective.quantity, objective.value

@@ -37,7 +37,7 @@ def sweep_view(sweep: ResultTable) -> View:
     """Set a sweep as a table of the objective, a column for each scheme, and how certain it is."""
     quantity = quantity_of(sweep)
     step = -(-len(sweep.values) // _SHOWN)
-    labelled = [(Scheme(row.scheme).label, row) for row in sweep.rows]
+    labelled = [(row.label, row) for row in sweep.rows]
     absent = [(Scheme(name).label, f"not applicable: {reason}") for name, reason in sweep.left_out.items()]
     lines = [
         *grouped([*absent, *((label, "") for label, _ in labelled)]),

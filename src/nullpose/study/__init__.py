@@ -7,7 +7,14 @@ from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.sweep import SweepPlan, plan_sweep, spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import Field, value_map
-from nullpose.study.vehicles import compare_airframes, difference, least_sufficient, share, suffices
+from nullpose.study.vehicles import (
+    compare_airframes,
+    compare_schemes,
+    difference,
+    least_sufficient,
+    share,
+    suffices,
+)
 
 __all__ = [
     "AIRFRAME_CASES",
@@ -22,6 +29,7 @@ __all__ = [
     "cases_of",
     "compare_airframes",
     "compare_antennas",
+    "compare_schemes",
     "difference",
     "evaluate_against",
     "least_sufficient",

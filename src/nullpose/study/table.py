@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from nullpose.files import write_csv
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import RECORDS, USUAL, Quantity
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.solver import Result
 from nullpose.study.case import Case
@@ -41,26 +42,34 @@ class ResultRow(Result):
 
     Args:
         value: the swept setting, in the unit of its name; NaN if nothing is swept.
-        case: how it was solved; None if the scheme alone says it.
+        case: how it was solved.
         guaranteed: what is left under errors; None if the scenario has none.
     """
 
     value: float = math.nan
-    case: Case | None = None
+    case: Case
     guaranteed: Guaranteed | None = None
 
     @classmethod
     def of(
         cls, value: float, result: Result, case: Case | None = None, kept: Guaranteed | None = None
     ) -> ResultRow:
-        """Make a row of a result."""
+        """Make a row of a result; without a case the scheme says it."""
+        if case is None:
+            scheme = Scheme(result.scheme) if result.scheme in tuple(Scheme) else None
+            case = Case(name=str(scheme or result.label), scheme=scheme)
         columns = {column.name: getattr(result, column.name) for column in fields(result)}
         return cls(value=value, case=case, guaranteed=kept, **columns)
 
     @property
     def name(self) -> str:
         """The case's name."""
-        return str(self.scheme) if self.case is None else self.case.name
+        return self.case.name
+
+    @property
+    def label(self) -> str:
+        """The name of the case for tables."""
+        return self.case.label
 
     @property
     def min_sinr(self) -> float:
@@ -82,10 +91,12 @@ class ResultRow(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain data, angles in radians."""
-        objective, case, guaranteed = self.objective, self.case, self.guaranteed
-        vehicle = {} if case is None or case.airframe is None else {"airframe": case.airframe.to_dict()}
-        if case is not None and case.array is not None:
-            vehicle["array"] = case.array.to_dict()
+        objective, guaranteed = self.objective, self.guaranteed
+        vehicle = {
+            key: stated.to_dict()
+            for key, stated in (("airframe", self.case.airframe), ("array", self.case.array))
+            if stated is not None
+        }
         return {
             "case": self.name,
             **({} if math.isnan(self.value) else {"value": self.value}),
@@ -103,6 +114,8 @@ class ResultRow(Result):
             "relative_gap": objective.relative_gap,
             "pose": self.pose.to_dict(),
             "links": [link.to_dict() for link in self.links],
+            "binding_node": self.binding_node,
+            "stats": {key: value for key, value in asdict(self.stats).items() if value is not None},
             "note": self.note,
             **({} if guaranteed is None else {"guaranteed": asdict(guaranteed)}),
         }
@@ -222,7 +235,7 @@ class ResultTable:
         }
         return [
             {
-                **({self.path: row.value} if self.path else {"case": row.case and row.case.label}),
+                **({self.path: row.value} if self.path else {"case": row.label}),
                 "scheme": str(row.scheme),
                 "status": row.status.value,
                 "rigour": row.objective.rigour.value,

@@ -1,4 +1,4 @@
-"""Vehicles compared: the question whether it has to be an omnidirectional one."""
+"""Schemes or vehicles compared, and the question whether it has to be an omnidirectional vehicle."""
 
 from __future__ import annotations
 
@@ -9,15 +9,43 @@ from typing import Any, Unpack
 
 from nullpose.errors import SolveError
 from nullpose.objectives import Quantity
-from nullpose.scenario import Scenario
+from nullpose.problem.schemes import Scheme
+from nullpose.scenario import Scenario, require_scenario
 from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
 from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
-from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL, Case, cases_of
+from nullpose.study.case import OMNIDIRECTIONAL, Case, cases_of
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 
 TOLERANCE = 0.01  # a vehicle suffices if it reaches no less than the omnidirectional one but for this share
 _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
+
+
+def compare_schemes(
+    scenario: Scenario,
+    *,
+    on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
+) -> ResultTable:
+    """Solve a scenario under the paper's schemes with one dipole; those without meaning there are left out.
+
+    After an interrupt during a proof the remaining schemes are solved without one.
+
+    Args:
+        scenario: what to solve; an array is left out.
+        on_progress: called after each scheme with how many are done and how many there are.
+        options: as for :func:`nullpose.solver.solve`.
+
+    Raises:
+        UsageError: a bad seed or limit.
+        SolveError: no pose reaches every node.
+    """
+    require_scenario(scenario)
+    scenario = scenario.without_array
+    reasons = {scheme: scheme.not_applicable(scenario) for scheme in Scheme}
+    cases = [Case(name=scheme.value, scheme=scheme) for scheme in Scheme if not reasons[scheme]]
+    left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
+    return _solved(scenario, cases, options, on_progress, left_out)
 
 
 def compare_airframes(
@@ -51,70 +79,59 @@ def compare_airframes(
         >>> nullpose.study.least_sufficient(found).name
         'tilt-10'
     """
-    solve_options = SolveOptions(**options).of(scenario)
-    options["gap"] = solve_options.target
-    rows: list[ResultRow] = []
-    left_out: dict[str, str] = {}
     vehicles = cases_of(scenario) if cases is None else cases
-    for done, case in enumerate(vehicles, start=1):
-        is_interrupted = any(row.interrupted for row in rows)
+    return _solved(scenario, vehicles, options, on_progress, {})
+
+
+def _solved(
+    scenario: Scenario,
+    cases: Sequence[Case],
+    options: SolveKeywords,
+    on_progress: Callable[[int, int], None] | None,
+    left_out: dict[str, str],
+) -> ResultTable:
+    """Solve a scenario in each case; leave out vehicles without a pose, but for the omnidirectional one."""
+    chosen = SolveOptions(**options).of(scenario)
+    options["gap"] = chosen.target
+    rows: list[ResultRow] = []
+    for done, case in enumerate(cases, start=1):
         try:
-            result = solve(
-                case.on(scenario), **options | {"certify": solve_options.certify and not is_interrupted}
-            )
+            result = solve(case.on(scenario), case.scheme or Scheme.OPTIMUM, **options)
         except SolveError as error:
-            if case.name == OMNIDIRECTIONAL:
+            if case.airframe is None or case.name == OMNIDIRECTIONAL:
                 raise
             left_out[case.name] = str(error)
         else:
-            is_interrupted = is_interrupted or result.interrupted
-            has_errors = case.array is None and scenario.is_uncertain
-            kept = _guaranteed(result, None if is_interrupted else options) if has_errors else None
+            options["certify"] = options.get("certify", True) and not result.interrupted
+            has_guarantee = case.airframe is not None and scenario.is_uncertain
+            is_interrupted = any(row.interrupted for row in (*rows, result))
+            kept = _guaranteed(result, None if is_interrupted else options) if has_guarantee else None
             rows.append(ResultRow.of(math.nan, result, case, kept))
         if on_progress is not None:
-            on_progress(done, len(vehicles))
-    settings = MappingProxyType(provenance(solve_options.seed) | solve_options.settings)
+            on_progress(done, len(cases))
+    settings = MappingProxyType(provenance(chosen.seed) | chosen.settings)
     return ResultTable("", tuple(rows), MappingProxyType(left_out), scenario, settings)
-
-
-def row_of(table: ResultTable, name: str) -> ResultRow:
-    """Look up the row of a vehicle.
-
-    Raises:
-        KeyError: the table has no such vehicle.
-    """
-    return table.of(name)[0]
-
-
-def omnidirectional(table: ResultTable) -> ResultRow:
-    """Look up the row of the omnidirectional vehicle."""
-    return row_of(table, OMNIDIRECTIONAL)
 
 
 def dipoles(table: ResultTable) -> tuple[ResultRow, ...]:
     """Select the vehicles with one dipole, by the tilt that they take."""
-    return tuple(row for row in table.rows if row.case is not None and row.case.array is None)
+    return tuple(row for row in table.rows if row.case.array is None)
 
 
 def arrays(table: ResultTable) -> tuple[ResultRow, ...]:
     """Select the level vehicles with an array."""
-    return tuple(row for row in table.rows if row.case is not None and row.case.array is not None)
-
-
-def own_vehicle(table: ResultTable) -> ResultRow | None:
-    """Look up the scenario's own vehicle; None if it is one of the usual ones."""
-    return next((row for row in table.rows if row.name == FILE_VEHICLE), None)
+    return tuple(row for row in table.rows if row.case.array is not None)
 
 
 def share(table: ResultTable, row: ResultRow) -> float | None:
     """Divide a vehicle's power ratio or rate by the omnidirectional one's; None if that is 0."""
-    whole = omnidirectional(table).objective.value
+    whole = table.of(OMNIDIRECTIONAL)[0].objective.value
     return row.objective.value / whole if whole > 0.0 else None
 
 
 def difference(table: ResultTable, row: ResultRow) -> float:
     """Subtract the omnidirectional vehicle's value from a vehicle's, in dB or bits/s/Hz."""
-    quantity, whole = row.objective.quantity, omnidirectional(table)
+    quantity, whole = row.objective.quantity, table.of(OMNIDIRECTIONAL)[0]
     return quantity.in_unit(row.objective.value) - quantity.in_unit(whole.objective.value)
 
 
@@ -123,7 +140,7 @@ def suffices(table: ResultTable, row: ResultRow, tolerance: float = TOLERANCE) -
 
     Measured against the upper bound of the omnidirectional one where there is one, so that a yes is proved.
     """
-    best = omnidirectional(table)
+    best = table.of(OMNIDIRECTIONAL)[0]
     whole = best.objective.value if best.objective.upper_bound is None else best.objective.upper_bound
     return best.objective.value > 0.0 and (row is best or row.objective.value >= (1.0 - tolerance) * whole)
 
