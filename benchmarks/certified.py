@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import asdict
 from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
@@ -86,14 +87,9 @@ def _prover_row(prover: Prover, ratio: float, start: Pose, cap_s: float, repeats
 
 
 def _row(method: str, ratio: float, claim: Claim, value: float) -> dict[str, Any]:
+    found = {"jamming_ratio": ratio, "method": method, "value": value, "seconds": claim.seconds}
     claimed = {"status": claim.status, "claimed_value": claim.value, "bound": claim.bound}
-    return {
-        "jamming_ratio": ratio,
-        "method": method,
-        "value": value,
-        "seconds": claim.seconds,
-        "boxes": claim.nodes,
-    } | claimed
+    return found | claimed | {"boxes": claim.nodes}
 
 
 def _problem(scene: Scenario, start: Pose, cap_s: float) -> Problem:
@@ -122,7 +118,7 @@ def _claim_of(prover: Prover, problem: Problem, repeats: int) -> Claim:
             done = subprocess.run(
                 command,
                 cwd=ROOT,
-                input=json.dumps(problem.to_dict()),
+                input=json.dumps(asdict(problem)),
                 capture_output=True,
                 text=True,
                 timeout=problem.cap_s * repeats + _GRACE_S,

@@ -10,9 +10,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["CERTIFIED", "on_screen", "opened", "pixels"]
-
-CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 _PROVED = "/(certified|proved) to/.test(document.querySelector('[data-np=status-0]')?.innerText)"
 _FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 _VIEWPORT = {"width": 1280, "height": 800}
@@ -44,19 +41,6 @@ def opened(address: str, *, scale: float = 0.5, **more: Any) -> Iterator[Any]:
         browser.close()
 
 
-def on_screen(page: Any, camera: Any, point_m: Any) -> tuple[float, float]:
-    """Return where a point of the scene is on the page, pixels.
-
-    Args:
-        page: the browser's page.
-        camera: the same page's camera as the server knows it.
-        point_m: (3,) metres.
-    """
-    box = page.locator("canvas").first.bounding_box()
-    x, y, _ = pixels(camera, [point_m])[0]
-    return box["x"] + float(x), box["y"] + float(y)
-
-
 def pixels(camera: Any, points_m: Any) -> Any:
     """Return where points are on a canvas, (n, 3): pixels to the right and down, and metres ahead.
 
@@ -64,14 +48,12 @@ def pixels(camera: Any, points_m: Any) -> Any:
         camera: viser's.
         points_m: (n, 3) metres.
     """
-    ahead = np.subtract(camera.look_at, camera.position) / np.linalg.norm(
-        np.subtract(camera.look_at, camera.position)
-    )
+    ahead = np.subtract(camera.look_at, camera.position)
+    ahead = ahead / np.linalg.norm(ahead)
     right = np.cross(ahead, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
     axes = np.stack([right, np.cross(right, ahead), ahead])
     aside, up, depth = axes @ np.subtract(points_m, camera.position).T
     scale = 0.5 * camera.image_height / math.tan(0.5 * camera.fov) / depth
-    return np.stack(
-        [0.5 * camera.image_width + scale * aside, 0.5 * camera.image_height - scale * up, depth], -1
-    )
+    across, down = 0.5 * camera.image_width + scale * aside, 0.5 * camera.image_height - scale * up
+    return np.stack([across, down, depth], -1)

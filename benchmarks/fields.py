@@ -43,15 +43,8 @@ def _rows(scene: Scene, budget: Budget) -> Iterator[dict[str, Any]]:
     scenario = scene.scenario()
 
     def row(method: str, stage: str, seconds: float, pose: Pose) -> dict[str, Any]:
-        value = min_sinr(scenario, pose)
-        return {
-            "scene": str(scene),
-            "nodes": scene.nodes,
-            "method": method,
-            "stage": stage,
-            "seconds": seconds,
-            "value": value,
-        }
+        found = {"seconds": seconds, "value": min_sinr(scenario, pose)}
+        return {"scene": str(scene), "nodes": scene.nodes, "method": method, "stage": stage} | found
 
     for method, certify in (("nullpose, search alone", False), ("nullpose, certified", True)):
         start = time.perf_counter()
@@ -59,12 +52,8 @@ def _rows(scene: Scene, budget: Budget) -> Iterator[dict[str, Any]]:
         yield row(method, "solve", time.perf_counter() - start, result.pose)
     start = time.perf_counter()
     reference = multistart(build_family(scenario), AxisField.free(), seed=1, settings=_REFERENCE)
-    yield row(
-        "reference",
-        "search",
-        time.perf_counter() - start,
-        Pose.from_axis(reference.position_m, reference.axis),
-    )
+    seconds = time.perf_counter() - start
+    yield row("reference", "search", seconds, Pose.from_axis(reference.position_m, reference.axis))
     for method, answers in PEERS.items():
         problem, seconds, start = FivePose.of(scenario), 0.0, time.perf_counter()
         for stage, x in answers(problem, budget, 0):
@@ -89,13 +78,8 @@ def tables(rows: list[dict[str, Any]]) -> dict[str, pd.DataFrame]:
     ).reset_index()
     table["times_nullpose"] = table["median_ms"] / table["median_ms"].iloc[0]
     last = frame.groupby(["method", "scene"], sort=False).last().reset_index()
-    sizes = (
-        last.groupby(["method", "nodes"], sort=False)["seconds"]
-        .median()
-        .mul(1e3)
-        .unstack()
-        .add_prefix("N = ")
-    )
+    times = last.groupby(["method", "nodes"], sort=False)["seconds"].median()
+    sizes = times.mul(1e3).unstack().add_prefix("N = ")
     return {"Hits and times": table, "Median time, ms": sizes.drop(index="reference").reset_index()}
 
 

@@ -26,12 +26,8 @@ def store(
 ) -> None:
     """Put the tables of a workload in place of those that ``results.json`` has."""
     results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
-    results[name] = {
-        "title": title,
-        "about": about,
-        "machine": machine,
-        "tables": {heading: frame.to_dict("split", index=False) for heading, frame in tables.items()},
-    }
+    kept = {heading: frame.to_dict("split", index=False) for heading, frame in tables.items()}
+    results[name] = {"title": title, "about": about, "machine": machine, "tables": kept}
     RESULTS.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
 
 

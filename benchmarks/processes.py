@@ -26,10 +26,8 @@ _LIMITS_S = {"help": 0.4, "solve, kernels cached": 2.0, "solve, empty cache": 2.
 def measure(quick: bool, progress: Progress) -> list[dict[str, Any]]:
     """Time each command: the first solve once, the others five times."""
     with tempfile.TemporaryDirectory(prefix="nullpose-bench-") as folder:
-        runs = [
-            ("solve, empty cache", _SOLVE),
-            *[("help", ["--help"]), ("solve, kernels cached", _SOLVE)] * 5,
-        ]
+        runs = [("solve, empty cache", _SOLVE)]
+        runs += [("help", ["--help"]), ("solve, kernels cached", _SOLVE)] * 5
         rows = []
         for name, arguments in progress(runs[:3] if quick else runs):
             rows.append(_timed(name, arguments, folder))

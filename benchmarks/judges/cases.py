@@ -33,16 +33,11 @@ def kinds(rng: np.random.Generator) -> dict[str, tuple[dict[str, Any] | None, An
     """Return the drone's antenna, and what makes a node's and a jammer's, by what is compared."""
     rows = table_harmonics(read_pattern(_TABLE)).rows()
 
-    def isotropic() -> dict[str, Any]:
-        return {}
-
-    def circular() -> dict[str, Any]:
-        return {"antenna": "circular"}
-
     def whip() -> dict[str, Any]:
         tilted = {"antenna_axis": rng.normal(size=3).tolist()} if rng.integers(2) else {}
         return {"antenna": "dipole"} | tilted
 
+    isotropic, circular = dict[str, Any], lambda: {"antenna": "circular"}
     return {
         "SINR, isotropic ground": (None, isotropic, isotropic),
         "SINR, circular ground": (None, circular, circular),

@@ -26,17 +26,7 @@ more. One in dB is the largest where the gain is less than 30 dB below its peak.
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """One comparison.
-
-    Args:
-        judge: the engine and its version.
-        what: what was compared.
-        cases: how many values.
-        deviation: the largest; None where the judge could not be asked.
-        allowed: the largest that counts as agreement.
-        unit: of both, as in "dB"; empty for a ratio.
-        reason: why the judge was not asked.
-    """
+    """One comparison: the largest deviation of some values; None where no judge could be asked."""
 
     judge: str
     what: str

@@ -64,15 +64,11 @@ _WHIPS = [
     {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0, "antenna": "circular"},
 ]
 _TILTED = [
-    {
-        "name": "M",
-        "position_m": [17.0, 15.0, 4.0],
-        "power_w": 1.0,
-        "antenna": "dipole",
-        "antenna_axis": [0.3, -0.4, 0.5],
-    }
+    {"name": "M", "position_m": [17.0, 15.0, 4.0], "power_w": 1.0, "antenna": "dipole"}
+    | {"antenna_axis": [0.3, -0.4, 0.5]}
 ]
 
+_LEANING, _LEVEL = {"tilt_max_deg": 20.0, "mount_deg": 30.0}, {"preset": "level", "mount_deg": 0.0}
 _UNEVEN = {"kind": "pattern", "harmonics": [[1.0], [0.3, 0.0, 0.0], [-0.3, 0.0, 0.0, 0.0, 0.0]]}
 
 KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
@@ -82,7 +78,7 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
         ("optimum", 0.02, _scene() | _within(keep_out_m=26.5)),
     ],
     "airframe": [
-        ("optimum", 0.2, _scene(10.0, airframe={"tilt_max_deg": 20.0, "mount_deg": 30.0})),
+        ("optimum", 0.2, _scene(10.0, airframe=_LEANING)),
         ("optimum", 0.2, _scene(0.1, airframe={"preset": "level", "mount_deg": 90.0})),
     ],
     "secrecy rate": [
@@ -101,17 +97,8 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
     "margins": [("optimum", 0.2, _scene(nodes=_WEIGHTED) | _within(**_SQUARE))],
     "profiles": [
         ("optimum", 0.3, _scene(antenna={"kind": "half-wave"}) | _within(**_SQUARE)),
-        (
-            "optimum",
-            0.5,
-            _scene(0.1, antenna=_UNEVEN, airframe={"tilt_max_deg": 20.0, "mount_deg": 30.0})
-            | _within(**_SQUARE),
-        ),
-        (
-            "optimum",
-            0.5,
-            _scene(0.1, antenna=_UNEVEN, airframe={"preset": "level", "mount_deg": 0.0}) | _within(**_SQUARE),
-        ),
+        ("optimum", 0.5, _scene(0.1, antenna=_UNEVEN, airframe=_LEANING) | _within(**_SQUARE)),
+        ("optimum", 0.5, _scene(0.1, antenna=_UNEVEN, airframe=_LEVEL) | _within(**_SQUARE)),
         ("optimum", 0.3, _scene(antenna={"kind": "half-wave"}) | _HEARD | _within(**_SQUARE)),
     ],
     "dipoles": [

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import copy
-import json
+from functools import reduce
+from operator import getitem
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,6 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
 
 
-def _copy(sound: Data) -> Data:
-    data: Data = json.loads(json.dumps(sound))
-    return data
-
-
 def numbers(value: Any, path: tuple = ()) -> list[tuple]:
     """Return the paths of all numbers and texts inside."""
     if isinstance(value, dict | list):
@@ -27,29 +23,16 @@ def numbers(value: Any, path: tuple = ()) -> list[tuple]:
     return [path]
 
 
-def look(data: Any, path: tuple) -> Any:
-    """Return what a path points at."""
-    for key in path:
-        data = data[key]
-    return data
-
-
 def changed(value: Any, rng: np.random.Generator) -> Any:
     """Return another value of the same kind: a little or a lot different."""
     if value is None:
         return "M"
     if isinstance(value, str):
-        others = [
-            "optimum",
-            "vertical",
-            "zero-interference",
-            "maximum-gain",
-            "free",
-            "null M",
-            "null M1",
-            "M1",
-        ]
-        return str(rng.choice([*others, value + "x", value[:-1]]))
+        schemes, axes = (
+            ["optimum", "vertical", "zero-interference", "maximum-gain"],
+            ["free", "null M", "null M1"],
+        )
+        return str(rng.choice([*schemes, *axes, "M1", value + "x", value[:-1]]))
     if isinstance(value, int):
         steps = [1, -1, 2, -2, int(rng.integers(-60, 60)), 2**40, -(2**40)]
         return value + int(rng.choice(steps))
@@ -76,29 +59,10 @@ COLUMNS = (
     "ball_multiplier",
     "mixes",
 )
-CLASSES = (
-    *COLUMNS,
-    "value",
-    "upper_bound",
-    "position_m",
-    "angle",
-    "root_m",
-    "axis",
-    "scheme",
-    "null_jammer",
-    "format",
-    "version",
-    "scenario_sha256",
-    "scenario",
-    "scenario, digest redone",
-    "scenario, claim redone",
-    "airframe, claim redone",
-    "no_fly, claim redone",
-    "antenna, claim redone",
-    "leaf dropped",
-    "leaf moved",
-    "tree dropped",
-)
+_CLAIM = ("value", "upper_bound", "position_m", "angle", "root_m", "axis", "scheme", "null_jammer")
+_FILE = ("format", "version", "scenario_sha256", "scenario", "scenario, digest redone")
+_REDONE = tuple(f"{part}, claim redone" for part in ("scenario", "airframe", "no_fly", "antenna"))
+CLASSES = (*COLUMNS, *_CLAIM, *_FILE, *_REDONE, "leaf dropped", "leaf moved", "tree dropped")
 
 
 def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
@@ -118,19 +82,19 @@ def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
         return numbers(column[row], ("trees", tree, "leaves", kind, row))
     if kind == "root_m":
         return numbers(data["trees"][tree]["root_m"], ("trees", tree, "root_m"))
-    if kind == "axis":
-        return [("trees", tree, "axis")]
-    if kind == "position_m":
-        return [("pose", kind, i) for i in range(3)]
-    if kind == "angle":
-        return [("pose", name) for name in ("roll_rad", "pitch_rad", "yaw_rad")]
+    fixed: dict[str, list[tuple]] = {
+        "axis": [("trees", tree, "axis")],
+        "position_m": [("pose", kind, i) for i in range(3)],
+        "angle": [("pose", name) for name in ("roll_rad", "pitch_rad", "yaw_rad")],
+    }
+    if kind in fixed:
+        return fixed[kind]
     if kind.startswith("scenario") and kind != "scenario_sha256":
         return numbers(data["scenario"], ("scenario",))
-    if kind.startswith("airframe"):
-        return numbers(data["scenario"].get("airframe", {}), ("scenario", "airframe"))
-    if kind.startswith("antenna"):
-        return numbers(data["scenario"].get("antenna", {}), ("scenario", "antenna"))
-    if kind.startswith("no_fly"):
+    part = kind.partition(",")[0]
+    if part in ("airframe", "antenna"):
+        return numbers(data["scenario"].get(part, {}), ("scenario", part))
+    if part == "no_fly":
         zones = data["scenario"]["airspace"].get("no_fly", [])
         return numbers(zones, ("scenario", "airspace", "no_fly"))
     return [(kind,)]
@@ -138,7 +102,7 @@ def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
 
 def spoiled(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
     """Return a certificate's data with one change of a class, or None if it has no such place."""
-    data = _copy(sound)
+    data = copy.deepcopy(sound)
     leaves = data["trees"][int(rng.integers(len(data["trees"])))]["leaves"]
     if kind in ("leaf dropped", "leaf moved"):
         row = int(rng.integers(len(leaves["box"])))
@@ -155,10 +119,10 @@ def spoiled(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
     if not paths:
         return None
     path = paths[int(rng.integers(len(paths)))]
-    new = changed(look(data, path), rng)
-    if new == look(data, path):
+    new = changed(reduce(getitem, path, data), rng)
+    if new == reduce(getitem, path, data):
         return None
-    look(data, path[:-1])[path[-1]] = new
+    reduce(getitem, path[:-1], data)[path[-1]] = new
     if kind.endswith("redone"):
         data["scenario_sha256"] = scenario_digest(data["scenario"])
     return data
@@ -178,37 +142,23 @@ def forged(data: Data, *, keep_bound: bool = False) -> Data | None:
     return data
 
 
-MORE = (
-    "leaf doubled",
-    "leaves shuffled",
-    "tests exchanged",
-    "box halved",
-    "cell halved",
-    "cell moved",
-    "leaves exchanged",
-    "root shrunk",
-    "root grown",
-    "bound lowered",
-    "bound at the value",
-    "bound raised",
-    "claim scaled",
-    "levels lowered",
+_LEAVES = ("leaf doubled", "leaves shuffled", "tests exchanged", "box halved", "cell halved", "cell moved")
+_ROOT = ("leaves exchanged", "root shrunk", "root grown")
+_NUMBERS = ("bound lowered", "bound at the value", "bound raised", "claim scaled", "levels lowered")
+_MIXES = (
     "multipliers scaled",
     "multipliers exchanged",
     "pose moved, claim redone",
     "pose turned, claim redone",
-    "key added",
-    "key dropped",
-    "no number",
-    "several",
 )
+MORE = (*_LEAVES, *_ROOT, *_NUMBERS, *_MIXES, "key added", "key dropped", "no number", "several")
 """Classes of larger changes, many of them such as leave the claim true or nearly."""
 _AFTER_EACH_OTHER = MORE[:-3]
 
 
 def mutated(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
     """Return a certificate's data after a change of any class, or None if that changes nothing."""
-    data = _copy(sound)
+    data = copy.deepcopy(sound)
     if kind == "several":
         for one in rng.choice([*CLASSES, *_AFTER_EACH_OTHER], size=int(rng.integers(2, 6))):
             if all(tree["leaves"]["box"] for tree in data["trees"]) and data["trees"]:

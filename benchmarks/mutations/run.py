@@ -27,12 +27,7 @@ _TRIES = 12  # some changes, such as the sign of a zero, are none
 
 @dataclass(slots=True)
 class Tally:
-    """What became of some mutations.
-
-    Args:
-        counts: by the class of the change and the outcome.
-        falsehoods: what was accepted and is false, in words.
-    """
+    """Mutations counted by the class of the change and the outcome; what is false but accepted, in words."""
 
     counts: Counter[tuple[str, str]] = field(default_factory=Counter)
     falsehoods: list[str] = field(default_factory=list)
@@ -44,13 +39,7 @@ class Tally:
 
 
 class Mutations:
-    """The mutations of some sound certificates of one kind, by number.
-
-    Args:
-        kind: what the certificates are about.
-        bases: their data.
-        optima: the same claims with better poses.
-    """
+    """The mutations of sound certificates of one kind, by number; optima are better poses of the same."""
 
     def __init__(self, kind: str, bases: list[Data], optima: list[Data]) -> None:
         self.kind, self.bases, self.optima, self.truth = kind, bases, optima, Truth(optima)

@@ -27,11 +27,7 @@ _ROUNDING = 1e-9
 
 
 class Problem:
-    """A scenario's ratios and borders, put together plainly from physics and scenario.
-
-    Args:
-        scenario: what is asked for.
-    """
+    """A scenario's ratios and borders, put together plainly from physics and scenario."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario, airspace = scenario, scenario.airspace
@@ -81,9 +77,8 @@ class Problem:
         )  # paper eq. 1.4, twice
         polarised = own[..., :, None] * own[..., None, :]
         links = np.where(self.is_dipole[:, None, None], polarised, links)
-        whole = np.where(
-            self.is_dipole[:, None, None], np.sum(own**2, axis=-1)[..., None, None], 1.0 / square
-        )
+        of_dipole = np.sum(own**2, axis=-1)[..., None, None]
+        whole = np.where(self.is_dipole[:, None, None], of_dipole, 1.0 / square)
         links = (1.0 - self.leak) * links + self.leak * whole * np.eye(3)
         above = self.isotropic * np.eye(3) + self.above[:, None, None] * links[..., self.node, :, :]
         others = links[..., self.first : self.first + self.below.shape[1], :, :]
@@ -153,11 +148,7 @@ def pose_of(data: Data, scenario: Scenario) -> Pose:
 
 
 class Truth:
-    """Judges claims, keeping the best value known of each scenario.
-
-    Args:
-        optima: poses, as certificates have them, that are known to be good, and the scenarios' data.
-    """
+    """Judges claims, keeping the best value of each scenario; of some, good poses are known before."""
 
     def __init__(self, optima: list[Data]) -> None:
         self._optima = {self._key(data): data for data in optima}

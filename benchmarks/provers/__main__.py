@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from benchmarks.provers import PROVERS, Claim, Problem, Prover
@@ -34,7 +34,7 @@ def main(name: str, file: str, repeats: str) -> None:
     problem = Problem(**json.load(sys.stdin))
     prover.load()
     claim = repeated(prover, problem, int(repeats))
-    Path(file).write_text(json.dumps(claim.to_dict()), encoding="utf-8")
+    Path(file).write_text(json.dumps(asdict(claim)), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,20 +18,9 @@ _ROOM = 1e-6  # relative: the incumbent must stay inside what is cut out with it
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Problem:
-    """A scene with one jammer, how closely to solve it, and the best pose known.
+    """A scene with one jammer, how closely to solve it in which time, and the best pose known.
 
-    Args:
-        nodes_m: positions of the nodes, metres.
-        powers_w: their powers, watts.
-        jammer_m: position of the jammer, metres.
-        jamming_w: its power, watts.
-        noise_w: noise power at the receiver, watts.
-        altitude_m: lowest and highest altitude, metres; x and y are free.
-        gap: relative gap at which the prover may stop.
-        cap_s: seconds after which it must.
-        start_value: smallest SINR of a pose that is known.
-        start_position_m: its position, metres.
-        start_axis: unit vector along its dipole, pointing up.
+    Horizontally the drone may be anywhere. The start's axis points up, of unit length.
     """
 
     nodes_m: tuple[Triple, ...]
@@ -46,10 +35,6 @@ class Problem:
     start_position_m: Triple
     start_axis: Triple
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the problem as plain data."""
-        return asdict(self)
-
 
 FINISHED = "finished"
 NOT_CLOSED = "not closed"
@@ -57,17 +42,10 @@ NOT_CLOSED = "not closed"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """The pose, value and bound that a prover claims, none of them checked.
+    """The pose, value and bound that a prover claims, none of them checked; NaN or empty if it has none.
 
-    Args:
-        status: ``"finished"`` if the prover says that the gap is reached, ``"not closed"`` if its time ran
-            out, or else what went wrong.
-        value: smallest SINR that it claims for its pose; NaN if it has none.
-        bound: the bound that it claims; NaN if it has none.
-        position_m: (3,) its pose's position, metres; empty if it has none.
-        axis: (3,) along its pose's dipole, of any length; empty if it has none.
-        nodes: of its branch and bound.
-        seconds: wall-clock time from building the model to the answer, imports left out.
+    The status is ``FINISHED`` if it says that the gap is reached, ``NOT_CLOSED`` if its time ran out, or else
+    what went wrong; imports are left out of the time.
     """
 
     status: str
@@ -77,10 +55,6 @@ class Claim:
     axis: tuple[float, ...] = ()
     nodes: int = 0
     seconds: float = 0.0
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the claim as plain data."""
-        return asdict(self)
 
 
 class Prover(Protocol):

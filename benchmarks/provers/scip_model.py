@@ -46,11 +46,7 @@ def cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
 
 
 class Draft:
-    """A model with position, axis, level and distances, for a formulation to complete.
-
-    Args:
-        scaled: the problem.
-    """
+    """A model with position, axis, level and distances, for a formulation to complete."""
 
     disturbance: Quantity
 

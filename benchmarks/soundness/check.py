@@ -21,29 +21,16 @@ _MOST_LEAVES = 30_000  # that are verified: with more it takes a minute
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """What became of a scene.
-
-    Args:
-        scene: which.
-        status: how the solve ended.
-        value: the reported number.
-        upper_bound: the stated bound.
-        searched: the best that the independent search found.
-        fast: the value that the search alone reports.
-        promised: whether the proof is said to be verifiable.
-        checked: whether the verifier has checked it, which takes long if there are many leaves.
-        seconds: time of the solve.
-        faults: what is unsound; empty if nothing is.
-    """
+    """What became of a scene: its value and bound, what other searches find, and what is unsound."""
 
     scene: Scene
     status: str
     value: float
     upper_bound: float
-    searched: float
-    fast: float
-    promised: bool
-    checked: bool
+    searched: float  # by the independent search
+    fast: float  # by the search alone
+    promised: bool  # that the proof can be verified
+    checked: bool  # by the verifier, which takes long if there are many leaves
     seconds: float
     faults: tuple[str, ...]
 

@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from benchmarks.soundness.every_antenna import make_gap, put_antennas, put_level_airframe
 from benchmarks.soundness.scenes import Scene
 from nullpose.scenario import Scenario
 
@@ -45,18 +44,15 @@ def _secrecy(rng: np.random.Generator) -> Table:
     """One to three eavesdroppers, some with better receivers than the nodes."""
     plain = _plain(rng)
     eavesdroppers = rng.uniform(0.0, [60.0, 60.0, 5.0], size=(int(rng.integers(1, 4)), 3))
-    return {
-        "objective": "secrecy-rate",
-        "transmitter": {"power_w": float(10.0 ** rng.uniform(-1.0, 1.0))},
-        "airspace": plain["airspace"],
-        "receiver": plain["receiver"],
-        "nodes": [{"position_m": node["position_m"]} for node in plain["nodes"]],
-        "jammers": plain["jammers"] if rng.uniform() < 0.3 else [],
-        "eavesdroppers": [
-            {"position_m": p, "noise_w": _NOISE_W * float(10.0 ** rng.uniform(-0.5, 0.5))}
-            for p in eavesdroppers.tolist()
-        ],
-    }
+    power_w = float(10.0 ** rng.uniform(-1.0, 1.0))
+    jammers = plain["jammers"] if rng.uniform() < 0.3 else []
+    heard = [
+        {"position_m": p, "noise_w": _NOISE_W * float(10.0 ** rng.uniform(-0.5, 0.5))}
+        for p in eavesdroppers.tolist()
+    ]
+    nodes = [{"position_m": node["position_m"]} for node in plain["nodes"]]
+    secrecy = {"objective": "secrecy-rate", "transmitter": {"power_w": power_w}, "eavesdroppers": heard}
+    return plain | secrecy | {"nodes": nodes, "jammers": jammers}
 
 
 def _margins(rng: np.random.Generator) -> Table:
@@ -90,10 +86,8 @@ def _no_fly(rng: np.random.Generator) -> Table:
         shape = rng.integers(3)
         zone: Table = {"polygon_m": _star(rng, centre, size)}
         if shape == 0:
-            zone = {
-                "x_m": [centre[0] - size, centre[0] + 0.5 * size],
-                "y_m": [centre[1] - size, centre[1] + size],
-            }
+            east = [centre[0] - size, centre[0] + 0.5 * size]
+            zone = {"x_m": east, "y_m": [centre[1] - size, centre[1] + size]}
         elif shape == 1:
             zone = {"centre_m": centre.tolist(), "radius_m": size}
         if rng.uniform() < 0.4:
@@ -137,12 +131,9 @@ def _one_node_secrecy(rng: np.random.Generator) -> Table:
     table = _secrecy(rng)
     table["airspace"]["altitude_m"] = [float(rng.uniform(2.0, 8.0)), 30.0]
     table["nodes"] = [{"position_m": [0.0, 0.0, 1.5]}]
-    table["eavesdroppers"] = [
-        {
-            "position_m": [*map(float, rng.uniform(-30.0, 30.0, 2)), 1.5],
-            "noise_w": _NOISE_W * float(10.0 ** rng.uniform(-0.5, 0.5)),
-        }
-    ]
+    place = [*map(float, rng.uniform(-30.0, 30.0, 2)), 1.5]
+    noise_w = _NOISE_W * float(10.0 ** rng.uniform(-0.5, 0.5))
+    table["eavesdroppers"] = [{"position_m": place, "noise_w": noise_w}]
     return table
 
 
@@ -164,9 +155,8 @@ def _slivers(rng: np.random.Generator) -> Table:
     if rng.uniform() < 0.5:
         turn = float(rng.uniform(0.0, np.pi))
         along, across = np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
-        corners = [
-            [x, y] + a * 20.0 * along + b * width * across for a, b in ((-1, 0), (1, 0), (1, 1), (-1, 1))
-        ]
+        ends = ((-1, 0), (1, 0), (1, 1), (-1, 1))
+        corners = [[x, y] + a * 20.0 * along + b * width * across for a, b in ends]
         plain["airspace"]["geofence_m"] = [list(map(float, corner)) for corner in corners]
     else:
         plain["airspace"] |= {"x_m": [x, x + width], "y_m": [y - 20.0, y + 20.0]}
@@ -208,12 +198,8 @@ def _weights(rng: np.random.Generator) -> Table:
 
 def _tilts(rng: np.random.Generator) -> Table:
     """Airframes at the ends of what they may be: no tilt or all but 90 degrees, upright or all but level."""
-    ends = [
-        0.0,
-        90.0,
-        float(10.0 ** rng.uniform(-12.0, -3.0)),
-        90.0 - float(10.0 ** rng.uniform(-12.0, -3.0)),
-    ]
+    off = 10.0 ** rng.uniform(-12.0, -3.0, 2)
+    ends = [0.0, 90.0, float(off[0]), 90.0 - float(off[1])]
     return _plain(rng) | {"airframe": {"tilt_max_deg": rng.choice(ends), "mount_deg": rng.choice(ends)}}
 
 
@@ -248,10 +234,70 @@ def _antennas(rng: np.random.Generator) -> Table:
     return table
 
 
+GAPS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5)
+"""Gaps of the certificates that are checked."""
+MOUNTS_DEG = (0.0, 30.0, 45.0, 89.999, 90.0)
+"""Mounts of the antenna on level vehicles."""
+
+
+def _short_dipole(rng: np.random.Generator) -> Table:
+    return {}
+
+
+def _leaky_dipole(rng: np.random.Generator) -> Table:
+    return {"null_depth_db": float(rng.choice([0.0, 3.0, 20.0, 50.0]))}
+
+
+def _half_wave(rng: np.random.Generator) -> Table:
+    return {"kind": "half-wave"}
+
+
+def _profile(rng: np.random.Generator) -> Table:
+    """A gain that is the same all round, often with a lobe below zero."""
+    degree = int(rng.integers(1, 7))
+    rows = [[float(rng.normal() / (1.0 + n))] + [0.0] * (2 * n) for n in range(degree + 1)]
+    rows[0] = [float(rng.uniform(0.5, 2.0))]
+    if rng.uniform() < 0.3:  # the same upside down
+        rows = [[row[0] * (1 - n % 2), *row[1:]] for n, row in enumerate(rows)]
+    return {"kind": "pattern", "harmonics": rows, "normalise": str(rng.choice(["none", "peak"]))}
+
+
+def _pattern(rng: np.random.Generator) -> Table:
+    degree = int(rng.integers(1, 5))
+    rows = [(rng.normal(size=2 * n + 1) / (1.0 + n)).tolist() for n in range(degree + 1)]
+    return {"kind": "pattern", "harmonics": [[2.0], *rows[1:]]}
+
+
+_ON_THE_DRONE: tuple[Callable[[np.random.Generator], Table], ...] = (
+    _short_dipole,
+    _leaky_dipole,
+    _half_wave,
+    _profile,
+    _pattern,
+)
+
+
+def put_antennas(rng: np.random.Generator, table: Table) -> Table:
+    """Return a scene with some antenna on the drone, and antennas on the ground that go with it."""
+    choice = int(rng.integers(len(_ON_THE_DRONE)))
+    kinds = ["isotropic", "circular", "dipole"][: 3 if choice < 2 else 2]  # whips need a dipole on the drone
+    if rng.uniform() < 0.6:
+        for point in [*table["nodes"], *table["jammers"], *table.get("eavesdroppers", [])]:
+            point["antenna"] = str(rng.choice(kinds))
+            point["gain_dbi"] = float(rng.choice([0.0, 1.76, 2.15, -3.0]))
+            if point["antenna"] == "dipole" and rng.uniform() < 0.3:
+                point["antenna_axis"] = rng.normal(size=3).tolist()
+            if point["antenna"] == "dipole" and rng.uniform() < 0.4:
+                point["null_depth_db"] = float(rng.choice([0.0, 20.0]))
+    antenna = _ON_THE_DRONE[choice](rng)
+    return table | ({"antenna": antenna} if antenna else {})
+
+
 def _level(rng: np.random.Generator) -> Table:
     """Vehicles that do not tilt, with every antenna."""
     makers = (_plain, _plain, _margins, _no_fly, _secrecy)
-    return put_level_airframe(rng, put_antennas(rng, makers[int(rng.integers(len(makers)))](rng)))
+    table = put_antennas(rng, makers[int(rng.integers(len(makers)))](rng))
+    return table | {"airframe": {"tilt_max_deg": 0.0, "mount_deg": float(rng.choice(MOUNTS_DEG))}}
 
 
 def _gaps(rng: np.random.Generator) -> Table:
@@ -294,6 +340,6 @@ def make_feature_scene(feature: str, number: int) -> Scene:
         kind=feature,
         scheme="optimum",
         scenario=Scenario.from_dict(FEATURES[feature](rng) | {"name": f"{feature} {number}"}),
-        gap=make_gap(number) if feature == "gaps" else None,
+        gap=GAPS[number % len(GAPS)] if feature == "gaps" else None,
         cells=_CELLS if feature == "gaps" else None,
     )

@@ -110,11 +110,8 @@ def make_robust_scene(number: int) -> Scenario:
         "position_error_m": float(rng.choice([0.0, 0.0, 0.3])),
     }
     frame = rng.choice([0, 1, 2])
-    airframes = [
-        {},
-        {"airframe": {"tilt_max_deg": 10.0, "mount_deg": 90.0}},
-        {"airframe": {"preset": "level"}},
-    ]
+    tilted = {"tilt_max_deg": 10.0, "mount_deg": 90.0}
+    airframes = [{}, {"airframe": tilted}, {"airframe": {"preset": "level"}}]
     return Scenario.from_dict(
         {
             "name": f"robust {number}",
@@ -122,11 +119,8 @@ def make_robust_scene(number: int) -> Scenario:
             "receiver": receiver,
             "nodes": [{"position_m": p, "power_w": 1.0} for p in nodes.tolist()],
             "jammers": [
-                {
-                    "position_m": p,
-                    "power_w": float(10.0 ** rng.uniform(-1.0, 2.0)),
-                    "uncertainty_m": sets[int(rng.integers(2))],
-                }
+                {"position_m": p, "power_w": float(10.0 ** rng.uniform(-1.0, 2.0))}
+                | {"uncertainty_m": sets[int(rng.integers(2))]}
                 for p in jammers.tolist()
             ],
             **airframes[int(frame)],

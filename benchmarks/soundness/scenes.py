@@ -17,16 +17,7 @@ _SCHEMES = ("optimum", "optimum", "optimum", "vertical", "zero-interference", "m
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
-    """A scene to be tried.
-
-    Args:
-        number: its seed.
-        kind: what is awkward about it.
-        scheme: the case to solve.
-        scenario: the scene.
-        gap: the gap that is asked for; None for the scenario's own.
-        cells: cells that a proof examines at most; None for as many as it likes.
-    """
+    """A scene to be tried: how it is awkward, its case, and its proof's gap and cells, if limited."""
 
     number: int
     kind: str

@@ -1,6 +1,7 @@
 """Peers, provers and workloads: their problem is the physics', their claims are judged by the poses."""
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -105,7 +106,7 @@ def prover_problem(jamming_w: float, start_value: float) -> Problem:
     scene = certified.paper_scene(jamming_w)
     axis = np.array([0.0, 0.6, 0.8])
     problem = certified._problem(scene, Pose.from_axis([0.0, 25.0, 8.0], axis), 1.0)
-    return Problem(**(problem.to_dict() | {"start_value": start_value}))
+    return Problem(**(asdict(problem) | {"start_value": start_value}))
 
 
 @pytest.mark.parametrize("jamming_w", [50.0, 1000.0])

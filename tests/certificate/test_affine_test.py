@@ -1,20 +1,17 @@
 """Given axes: the expansions enclose the links they stand for, and what they exclude is excluded."""
 
-from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from tests.certificate.plain import boxes_at, dense_ratios, make_leaves, one_box, random_family, seeds
 
 from nullpose.certificate.affine_test import _quadratic_negative, affine_holds, link_jet
-from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import AFFINE
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import Exact, exact, link
 from nullpose.problem.axis_field import AxisField
-
-seeds = st.integers(0, 2**32 - 1)
 
 SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 POINTS = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0], [17.0, 15.0, 4.0], [31.7, -8.3, 1.1]])
@@ -34,15 +31,6 @@ def exact_link(
     """Return a link's gain over ``|r|^2`` at a position with the field's axis, exactly."""
     axis = exact(field.offset) + exact(field.matrix) @ p
     return link(exact(point), p, axis, Fraction(leak), exact(dipole[0]))
-
-
-def one_box(rng: np.random.Generator) -> Boxes:
-    """Return a box above the field, well clear of the ground points."""
-    return Boxes(
-        leaf=np.zeros(1, dtype=np.int64),
-        centre=rng.uniform([-30.0, -30.0, 8.0], [60.0, 80.0, 30.0], (1, 3)),
-        half=10.0 ** rng.uniform(-2.0, 0.3, (1, 3)),
-    )
 
 
 def ends(x: Interval) -> tuple[Fraction, Fraction]:
@@ -77,42 +65,6 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.
             terms.append(times(hessian[entry], x[i] * x[k] * (Fraction(1, 2) if i == k else 1)))
         assert sum(low for low, _ in terms) <= there <= sum(high for _, high in terms)
         assert ends(ranged)[0] <= there <= ends(ranged)[1]
-
-
-@pytest.mark.parametrize("dipole", DIPOLES)
-@pytest.mark.parametrize("leak", [0.0, 0.01])
-@pytest.mark.parametrize("field", FIELDS)
-@given(seed=seeds)
-def test_hessians_contain_finite_differences(
-    field: AxisField, leak: float, dipole: np.ndarray, seed: int
-) -> None:
-    """Second differences anywhere in the box, and first ones at its centre, lie within the bounds."""
-    rng = np.random.default_rng(seed)
-    boxes, j, step = one_box(rng), int(rng.integers(4)), Fraction(1, 1000)
-    _, slopes, hessian, _ = link_jet(field, boxes, POINTS[j][None], leak, dipole)
-    centre = exact(boxes.centre[0])
-    p = [
-        c + Fraction(float(s)) * h
-        for c, s, h in zip(centre, rng.uniform(-1, 1, 3), exact(boxes.half[0]), strict=True)
-    ]
-
-    def at(base: Exact, *moves: tuple[int, int]) -> Fraction:
-        place = np.array(base)
-        for i, sign in moves:
-            place[i] += sign * step
-        return exact_link(field, POINTS[j], place, leak, dipole)
-
-    scale = float(1.0 / np.sum((POINTS[j] - boxes.centre[0]) ** 2))
-    for i in range(3):
-        first = float((at(centre, (i, 1)) - at(centre, (i, -1))) / (2 * step))
-        assert slopes[i].low[0] - 1e-5 * scale <= first <= slopes[i].high[0] + 1e-5 * scale
-    for entry, (i, k) in enumerate(SIX):
-        if i == k:
-            second = (at(p, (i, 1)) + at(p, (i, -1)) - 2 * at(p)) / step**2
-        else:
-            second = at(p, (i, 1), (k, 1)) + at(p, (i, -1), (k, -1)) - at(p, (i, 1), (k, -1))
-            second = (second - at(p, (i, -1), (k, 1))) / (4 * step**2)
-        assert hessian[entry].low[0] - 1e-5 * scale <= float(second) <= hessian[entry].high[0] + 1e-5 * scale
 
 
 def quadratic(rng: np.random.Generator) -> tuple[float, np.ndarray, np.ndarray]:
@@ -156,14 +108,7 @@ def test_negative_quadratics_are_negative() -> None:
 @pytest.mark.parametrize("field", FIELDS[:3])
 @settings(max_examples=10)
 @given(seed=seeds)
-def test_no_position_of_an_excluded_box_reaches_the_level(
-    field: AxisField,
-    groups: int,
-    seed: int,
-    random_family: Callable,
-    make_leaves: Callable,
-    dense_ratios: Callable,
-) -> None:
+def test_no_position_of_an_excluded_box_reaches_the_level(field: AxisField, groups: int, seed: int) -> None:
     """Whatever mix or ball: allowed positions of excluded boxes stay below the level."""
     rng = np.random.default_rng(seed)
     count, ratios = 60, int(rng.integers(1, 4))
@@ -173,10 +118,9 @@ def test_no_position_of_an_excluded_box_reaches_the_level(
     def axis(p: np.ndarray) -> np.ndarray:
         return field.offset + p @ field.matrix.T
 
-    boxes = Boxes(
-        leaf=np.arange(count),
-        centre=rng.uniform([-20.0, -20.0, 10.0], [80.0, 80.0, 30.0], (count, 3)),
-        half=10.0 ** rng.uniform(-2.0, 0.5, (count, 3)),
+    boxes = boxes_at(
+        rng.uniform([-20.0, -20.0, 10.0], [80.0, 80.0, 30.0], (count, 3)),
+        10.0 ** rng.uniform(-2.0, 0.5, (count, 3)),
     )
     at_centre = dense_ratios(family, boxes.centre, axis(boxes.centre)).min(axis=1)
     drawn = rng.dirichlet(np.ones(ratios), count)
@@ -199,14 +143,10 @@ def test_no_position_of_an_excluded_box_reaches_the_level(
         assert np.all(dense_ratios(family, p, axis(p)).min(axis=1)[allowed] < leaves.level[b])
 
 
-def test_a_mix_of_nothing_excludes_nothing(random_family: Callable, make_leaves: Callable) -> None:
+def test_a_mix_of_nothing_excludes_nothing() -> None:
     """Weights of zero prove nothing, also inside a ball."""
     family = random_family(np.random.default_rng(2), 2, 1, keep_out_m=5.0)
-    boxes = Boxes(
-        leaf=np.zeros(1, dtype=np.int64),
-        centre=family.points_m[:1] + np.array([3.0, 0.0, 0.0]),
-        half=np.full((1, 3), 0.1),
-    )
+    boxes = boxes_at(family.points_m[:1] + np.array([3.0, 0.0, 0.0]), 0.1)
     leaves = make_leaves(
         1, level=np.array([1e6]), mixes=({0: 0.0},), ball=np.array([0]), ball_multiplier=np.ones(1)
     )

@@ -1,10 +1,10 @@
 """Zones and balls with multipliers: they help, and what they help to exclude is excluded."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.certificate.plain import boxes_at, dense_forms, dense_ratios, make_leaves, random_family
 
 from nullpose.certificate.affine_test import affine_holds
 from nullpose.certificate.boxes import Boxes
@@ -62,7 +62,7 @@ def boxes_at_borders(rng: np.random.Generator, count: int) -> tuple[Boxes, np.nd
             turn = rng.uniform(0.0, 2.0 * np.pi)
             centre[b, :2] = CIRCLE[0, :2] + CIRCLE[0, 2] * np.array([np.cos(turn), np.sin(turn)])
     centre += rng.uniform(-0.9, 0.9, (count, 3)) * half
-    return Boxes(leaf=np.arange(count), centre=centre, half=half), zone
+    return boxes_at(centre, half), zone
 
 
 def greatest(field: AxisField, forms: tuple[np.ndarray, np.ndarray]) -> float:
@@ -81,9 +81,7 @@ def excluded(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> 
 
 
 @pytest.mark.parametrize("field", [AxisField.free(), AxisField.within(0.0, 0.0), AxisField.vertical()])
-def test_no_allowed_pose_of_an_excluded_box_reaches_the_level(
-    field: AxisField, random_family: Callable, make_leaves: Callable, dense_forms: Callable
-) -> None:
+def test_no_allowed_pose_of_an_excluded_box_reaches_the_level(field: AxisField) -> None:
     """At levels that forbidden positions of a box may reach, and allowed ones may or may not."""
     helped, count = 0, 60
     for seed in range(12):
@@ -115,37 +113,27 @@ def test_no_allowed_pose_of_an_excluded_box_reaches_the_level(
 
 @pytest.mark.parametrize("field", [AxisField.free(), AxisField.vertical()])
 @pytest.mark.parametrize("zone", [0, 1, 2])
-def test_zones_help(
-    zone: int, field: AxisField, random_family: Callable, make_leaves: Callable, dense_ratios: Callable
-) -> None:
+def test_zones_help(zone: int, field: AxisField) -> None:
     """Small boxes across a wall are excluded at levels that their forbidden part alone reaches."""
     rng = np.random.default_rng(7)
     family = zoned(random_family(rng, 1, 0))
-    node = family.points_m[0]
     out = {0: [25.0, 10.0, 14.0], 1: [43.0, 15.0, 14.0], 2: [-20.0, 10.0, 14.0]}[zone]
     way = {0: [0.0, 1.0, 0.0], 1: [1.0, 0.0, 0.0], 2: [-1.0, 0.0, 0.0]}[zone]
     # a node behind the wall is nearer to positions that are forbidden
     points = np.array([np.array(out) + 20.0 * np.array(way)])
     family = family.changed(points_m=points, numerator_isotropic=np.zeros(1))
-    boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=np.array([out]), half=np.full((1, 3), 0.01))
-    assert not np.array_equal(points[0], node)
+    boxes = boxes_at(np.array([out]), 0.01)
     upright = np.array([0.0, 0.0, 1.0])
     level = float(dense_ratios(family, np.array(out), upright).min()) * (1.0 + 1e-5)
     test = np.array([WORLD if field.is_free else AFFINE])
-    check = (
-        (lambda leaves: free_holds(family, field, leaves, boxes))
-        if field.is_free
-        else (lambda leaves: affine_holds(family, field, leaves, boxes))
-    )
     leaves = make_leaves(1, test=test, level=np.array([level]), ball=np.array([zone]))
-    assert check(leaves)[0]
-    assert not check(replace(leaves, ball=np.array([-1])))[0]
-    assert not check(replace(leaves, level=np.array([level * (1.0 - 2e-5)])))[0]
-    for other in {0, 1, 2} - {zone}:
-        assert not check(replace(leaves, ball=np.array([other])))[0] or other == zone
+    assert excluded(family, field, leaves, boxes)[0]
+    assert not excluded(family, field, replace(leaves, level=leaves.level * (1.0 - 2e-5)), boxes)[0]
+    for other in {-1, 0, 1, 2} - {zone}:
+        assert not excluded(family, field, replace(leaves, ball=np.array([other])), boxes)[0]
 
 
-def test_corners_help(random_family: Callable, make_leaves: Callable, dense_ratios: Callable) -> None:
+def test_corners_help() -> None:
     """In a notch both walls count at once; round a corner each of them must do."""
     rng = np.random.default_rng(8)
     family = zoned(random_family(rng, 1, 0))
@@ -154,18 +142,13 @@ def test_corners_help(random_family: Callable, make_leaves: Callable, dense_rati
         (0, [25.0, 20.0, 14.0], [0.0, -1.0, 0.0], True),  # the notch, the node behind it
         (0, [25.0, 20.0, 14.0], [0.0, 1.0, 0.0], False),  # the node in front of it
         (2, [80.0, -20.0, 14.0], [1.0, -1.0, 0.0], True),  # a corner of the fence
-        (
-            2,
-            [30.0, 60.0, 14.0],
-            [0.0, 1.0, 0.0],
-            True,
-        ),  # a corner that points inwards: round it on either side
+        (2, [30.0, 60.0, 14.0], [0.0, 1.0, 0.0], True),  # pointing inwards: round it on either side
     ]
     for zone, at, way, expected in cases:
         here = family.changed(
             points_m=np.array([at]) + 15.0 * np.array([way]), numerator_isotropic=np.zeros(1)
         )
-        boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=np.array([at]), half=np.full((1, 3), 1e-3))
+        boxes = boxes_at(np.array([at]), 1e-3)
         steepness = 1e-4 if expected else 1e-6
         level = float(dense_ratios(here, np.array(at), upright).min()) * (1.0 + steepness)
         leaves = make_leaves(1, level=np.array([level]), ball=np.array([zone]))
@@ -175,17 +158,13 @@ def test_corners_help(random_family: Callable, make_leaves: Callable, dense_rati
 
 
 @pytest.mark.parametrize("field", [AxisField.free(), AxisField.within(0.0, 0.0), AxisField.vertical()])
-def test_balls_curve(field: AxisField, random_family: Callable, make_leaves: Callable) -> None:
+def test_balls_curve(field: AxisField) -> None:
     """A ball in the middle of a box excludes none of what is around it, whatever its multiplier."""
     family = random_family(np.random.default_rng(9), 1, 1)
     family = family.changed(keep_out_points_m=np.array([[20.0, 20.0, 60.0]]), keep_out_m=1.0)
     test = np.array([WORLD if field.is_free else AFFINE])
     for half, expected in ((0.5, True), (0.6, False), (2.0, False)):
-        boxes = Boxes(
-            leaf=np.zeros(1, dtype=np.int64),
-            centre=family.keep_out_points_m.copy(),
-            half=np.full((1, 3), half),
-        )
+        boxes = boxes_at(family.keep_out_points_m.copy(), half)
         for multiplier in (1.0, 1e3, 1e6):
             leaves = make_leaves(
                 1,

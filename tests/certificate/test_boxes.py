@@ -1,10 +1,10 @@
 """Boxes of floating-point numbers contain the exact dyadic ones, and their parts cover them."""
 
-from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
 from hypothesis import given, strategies as st
+from tests.certificate.plain import boxes_at, make_leaves
 
 from nullpose.certificate.boxes import Boxes, boxes_of, parts
 from nullpose.certificate.weighted_sum import mix_slots
@@ -30,7 +30,7 @@ def span(boxes: Boxes, b: int, i: int) -> tuple[Fraction, Fraction]:
 
 
 @given(root=st.tuples(sides, sides, sides), place=st.tuples(places, places, places))
-def test_boxes_contain_the_exact_ones(root: tuple, place: tuple, make_leaves: Callable) -> None:
+def test_boxes_contain_the_exact_ones(root: tuple, place: tuple) -> None:
     """Centre and half side, and the hull, enclose the dyadic part of the root, and hardly more."""
     leaves = make_leaves(1, box=np.array([[x for pair in place for x in pair]]))
     boxes = boxes_of(np.array(root).T, leaves)
@@ -47,7 +47,7 @@ def test_boxes_contain_the_exact_ones(root: tuple, place: tuple, make_leaves: Ca
 
 
 @given(root=st.tuples(sides, sides, sides), place=st.tuples(places, places, places))
-def test_parts_cover_their_parent(root: tuple, place: tuple, make_leaves: Callable) -> None:
+def test_parts_cover_their_parent(root: tuple, place: tuple) -> None:
     """The eight parts meet in the middle and reach the ends, along every axis, and keep the leaf."""
     leaves = make_leaves(1, box=np.array([[x for pair in place for x in pair]]))
     boxes = boxes_of(np.array(root).T, leaves)
@@ -66,10 +66,8 @@ def test_parts_cover_their_parent(root: tuple, place: tuple, make_leaves: Callab
 def test_distances_are_bounds(seed: int, scale: float) -> None:
     """No exact position of a box is nearer or farther than the bounds, and the bounds are met."""
     rng = np.random.default_rng(seed)
-    boxes = Boxes(
-        leaf=np.zeros(1, dtype=np.int64),
-        centre=scale * rng.normal(size=(1, 3)),
-        half=scale * rng.uniform(0.0, 1.0, (1, 3)) * rng.integers(0, 2, (1, 3)),
+    boxes = boxes_at(
+        scale * rng.normal(size=(1, 3)), scale * rng.uniform(0.0, 1.0, (1, 3)) * rng.integers(0, 2, (1, 3))
     )
     point = scale * rng.normal(size=3)
     low, high = np.array([span(boxes, 0, i) for i in range(3)]).T
@@ -84,7 +82,7 @@ def test_distances_are_bounds(seed: int, scale: float) -> None:
     assert float(boxes.nearest2(point)[0]) >= float(near2) - 1e-13 * float(far2)
 
 
-def test_mixes_fill_slots(make_leaves: Callable) -> None:
+def test_mixes_fill_slots() -> None:
     """Each box gets its leaf's mix; unused slots, and leaves without a mix, weigh nothing."""
     leaves = make_leaves(3, mix=np.array([1, -1, 0]), mixes=({2: 0.25, 0: 0.75}, {1: 1.0}))
     ratio, weight = mix_slots(leaves.chosen(np.array([2, 0, 1])))

@@ -5,12 +5,16 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import reduce
+from itertools import chain
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from tests.certificate.plain import certified
 
 from nullpose.certificate import (
     Certificate,
@@ -26,7 +30,7 @@ Data = dict[str, Any]
 
 
 @pytest.fixture(scope="module")
-def certificate(paper: Callable, certified: Callable) -> Certificate:
+def certificate(paper: Callable) -> Certificate:
     """Returns a small certificate."""
     return certified(paper(keep_out_m=26.5), gap=0.1)
 
@@ -76,24 +80,15 @@ def test_files_survive(name: str, certificate: Certificate, tmp_path: Path) -> N
 
 def places(value: Any, path: tuple = ()) -> list[tuple]:
     """Return the paths of a certificate's parts; of long lists, of a few items only."""
-    out = [path] if path else []
-    if isinstance(value, dict):
-        items = list(value.items())
-    elif isinstance(value, list):
-        items = list(enumerate(value))[:2]
-    else:
-        items = []
-    for key, item in items:
-        if key not in ("scenario", "provenance"):
-            out += places(item, (*path, key))
-    return out
+    items = value.items() if isinstance(value, dict) else ()
+    items = list(enumerate(value))[:2] if isinstance(value, list) else items
+    inner = [places(item, (*path, key)) for key, item in items if key not in ("scenario", "provenance")]
+    return [*([path] if path else []), *chain(*inner)]
 
 
-def set_at(data: Any, path: tuple, value: Any) -> None:
-    """Put a value where a path points."""
-    for key in path[:-1]:
-        data = data[key]
-    data[path[-1]] = value
+def part_at(data: Any, path: tuple) -> Any:
+    """Return the part that a path points to."""
+    return reduce(getitem, path, data)
 
 
 def words_for(path: tuple) -> str:
@@ -106,11 +101,10 @@ def test_missing_keys_are_named(data: Data) -> None:
     for path in places(data):
         if isinstance(path[-1], str) and path != ("format",):
             broken = json.loads(json.dumps(data))
-            part = broken
-            for key in path[:-1]:
-                part = part[key]
-            del part[path[-1]]
+            del part_at(broken, path[:-1])[path[-1]]
             assert words_for(path) in fault(broken)
+    data["version"] = 1
+    assert fault(data) == f"version: must be {VERSION}; solve again with --certificate to have one"
 
 
 def refusal(text: str) -> str:
@@ -131,7 +125,7 @@ def test_wrong_types_are_named(data: Data) -> None:
     for path in places(data):
         for wrong in WRONG:
             broken = json.loads(json.dumps(data))
-            set_at(broken, path, wrong)
+            part_at(broken, path[:-1])[path[-1]] = wrong
             words = refusal(json.dumps(broken))
             # a column of another length is told of the first one that differs from it
             assert not words or words_for(path) in words or "trees[0].leaves." in words
@@ -139,51 +133,31 @@ def test_wrong_types_are_named(data: Data) -> None:
     assert refused > 300
 
 
+LEAVES = ("trees", 0, "leaves")
+
+
 @pytest.mark.parametrize(
     ("path", "value"),
     [
         (("version",), float(VERSION)),
-        (("version",), True),
-        (("version",), 3),
-        (("version",), "1"),
-        (("format",), "nullpose"),
-        (("value",), True),
-        (("value",), "1.0"),
-        (("value",), 10**400),
-        (("pose", "position_m"), []),
         (("pose", "position_m"), [1.0, 2.0]),
-        (("pose", "position_m"), [1.0, 2.0, 3.0, 4.0]),
-        (("pose", "position_m"), [1.0, 2.0, "3"]),
         (("pose", "position_m"), [1.0, 2.0, True]),
-        (("trees", 0, "root_m"), [[0.0, 0.0, 0.0]]),
         (("trees", 0, "root_m"), [0.0] * 6),
-        (("trees", 0, "leaves", "test", 0), 1.0),
-        (("trees", 0, "leaves", "test", 0), True),
-        (("trees", 0, "leaves", "test", 0), 2**63),
-        (("trees", 0, "leaves", "box", 0), [0, 0, 0, 0, 0]),
-        (("trees", 0, "leaves", "box", 0, 0), 0.5),
-        (("trees", 0, "leaves", "box"), []),
-        (("trees", 0, "leaves", "level", 0), "1"),
-        (("trees", 0, "leaves", "level", 0), None),
-        (("trees", 0, "leaves", "mixes"), [5]),
-        (("trees", 0, "leaves", "mixes"), [None]),
-        (("trees", 0, "leaves", "mixes"), [{"0": 1.0}]),
-        (("trees", 0, "leaves", "mixes"), ["01"]),
-        (("trees", 0, "leaves", "mixes", 0), [[0, 0.5], [0, 0.5]]),
-        (("trees", 0, "leaves", "mixes", 0), [[-1, 0.5]]),
-        (("trees", 0, "leaves", "mixes", 0), [[0, "0.5"]]),
-        (("trees", 0, "leaves", "mixes", 0), [[0, True]]),
-        (("trees", 0, "leaves", "mixes", 0), [[True, 1.0]]),
-        (("trees", 0, "leaves", "mixes", 0), [[0.0, 1.0]]),
-        (("trees", 0, "leaves", "mixes", 0), [[0, 1.0, 2.0]]),
-        (("null_jammer",), 3),
-        (("provenance",), []),
-        (("scheme",), 3),
+        ((*LEAVES, "test", 0), 2**63),
+        ((*LEAVES, "box", 0), [0, 0, 0, 0, 0]),
+        ((*LEAVES, "box", 0, 0), 0.5),
+        ((*LEAVES, "mixes"), [{"0": 1.0}]),
+        ((*LEAVES, "mixes"), ["01"]),
+        ((*LEAVES, "mixes", 0), [[0, 0.5], [0, 0.5]]),
+        ((*LEAVES, "mixes", 0), [[-1, 0.5]]),
+        ((*LEAVES, "mixes", 0), [[0, True]]),
+        ((*LEAVES, "mixes", 0), [[True, 1.0]]),
+        ((*LEAVES, "mixes", 0), [[0.0, 1.0]]),
     ],
 )
 def test_what_looks_like_a_number_is_refused(path: tuple, value: object, data: Data) -> None:
     """Booleans, texts, floats for whole numbers, wrong shapes and too large numbers are named."""
-    set_at(data, path, value)
+    part_at(data, path[:-1])[path[-1]] = value
     assert words_for(path) in fault(data)
 
 
@@ -192,54 +166,42 @@ def test_numbers_that_are_none_are_refused(number: str, data: Data) -> None:
     """What JSON lacks, and what no float holds, is refused wherever it stands."""
     for path in (("value",), ("trees", 0, "leaves", "level", 0), ("provenance", "x"), ("scenario", "name")):
         broken = json.loads(json.dumps(data))
-        set_at(broken, path, "@")
+        part_at(broken, path[:-1])[path[-1]] = "@"
         with pytest.raises(CertificateError, match="no certificate"):
             parse_certificate(json.dumps(broken).replace('"@"', number))
 
 
-def test_a_changed_scenario_is_found(data: Data) -> None:
+def test_a_changed_scenario_is_found(data: Data, tmp_path: Path) -> None:
     """A scenario that its digest does not fit is refused; with another digest its own faults are told."""
     data["scenario"]["jammers"][0]["power_w"] = 1.0000001
     assert "scenario_sha256" in fault(data)
-    for key, value, words in (
-        ("power_w", -1.0, "jammers[0].power_w"),
-        ("power_w", True, "jammers[0].power_w"),
-        ("position_m", [0.0, 0.0, 0.0], "position_m"),
-        ("position_m", "here", "position_m"),
-        ("name", "\ud800", "name"),
-        ("colour", 1, "colour"),
-    ):
+    path = tmp_path / "proof.json"
+    for key, value in (("power_w", -1.0), ("power_w", True), ("position_m", "here"), ("name", "\ud800")):
         broken = json.loads(json.dumps(data))
         broken["scenario"]["jammers"][0][key] = value
         broken["scenario_sha256"] = scenario_digest(broken["scenario"])
-        assert "scenario: " in fault(broken)
-        assert words in fault(broken)
-    data["scenario"] = {}
-    data["scenario_sha256"] = scenario_digest({})
-    assert "scenario: " in fault(data)
+        path.write_text(json.dumps(broken), encoding="utf-8")
+        with pytest.raises(ScenarioError) as caught:
+            read_certificate(path)
+        assert str(caught.value).startswith(f"{path}: scenario: ")
+        assert [found.path for found in caught.value.faults] == [f"jammers[0].{key}"]
 
 
+FORMATTED = '{"format": "nullpose-certificate", "version": 1, "scenario": '
 FOREIGN = [
     "",
-    " ",
     "null",
-    "3",
     "[]",
-    "{}",
-    "true",
     '"nullpose-certificate"',
     '{"format": "nullpose-certificate"}',
     '{"format": ["nullpose-certificate"]}',
-    '{"type": "FeatureCollection", "features": []}',
     "{",
-    '{"a": 1,}',
-    "[" * 100_000,
     '{"a":' * 100_000,
     "1" * 10_000,
     "\ufeff{}",
     "\x00",
-    '{"format": "nullpose-certificate", "version": 1, "scenario": ' + "[" * 900 + "]" * 900 + "}",
-    '{"format": "nullpose-certificate", "version": 1, "scenario": {"a":' + "[" * 900 + "]" * 900 + "}}",
+    FORMATTED + "[" * 900 + "]" * 900 + "}",
+    FORMATTED + '{"a":' + "[" * 900 + "]" * 900 + "}}",
 ]
 
 
@@ -260,17 +222,14 @@ def test_broken_files_are_refused(text: str, tmp_path: Path) -> None:
     spoiled[len(spoiled) // 2] ^= 0xFF
     path = tmp_path / "proof.json.gz"
     for content in (
-        packed[:2],
         packed[:11],
         packed[: len(packed) // 2],
         packed[:-1],
         bytes(spoiled),
         packed + b"\x1f\x8b",
         packed[:3] + b"\xff" + packed[4:],
-        b"\x1f\x8b\x07" + packed[3:],
         gzip.compress(b""),
         gzip.compress(b"\xff\xfe"),
-        b"\xff\xfe\x00\x01",
         bytes(range(256)),
         text.encode("utf-16"),
         text.encode()[: len(text) // 2],
@@ -305,18 +264,6 @@ def test_any_flipped_byte_is_a_certificate_or_refused(
     assert words.startswith(str(path))
 
 
-def test_a_faulty_scenario_names_the_file(data: Data, tmp_path: Path) -> None:
-    """A scenario's faults are listed under the file's name."""
-    data["scenario"]["nodes"] = []
-    data["scenario_sha256"] = scenario_digest(data["scenario"])
-    path = tmp_path / "proof.json"
-    path.write_text(json.dumps(data), encoding="utf-8")
-    with pytest.raises(ScenarioError) as caught:
-        read_certificate(path)
-    assert str(caught.value).startswith(f"{path}: scenario: ")
-    assert [found.path for found in caught.value.faults] == ["nodes"]
-
-
 def test_a_file_that_cannot_be_written_is_told(certificate: Certificate, tmp_path: Path) -> None:
     """A folder in the way, or none to write to, is an OutputError."""
     for path in (tmp_path, tmp_path / "missing" / "proof.json"):
@@ -324,21 +271,16 @@ def test_a_file_that_cannot_be_written_is_told(certificate: Certificate, tmp_pat
             write_certificate(certificate, path)
 
 
-@pytest.mark.parametrize("path", [(), ("pose",), ("trees", 0), ("trees", 0, "leaves")])
-def test_unknown_keys_are_refused_by_path(path: tuple, data: Data) -> None:
+@pytest.mark.parametrize(
+    ("path", "dotted"),
+    [((), ""), (("pose",), "pose."), (("trees", 0), "trees[0]."), (LEAVES, "trees[0].leaves.")],
+)
+def test_unknown_keys_are_refused_by_path(path: tuple, dotted: str, data: Data) -> None:
     """A key that no version has is no part of a certificate; of what made it anything may be told."""
     data["provenance"]["anything"] = {"may": ["be", "here"]}
     assert refusal(json.dumps(data)) == ""
-    set_at(data, (*path, "extra"), 1)
-    words = fault(data)
-    assert words.startswith(f"{dotted(path)}extra: unknown key; the keys here are ")
-
-
-def dotted(path: tuple) -> str:
-    """Return a path as messages have it."""
-    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in path)[1:] + (
-        "." if path else ""
-    )
+    part_at(data, path)["extra"] = 1
+    assert fault(data).startswith(f"{dotted}extra: unknown key; the keys here are ")
 
 
 @pytest.mark.parametrize("key", ["scheme", "roll_rad", "axis", "test", "power_w", "altitude_m"])
@@ -347,14 +289,6 @@ def test_keys_given_twice_are_refused(key: str, text: str) -> None:
     at = text.index(f'"{key}":')
     words = refusal(f'{text[:at]}"{key}": 0, {text[at:]}')
     assert words == f'is no certificate: the key "{key}" is given twice in one object; keep one'
-
-
-def test_other_versions_are_refused_with_what_to_do(data: Data) -> None:
-    """A file of the first version is not read any more, and the message says how to have one that is."""
-    assert data["version"] == VERSION
-    data["version"] = 1
-    del data["trees"][0]["leaves"]["band"]
-    assert fault(data) == f"version: must be {VERSION}; solve again with --certificate to have one"
 
 
 @pytest.mark.parametrize(

@@ -1,18 +1,16 @@
 """Cells of axes: their ends are exact, and those called out of reach hold no axis of the band."""
 
-from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from tests.certificate.plain import boxes_at, make_leaves, seeds
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.forms import cell_ends, quadratic, side_form
 from nullpose.certificate.plain_tests import off_band_holds
 from nullpose.problem.axis_field import AxisField
-
-seeds = st.integers(0, 2**32 - 1)
 
 NO_FAMILY = None  # the test of a cell does without
 
@@ -34,7 +32,7 @@ def exact_ends(cell: np.ndarray, side: int) -> tuple[Fraction, Fraction]:
 
 def boxes_for(count: int) -> Boxes:
     """Return a box for each leaf: positions do not matter here."""
-    return Boxes(leaf=np.arange(count), centre=np.zeros((count, 3)), half=np.ones((count, 3)))
+    return boxes_at(np.zeros((count, 3)), np.ones((count, 3)))
 
 
 @given(seed=seeds)
@@ -74,7 +72,7 @@ def elevations(cell: np.ndarray) -> tuple[Fraction, Fraction]:
 
 
 @given(seed=seeds, band=st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)).map(sorted))
-def test_cells_off_the_band_hold_none_of_its_axes(seed: int, band: list, make_leaves: Callable) -> None:
+def test_cells_off_the_band_hold_none_of_its_axes(seed: int, band: list) -> None:
     """A cell passes exactly if its elevations miss the band, but for rounding."""
     rng = np.random.default_rng(seed)
     cells = cells_of(rng, 30, 6)

@@ -4,21 +4,15 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from tests.certificate.plain import carried, full, link_matrix, make_leaves, one_box, random_family, seeds
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
-from nullpose.certificate.forms import COLUMN, ROW, matrices
+from nullpose.certificate.forms import COLUMN, ROW
 from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval
 from nullpose.problem.family import Family
-
-seeds = st.integers(0, 2**32 - 1)
-
-
-def full(form: Interval) -> np.ndarray:
-    """Return the middle of one box's form as a matrix."""
-    return matrices(form.middle())[0]
 
 
 def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator, make: Callable) -> Frames:
@@ -33,15 +27,7 @@ def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator
 @pytest.mark.parametrize("turning", [False, True])
 @settings(max_examples=50)
 @given(seed=seeds)
-def test_expansions_enclose_the_forms(
-    turning: bool,
-    seed: int,
-    random_family: Callable,
-    make_leaves: Callable,
-    link_matrix: Callable,
-    carried: Callable,
-    one_box: Callable,
-) -> None:
+def test_expansions_enclose_the_forms(turning: bool, seed: int) -> None:
     """Value, slopes and remainder enclose the turned form of every point all over the box."""
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 3, 2), one_box(rng)
@@ -49,7 +35,7 @@ def test_expansions_enclose_the_forms(
     basis, gram = frames.basis.middle()[:, :, 0], full(frames.gram)
     for x in rng.uniform(-1.0, 1.0, (3, 3)) * boxes.half[0]:
         p = boxes.centre[0] + x
-        rotation = carried(frames, family.points_m[frames.anchor[0]], boxes.centre[0], p)
+        rotation = carried(frames.turning[0], family.points_m[frames.anchor[0]], boxes.centre[0], p)
         for j in range(len(family.points_m)):
             form, up, down = expansion(family, frames, boxes, np.array([j]))
             turned = (
@@ -65,9 +51,7 @@ def test_expansions_enclose_the_forms(
 
 
 @given(seed=seeds)
-def test_the_form_at_the_centre_is_exact(
-    seed: int, random_family: Callable, make_leaves: Callable, link_matrix: Callable, one_box: Callable
-) -> None:
+def test_the_form_at_the_centre_is_exact(seed: int) -> None:
     """Intervals of the value are narrow and hold the form in the basis; an anchor has its null there."""
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 2, 2), one_box(rng)
@@ -84,9 +68,7 @@ def test_the_form_at_the_centre_is_exact(
 
 
 @given(seed=seeds)
-def test_turning_rates_are_derivatives(
-    seed: int, random_family: Callable, make_leaves: Callable, carried: Callable, one_box: Callable
-) -> None:
+def test_turning_rates_are_derivatives(seed: int) -> None:
     """The rate of a turned constant form agrees with differences of the frame that is carried along."""
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 2, 2), one_box(rng)
@@ -97,7 +79,9 @@ def test_turning_rates_are_derivatives(
     slopes = constant(frames, Interval(q[ROW, COLUMN][:, None])).slopes
     for e in range(3):
         ends = [
-            carried(frames, family.points_m[frames.anchor[0]], centre, centre + s * step * np.eye(3)[e])
+            carried(
+                frames.turning[0], family.points_m[frames.anchor[0]], centre, centre + s * step * np.eye(3)[e]
+            )
             for s in (-1.0, 1.0)
         ]
         change = (ends[1].T @ q @ ends[1] - ends[0].T @ q @ ends[0]) / (2.0 * step)

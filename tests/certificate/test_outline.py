@@ -4,11 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from tests.certificate.plain import seeds
 
 from nullpose.certificate.outline import Outline, Point, clipped, corners, exact, may_meet
-
-seeds = st.integers(0, 2**32 - 1)
 
 
 def star(rng: np.random.Generator, on_grid: bool) -> np.ndarray:

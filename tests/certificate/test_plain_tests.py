@@ -1,23 +1,19 @@
 """Distances alone: what is called out of reach is, and so is what a root box leaves out."""
 
-from collections.abc import Callable
-
 import numpy as np
-from hypothesis import given, strategies as st
+from hypothesis import given
+from tests.certificate.plain import boxes_at, dense_ratios, make_leaves, random_family, seeds
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.plain_tests import far_holds, kept_out_holds, root_holds
 from nullpose.problem.axis_field import AxisField
 
-seeds = st.integers(0, 2**32 - 1)
-
 
 def some_boxes(rng: np.random.Generator, count: int) -> Boxes:
     """Return boxes above the field, one for each leaf."""
-    return Boxes(
-        leaf=np.arange(count),
-        centre=rng.uniform([-40.0, -40.0, 5.0], [100.0, 100.0, 30.0], (count, 3)),
-        half=10.0 ** rng.uniform(-2.0, 1.0, (count, 3)),
+    return boxes_at(
+        rng.uniform([-40.0, -40.0, 5.0], [100.0, 100.0, 30.0], (count, 3)),
+        10.0 ** rng.uniform(-2.0, 1.0, (count, 3)),
     )
 
 
@@ -34,9 +30,7 @@ def nearest_m(boxes: Boxes, b: int, point: np.ndarray) -> float:
 
 
 @given(seed=seeds)
-def test_far_is_far(
-    seed: int, random_family: Callable, make_leaves: Callable, dense_ratios: Callable
-) -> None:
+def test_far_is_far(seed: int) -> None:
     """No allowed pose of a box that is out of reach gives its node the level; just out of reach is told."""
     rng = np.random.default_rng(seed)
     groups = int(rng.integers(1, 4))
@@ -59,7 +53,7 @@ def test_far_is_far(
 
 
 @given(seed=seeds)
-def test_kept_out_is_inside_the_ball(seed: int, random_family: Callable, make_leaves: Callable) -> None:
+def test_kept_out_is_inside_the_ball(seed: int) -> None:
     """A box is kept out if its farthest corner is in the ball, to rounding."""
     rng = np.random.default_rng(seed)
     family = random_family(rng, 3, 1, keep_out_m=25.0)
@@ -78,7 +72,7 @@ def test_kept_out_is_inside_the_ball(seed: int, random_family: Callable, make_le
 
 
 @given(seed=seeds)
-def test_nothing_beyond_the_root_beats_the_bound(seed: int, random_family: Callable) -> None:
+def test_nothing_beyond_the_root_beats_the_bound(seed: int) -> None:
     """A root passes exactly if beyond each face one node, at its best, stays within the bound."""
     rng = np.random.default_rng(seed)
     family = random_family(rng, 3, 1, groups=int(rng.integers(1, 4)))

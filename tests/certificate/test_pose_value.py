@@ -3,11 +3,11 @@
 import math
 from collections.abc import Callable
 from fractions import Fraction
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from tests.certificate.plain import dense_ratios, random_family, seeds
 
 from nullpose.certificate.pose_value import (
     antenna_axis,
@@ -27,7 +27,6 @@ from nullpose.physics import (
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 
-seeds = st.integers(0, 2**32 - 1)
 angles = st.floats(-4.0, 4.0)
 
 
@@ -82,26 +81,9 @@ def test_the_smallest_ratio_is_the_smallest_sinr(
 def test_several_denominators(seed: int) -> None:
     """Each ratio takes its own denominator, as in the secrecy rates that the family allows for."""
     rng = np.random.default_rng(seed)
-    points = rng.uniform(0.0, 10.0, (4, 3))
-    family = SimpleNamespace(
-        points_m=points,
-        numerator_isotropic=rng.uniform(size=2),
-        numerator_weight=rng.uniform(size=2),
-        numerator_point=np.array([0, 1]),
-        denominator_of=np.array([1, 0]),
-        denominator_isotropic=rng.uniform(0.5, 1.0, 2),
-        denominator_start=np.array([0, 1, 2]),
-        denominator_point=np.array([2, 3]),
-        denominator_weight=rng.uniform(size=2),
-        leak=0.0,
-        ground_axes=None,
-    )
-    p, u = np.array([1.0, 2.0, 20.0]), rng.normal(size=3)
-    gains = [np.sum(np.cross(q - p, u) ** 2) / (u @ u * np.sum((q - p) ** 2) ** 2) for q in points]
-    below = family.denominator_isotropic + family.denominator_weight * np.array(gains[2:])
-    above = family.numerator_isotropic + family.numerator_weight * np.array(gains[:2])
+    family, p, u = random_family(rng, 4, 2, groups=3), np.array([1.0, 2.0, 20.0]), rng.normal(size=3)
     value = float(smallest_ratio(family, exact(p), exact(u)))
-    assert value == pytest.approx(min(above[0] / below[1], above[1] / below[0]), rel=1e-13)
+    assert value == pytest.approx(dense_ratios(family, p, u).min(), rel=1e-12)
 
 
 @given(seed=seeds)
@@ -119,12 +101,9 @@ def test_offsets_from_a_field(seed: int, random_scene: Callable) -> None:
         assert field_offset(field, exact(p), exact(axis)) < Fraction(1, 10**24)
         across = np.cross(axis, rng.normal(size=3))
         angle = float(rng.uniform(1e-3, 1.5))
-        turned = axis / np.linalg.norm(axis) * math.cos(angle) + across / np.linalg.norm(across) * math.sin(
-            angle
-        )
-        assert float(field_offset(field, exact(p), exact(turned))) == pytest.approx(
-            math.sin(angle) ** 2, rel=1e-9
-        )
+        ahead, across = axis / np.linalg.norm(axis), across / np.linalg.norm(across)
+        offset = field_offset(field, exact(p), exact(ahead * math.cos(angle) + across * math.sin(angle)))
+        assert float(offset) == pytest.approx(math.sin(angle) ** 2, rel=1e-9)
 
 
 def test_in_line_with_both_nodes_any_axis_across_the_line_is_broadside() -> None:

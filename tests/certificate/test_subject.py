@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 
 from nullpose.certificate import Certificate
 from nullpose.certificate.subject import sentence
-from nullpose.scenario import Eavesdropper, Scenario, Transmitter
+from nullpose.scenario import Scenario
 
 numbers = st.floats(-6.0, 6.0).map(lambda x: 10.0**x)
 
@@ -19,34 +19,18 @@ numbers = st.floats(-6.0, 6.0).map(lambda x: 10.0**x)
 @pytest.fixture(scope="module")
 def claim(paper: Callable) -> Certificate:
     """Returns a claim without a proof."""
-    return Certificate(
-        scenario=paper(),
-        scheme="optimum",
-        null_jammer=None,
-        value=1.25,
-        upper_bound=1.26,
-        position_m=np.array([0.0, 25.0, 8.0]),
-        roll_rad=0.0,
-        pitch_rad=0.0,
-        yaw_rad=0.0,
-        trees=(),
-    )
-
-
-def changed(scenario: Scenario, **parts: object) -> Scenario:
-    """Return a scenario with other parts."""
-    return scenario.model_copy(update=parts)
+    numbers = {"value": 1.25, "upper_bound": 1.26, "roll_rad": 0.0, "pitch_rad": 0.0, "yaw_rad": 0.0}
+    what = {"scenario": paper(), "scheme": "optimum", "null_jammer": None, "trees": ()}
+    return Certificate(position_m=np.array([0.0, 25.0, 8.0]), **what, **numbers)
 
 
 def overheard(scenario: Scenario) -> Scenario:
     """Return a scenario in which the drone transmits and somebody listens in."""
-    return changed(
-        scenario,
-        objective="secrecy-rate",
-        transmitter=Transmitter(power_w=1.0),
-        nodes=tuple(node.model_copy(update={"power_w": None}) for node in scenario.nodes),
-        eavesdroppers=(Eavesdropper(position_m=(1.0, 2.0, 3.0)),),
-    )
+    plain = scenario.to_dict()
+    nodes = [{"position_m": node["position_m"]} for node in plain["nodes"]]
+    heard = [{"position_m": (1.0, 2.0, 3.0)}]
+    secrecy = {"objective": "secrecy-rate", "transmitter": {"power_w": 1.0}, "eavesdroppers": heard}
+    return Scenario.from_dict(plain | secrecy | {"nodes": nodes})
 
 
 @given(value=numbers, gap=st.floats(0.0, 1.0))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.certificate.plain import accepted, certified, rejected, with_leaves, with_tree
 
 from nullpose.certificate import Certificate, verify
 from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, TOWARDS
@@ -15,36 +16,9 @@ PAPER = Path(__file__).parents[2] / "examples" / "paper.toml"
 SCHEMES = ["optimum", "zero-interference", "maximum-gain", "vertical"]
 
 
-def accepted(certificate: Certificate) -> str:
-    """Return the words with which a certificate is accepted."""
-    verdict = verify(certificate)
-    assert verdict.proved, verdict.message
-    assert verdict.leaves == sum(len(tree.leaves) for tree in certificate.trees)
-    return verdict.message
-
-
-def with_tree(certificate: Certificate, **changes: object) -> Certificate:
-    """Return a certificate whose first tree is another."""
-    tree = replace(certificate.trees[0], **changes)
-    return replace(certificate, trees=(tree, *certificate.trees[1:]))
-
-
-def with_leaves(certificate: Certificate, **columns: object) -> Certificate:
-    """Return a certificate whose first tree's leaves have other columns."""
-    return with_tree(certificate, leaves=replace(certificate.trees[0].leaves, **columns))
-
-
-def rejected(certificate: Certificate) -> str:
-    """Return the words with which a certificate is rejected."""
-    verdict = verify(certificate)
-    assert not verdict.proved
-    assert verdict.message.startswith("rejected: ")
-    return verdict.message
-
-
 @pytest.mark.parametrize("power_w", [1e-3, 0.1, 1.0, 100.0, 1e6])
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_the_papers_scenario_is_proved(scheme: str, power_w: float, certified: Callable) -> None:
+def test_the_papers_scenario_is_proved(scheme: str, power_w: float) -> None:
     """Every case of the paper, from hardly any jamming to a deafening one."""
     scenario = apply_overrides(load(PAPER), [f"jammers.M.power_w={power_w!r}"])
     certificate = certified(scenario, scheme)
@@ -52,7 +26,7 @@ def test_the_papers_scenario_is_proved(scheme: str, power_w: float, certified: C
     assert "proved: in this scenario no position" in accepted(certificate)
 
 
-def test_the_default_gap_is_proved(certified: Callable) -> None:
+def test_the_default_gap_is_proved() -> None:
     """The paper's optimum to one part in a million."""
     certificate = certified(load(PAPER), gap=1e-6)
     assert certificate.upper_bound <= certificate.value * 1.0000011
@@ -60,25 +34,18 @@ def test_the_default_gap_is_proved(certified: Callable) -> None:
 
 
 @pytest.mark.parametrize(("nodes", "jammers"), [(5, 1), (5, 2), (8, 1), (8, 3)])
-def test_many_nodes_are_proved(nodes: int, jammers: int, random_scene: Callable, certified: Callable) -> None:
+def test_many_nodes_are_proved(nodes: int, jammers: int, random_scene: Callable) -> None:
     """Random scenes where forms may have a duality gap."""
     accepted(certified(random_scene(10 * nodes + jammers, nodes, jammers)))
 
 
 def test_cells_are_proved(celled: Certificate) -> None:
-    """A certificate with cells of axes passes, and needs each of its faces."""
-    cell = celled.trees[0].leaves.cell
-    accepted(celled)
-    last = int(np.flatnonzero(cell[:, 0] == 2)[-1])
-    kept = np.delete(np.arange(len(cell)), last)
+    """A certificate with cells of axes passes, and needs each of its faces and the sides' multipliers."""
     leaves = celled.trees[0].leaves
+    accepted(celled)
+    kept = np.delete(np.arange(len(leaves)), int(np.flatnonzero(leaves.face == 2)[-1]))
     assert "face2" in rejected(with_tree(celled, leaves=leaves.chosen(kept)))
-
-
-def test_multipliers_of_sides_count(celled: Certificate) -> None:
-    """The sides' multipliers are used: a thousand times larger they prove nothing any more."""
-    sides = 1e3 * celled.trees[0].leaves.sides
-    assert "is not excluded" in rejected(with_leaves(celled, sides=sides))
+    assert "is not excluded" in rejected(with_leaves(celled, sides=1e3 * leaves.sides))
 
 
 def test_multipliers_of_balls_count(walled: Certificate) -> None:
@@ -112,12 +79,12 @@ AIRSPACES = [
         if (scheme, one) != ("maximum-gain", AIRSPACES[-1])
     ],
 )
-def test_every_airspace_is_proved(scheme: str, airspace: dict, paper: Callable, certified: Callable) -> None:
+def test_every_airspace_is_proved(scheme: str, airspace: dict, paper: Callable) -> None:
     """Bounded airspaces, planes, lines, a single position, and one below the ground."""
     accepted(certified(paper(**airspace), scheme, gap=1e-2))
 
 
-def test_several_jammers_need_a_tree_each(random_scene: Callable, certified: Callable) -> None:
+def test_several_jammers_need_a_tree_each(random_scene: Callable) -> None:
     """Zero interference is proved for every jammer, or for the one that was to be nulled."""
     scenario = random_scene(3, 3, 2)
     both = certified(scenario, "zero-interference")
@@ -133,14 +100,14 @@ def test_several_jammers_need_a_tree_each(random_scene: Callable, certified: Cal
     assert "has no certificate" in rejected(replace(one, null_jammer="M3"))
 
 
-def test_a_null_jammer_goes_with_zero_interference_only(paper: Callable, certified: Callable) -> None:
+def test_a_null_jammer_goes_with_zero_interference_only(paper: Callable) -> None:
     """A proof of the optimum is none of a pose whose null is on a jammer."""
     certificate = certified(paper(), gap=0.1)
     assert "null jammer 'M1' has no certificate" in rejected(replace(certificate, null_jammer="M1"))
     assert "'no such' has no certificate" in rejected(replace(certificate, scheme="no such"))
 
 
-def test_the_pose_is_checked(paper: Callable, certified: Callable) -> None:
+def test_the_pose_is_checked(paper: Callable) -> None:
     """Each way in which a pose can fail is told."""
     certificate = certified(paper(x_m=(-50.0, 60.0)), "vertical", gap=0.1)
     p = certificate.position_m
@@ -192,9 +159,7 @@ def test_a_pose_in_a_keep_out_ball_is_rejected(walled: Certificate) -> None:
 )
 def test_numbers_out_of_range_are_named(columns: dict, words: str, walled: Certificate) -> None:
     """The first leaf whose numbers cannot be is named with what is wrong."""
-    leaves = walled.trees[0].leaves
-    changed = {name: change(getattr(leaves, name)) for name, change in columns.items()}
-    message = rejected(with_leaves(walled, **changed))
+    message = rejected(with_leaves(walled, **columns))
     assert words in message
     assert "tree 'free': leaf " in message
 
@@ -206,30 +171,23 @@ def test_multipliers_that_cannot_be_are_named(mix: dict, walled: Certificate) ->
     assert "multipliers 0: " in rejected(with_leaves(walled, mixes=mixes))
 
 
-def test_huge_numbers_end_in_words(paper: Callable, certified: Callable, walled: Certificate) -> None:
+def test_huge_numbers_end_in_words(paper: Callable, walled: Certificate) -> None:
     """Numbers near the largest there are overflow into a rejection, not into an exception."""
+    size = 1e300
     for certificate in (walled, certified(paper(keep_out_m=26.5), "vertical", gap=0.1)):
         leaves = certificate.trees[0].leaves
-        for size in (1e300,):
-            balls = {"ball": leaves.ball * 0, "ball_multiplier": np.full(len(leaves), size)}
-            if certificate is walled:  # of the other, pieces pass that need no ball
-                assert "is not excluded" in rejected(with_leaves(certificate, **balls))
-            wide = np.array([[-size] * 3, [size] * 3])
-            assert "is not excluded" in rejected(with_tree(certificate, root_m=wide))
-            mixes = tuple(dict.fromkeys(mix, size) for mix in leaves.mixes)
-            assert verify(with_leaves(certificate, mixes=mixes)).message
-            assert "leaf 0" in rejected(
-                replace(
-                    certificate,
-                    upper_bound=size,
-                    trees=with_leaves(
-                        certificate,
-                        level=np.full(len(leaves), size),
-                        test=np.full(len(leaves), KEPT_OUT),
-                        point=leaves.point * 0,
-                    ).trees,
-                )
-            )
+        whole = np.full(len(leaves), size)
+        if certificate is walled:  # of the other, pieces pass that need no ball
+            held = with_leaves(certificate, ball=leaves.ball * 0, ball_multiplier=whole)
+            assert "is not excluded" in rejected(held)
+        wide = np.array([[-size] * 3, [size] * 3])
+        assert "is not excluded" in rejected(with_tree(certificate, root_m=wide))
+        mixes = tuple(dict.fromkeys(mix, size) for mix in leaves.mixes)
+        assert verify(with_leaves(certificate, mixes=mixes)).message
+        kept_out = with_leaves(
+            certificate, level=whole, test=leaves.test * 0 + KEPT_OUT, point=leaves.point * 0
+        )
+        assert "leaf 0" in rejected(replace(kept_out, upper_bound=size))
 
 
 def test_a_root_that_is_too_small_is_rejected(walled: Certificate) -> None:
@@ -254,14 +212,11 @@ def test_a_failing_leaf_is_placed(walled: Certificate) -> None:
 def test_leaves_that_fail_by_a_hair_are_cut(walled: Certificate) -> None:
     """Two leaves joined into their parent pass if the parts that the verifier tries by itself do."""
     leaves = walled.trees[0].leaves
-    out = np.flatnonzero((leaves.test == FAR) & (leaves.box[:, 0] > 0))
-    level = leaves.level.copy()
-    for row in out:
-        level[row] *= 1.0 - 1e-13
-    accepted(with_leaves(walled, level=level))
+    out = (leaves.test == FAR) & (leaves.box[:, 0] > 0)
+    accepted(with_leaves(walled, level=leaves.level * np.where(out, 1.0 - 1e-13, 1.0)))
 
 
-def test_another_scenario_is_not_proved(paper: Callable, certified: Callable) -> None:
+def test_another_scenario_is_not_proved(paper: Callable) -> None:
     """The leaves of one scene do not prove another's bound, even with the pose's value corrected."""
     certificate = certified(paper(1.0), gap=1e-2)
     other: Scenario = paper(0.01)

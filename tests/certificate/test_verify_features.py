@@ -4,50 +4,33 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
+from tests.certificate.plain import accepted, certified, put_together, rejected, with_leaves
 
 from nullpose.certificate import Certificate, certificate_text, differences, parse_certificate, verify
 from nullpose.certificate.certificate import KEPT_OUT
 from nullpose.problem.build import build_family
-from nullpose.scenario import Airspace, Eavesdropper, Scenario, Transmitter
+from nullpose.scenario import Airspace, Scenario
 from nullpose.scenario.polygon import depth_m
 
 ALTITUDE_M = (8.0, 30.0)
+DISC = {"centre_m": (-2.2, 23.8), "radius_m": 6.0}
+TRIANGLE = [(-10.0, 15.0), (10.0, 20.0), (-5.0, 35.0)]
+NOTCH = [(-20.0, 10.0), (20.0, 10.0), (20.0, 40.0), (-2.0, 24.5), (-20.0, 40.0)]
+WALL = [(-30.0, -10.0), (40.0, -10.0), (40.0, 60.0), (-30.0, 60.0)]
+SOUTH = {"x_m": (-20.0, -6.0), "y_m": (10.0, 40.0)}
 ZONES = {
     "block": {"no_fly": [{"x_m": (-20.0, 5.0), "y_m": (10.0, 40.0)}]},
-    "cylinder": {"no_fly": [{"centre_m": (-2.2, 23.8), "radius_m": 6.0}]},
-    "low cylinder": {"no_fly": [{"centre_m": (-2.2, 23.8), "radius_m": 6.0, "altitude_m": (0.0, 10.0)}]},
-    "triangle": {
-        "no_fly": [{"polygon_m": [(-10.0, 15.0), (10.0, 20.0), (-5.0, 35.0)], "altitude_m": (0.0, 12.0)}]
-    },
-    "notch": {
-        "no_fly": [{"polygon_m": [(-20.0, 10.0), (20.0, 10.0), (20.0, 40.0), (-2.0, 24.5), (-20.0, 40.0)]}]
-    },
+    "cylinder": {"no_fly": [DISC]},
+    "low cylinder": {"no_fly": [DISC | {"altitude_m": (0.0, 10.0)}]},
+    "triangle": {"no_fly": [{"polygon_m": TRIANGLE, "altitude_m": (0.0, 12.0)}]},
+    "notch": {"no_fly": [{"polygon_m": NOTCH}]},
     "fence": {"geofence_m": [(0.0, 0.0), (40.0, 0.0), (40.0, 60.0), (20.0, 30.0), (5.0, 60.0)]},
-    "both": {
-        "geofence_m": [(-30.0, -10.0), (40.0, -10.0), (40.0, 60.0), (-30.0, 60.0)],
-        "no_fly": [
-            {"centre_m": (2.0, 25.0), "radius_m": 6.0},
-            {"x_m": (-20.0, -6.0), "y_m": (10.0, 40.0)},
-        ],
-    },
+    "both": {"geofence_m": WALL, "no_fly": [{"centre_m": (2.0, 25.0), "radius_m": 6.0}, SOUTH]},
 }
-
-
-def accepted(certificate: Certificate) -> str:
-    """Return the words with which a certificate is accepted."""
-    verdict = verify(certificate)
-    assert verdict.proved, verdict.message
-    return verdict.message
-
-
-def rejected(certificate: Certificate) -> str:
-    """Return the words with which a certificate is rejected."""
-    verdict = verify(certificate)
-    assert not verdict.proved
-    return verdict.message
 
 
 def within(scenario: Scenario, **airspace: object) -> Scenario:
@@ -57,27 +40,17 @@ def within(scenario: Scenario, **airspace: object) -> Scenario:
 
 def overheard(scenario: Scenario, *places: tuple[float, float, float], power_w: float = 1.0) -> Scenario:
     """Return a scenario in which the drone transmits and somebody listens in at each place."""
-    return Scenario(
-        objective="secrecy-rate",
-        airspace=scenario.airspace,
-        receiver=scenario.receiver,
-        transmitter=Transmitter(power_w=power_w),
-        nodes=tuple(node.model_copy(update={"power_w": None}) for node in scenario.nodes),
-        eavesdroppers=tuple(Eavesdropper(position_m=place) for place in places),
-    )
+    plain = scenario.to_dict()
+    secrecy = {"objective": "secrecy-rate", "transmitter": {"power_w": power_w}, "jammers": []}
+    nodes = [{"position_m": node["position_m"]} for node in plain["nodes"]]
+    heard = [{"position_m": place} for place in places]
+    return Scenario.from_dict(plain | secrecy | {"nodes": nodes, "eavesdroppers": heard})
 
 
 @pytest.fixture(scope="module")
-def zoned(paper: Callable, certified: Callable) -> Callable[[str, str], Certificate]:
+def zoned(paper: Callable) -> Callable[..., Certificate]:
     """Returns a function: the certificate of the paper's scene in an airspace, under a scheme."""
-    made: dict[tuple[str, str], Certificate] = {}
-
-    def certificate(name: str, scheme: str = "optimum") -> Certificate:
-        if (name, scheme) not in made:
-            made[name, scheme] = certified(within(paper(), **ZONES[name]), scheme)
-        return made[name, scheme]
-
-    return certificate
+    return cache(lambda name, scheme="optimum": certified(within(paper(), **ZONES[name]), scheme))
 
 
 @pytest.mark.parametrize("scheme", ["optimum", "vertical", "zero-interference"])
@@ -107,8 +80,7 @@ def test_zones_are_needed(name: str, zoned: Callable) -> None:
         columns.append({"point": np.where(inside, (tree.leaves.point - balls + 1) % 3, tree.leaves.point)})
         columns.append({"ball": np.where(leaning, (tree.leaves.ball - balls + 1) % 3, tree.leaves.ball)})
     for changed in columns:
-        leaves = replace(tree.leaves, **changed)
-        assert "is not excluded" in rejected(replace(certificate, trees=(replace(tree, leaves=leaves),)))
+        assert "is not excluded" in rejected(with_leaves(certificate, **changed))
     free = within(certificate.scenario)
     assert rejected(replace(certificate, scenario=free))
 
@@ -116,15 +88,15 @@ def test_zones_are_needed(name: str, zoned: Callable) -> None:
 def test_a_smaller_zone_is_another_claim(zoned: Callable) -> None:
     """A proof for a zone does not hold once the zone leaves more room."""
     certificate = zoned("cylinder")
-    smaller = within(certificate.scenario, no_fly=[{"centre_m": (-2.2, 23.8), "radius_m": 5.9}])
+    smaller = within(certificate.scenario, no_fly=[DISC | {"radius_m": 5.9}])
     assert "is not excluded" in rejected(replace(certificate, scenario=smaller))
     # while a larger one forbids the pose
-    larger = within(certificate.scenario, no_fly=[{"centre_m": (-2.2, 23.8), "radius_m": 6.1}])
+    larger = within(certificate.scenario, no_fly=[DISC | {"radius_m": 6.1}])
     assert "no-fly zone" in rejected(replace(certificate, scenario=larger))
 
 
 @pytest.mark.parametrize("name", ["block", "cylinder", "triangle", "fence"])
-def test_a_margin_is_proved(name: str, zoned: Callable, certified: Callable, paper: Callable) -> None:
+def test_a_margin_is_proved(name: str, zoned: Callable, paper: Callable) -> None:
     """A pose on a border moves away from it by the margin, and the proof holds for no smaller margin."""
     margin_m = 1.5
 
@@ -152,7 +124,7 @@ def test_a_margin_is_proved(name: str, zoned: Callable, certified: Callable, pap
     assert "within their margin_m" in rejected(larger)
 
 
-def test_forbidden_poses_are_rejected(zoned: Callable, certified: Callable, paper: Callable) -> None:
+def test_forbidden_poses_are_rejected(zoned: Callable, paper: Callable) -> None:
     """A pose in a zone or beyond the fence is none; one on the border, to a nanometre, is."""
     free = certified(paper())
     for name in ("block", "cylinder", "fence"):
@@ -169,13 +141,9 @@ def test_forbidden_poses_are_rejected(zoned: Callable, certified: Callable, pape
         assert verdict.proved or words or "smallest SINR" in verdict.message
 
 
-def test_zones_and_airframes_go_together(paper: Callable, put_together: Callable) -> None:
+def test_zones_and_airframes_go_together(paper: Callable) -> None:
     """Level axes, a band and an upright antenna in an airspace with zones."""
-    for airframe in (
-        {"preset": "level", "mount_deg": 90.0},
-        {"tilt_max_deg": 20.0},
-        {"preset": "level"},
-    ):
+    for airframe in ({"preset": "level", "mount_deg": 90.0}, {"tilt_max_deg": 20.0}, {"preset": "level"}):
         data = within(paper(10.0), **ZONES["both"]).to_dict() | {"airframe": airframe}
         certificate = put_together(Scenario.from_dict(data))
         assert certificate.upper_bound <= certificate.value * 1.0011
@@ -186,7 +154,7 @@ def test_zones_and_airframes_go_together(paper: Callable, put_together: Callable
 
 @pytest.mark.parametrize("scheme", ["optimum", "vertical"])
 @pytest.mark.parametrize("listeners", [1, 3])
-def test_secrecy_rates_are_proved(listeners: int, scheme: str, paper: Callable, certified: Callable) -> None:
+def test_secrecy_rates_are_proved(listeners: int, scheme: str, paper: Callable) -> None:
     """With eavesdroppers the numbers are two to the power of the rate; the words have the rate."""
     places = [(17.0, 15.0, 4.0), (-30.0, 20.0, 0.0), (20.0, 60.0, 2.0)][:listeners]
     certificate = certified(overheard(paper(), *places), scheme)

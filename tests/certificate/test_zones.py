@@ -3,7 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from tests.certificate.plain import boxes_at, seeds
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.interval import dot
@@ -12,8 +13,6 @@ from nullpose.errors import ScenarioError
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Airspace
-
-seeds = st.integers(0, 2**32 - 1)
 
 ALTITUDES = {"altitude_m": (8.0, 30.0)}
 
@@ -56,7 +55,7 @@ def some_boxes(rng: np.random.Generator, family: Family, count: int) -> Boxes:
     low, high = np.floor(centre - half), np.ceil(centre + half)
     centre = np.where(whole[:, None], 0.5 * (low + high), centre)
     half = np.where(whole[:, None], 0.5 * (high - low), half)
-    return Boxes(leaf=np.arange(count), centre=centre, half=half)
+    return boxes_at(centre, half)
 
 
 def value_at(bound: Constraint, i: int, shift: np.ndarray) -> float:
@@ -134,9 +133,5 @@ def test_boxes_inside_a_zone_are_forbidden(paper: Callable) -> None:
     ]
     for cases, expected in ((inside, True), (reaching, False)):
         zone = np.array([case[0] for case in cases])
-        boxes = Boxes(
-            leaf=np.arange(len(cases)),
-            centre=np.array([case[1] for case in cases]),
-            half=np.array([case[2] for case in cases]),
-        )
+        boxes = boxes_at(np.array([case[1] for case in cases]), np.array([case[2] for case in cases]))
         assert np.all(forbidden(family, zone, boxes) == expected)

@@ -27,8 +27,6 @@ JAMMERS = st.integers(0, 3)
 ELEMENTS = st.integers(1, 9)
 LAYOUTS = st.sampled_from(["linear", "circular"])
 
-Exact = tuple[Fraction, Fraction]
-
 
 def _channels(scene: Scenario, position_m: np.ndarray, elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The channels of nodes and of jammers, one a row."""
@@ -47,37 +45,22 @@ def _place(rng: np.random.Generator) -> np.ndarray:
     return rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 40.0])
 
 
-def _times(a: Exact, b: Exact) -> Exact:
-    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
-
-
 def _exact_sinr(channel: np.ndarray, jammers: np.ndarray, noise_w: float) -> float:
-    """``h^H R^-1 h`` by Gaussian elimination in rational numbers, free of rounding."""
+    """``h^H R^-1 h`` by Gaussian elimination in rational numbers, free of rounding.
 
-    def exact(z: complex) -> Exact:
-        return Fraction(float(z.real)), Fraction(float(z.imag))
+    Of real numbers: a complex system of size k is a real one of size 2 k.
+    """
 
-    size = len(channel)
-    rows = [[exact(noise_w * (i == j)) for j in range(size)] for i in range(size)]
-    for jammer in jammers:
-        g = [exact(z) for z in jammer]
-        for i in range(size):
-            for j in range(size):
-                real, imaginary = _times(g[i], (g[j][0], -g[j][1]))
-                rows[i][j] = (rows[i][j][0] + real, rows[i][j][1] + imaginary)
-    h = [exact(z) for z in channel]
-    right = list(h)
-    total = Fraction(0)
-    for i in range(size):  # R = L D L^H, so that h^H R^-1 h is the sum of |L^-1 h|^2 / D
-        pivot = rows[i][i][0]
-        total += (right[i][0] ** 2 + right[i][1] ** 2) / pivot
-        for row in range(i + 1, size):
-            share = (rows[row][i][0] / pivot, rows[row][i][1] / pivot)
-            for column in range(i + 1, size):
-                real, imaginary = _times(share, rows[i][column])
-                rows[row][column] = (rows[row][column][0] - real, rows[row][column][1] - imaginary)
-            real, imaginary = _times(share, right[i])
-            right[row] = (right[row][0] - real, right[row][1] - imaginary)
+    def real(matrix: np.ndarray) -> np.ndarray:
+        parts = np.block([[matrix.real, -matrix.imag], [matrix.imag, matrix.real]])
+        return np.array([[Fraction(x) for x in row] for row in parts.tolist()], dtype=object)
+
+    g, h = real(jammers.T), real(channel[:, None])[:, 0]
+    rows, total = g @ g.T + Fraction(noise_w) * np.eye(2 * len(channel), dtype=int), Fraction(0)
+    while len(h):  # R = L D L^T, so that h^T R^-1 h is the sum of (L^-1 h)^2 / D
+        share = rows[1:, 0] / rows[0, 0]
+        total += h[0] ** 2 / rows[0, 0]
+        rows, h = rows[1:, 1:] - np.outer(share, rows[0, 1:]), h[1:] - share * h[0]
     return float(total)
 
 
@@ -110,18 +93,6 @@ def test_phases_are_those_of_the_distances(seed: int, layout: str) -> None:
     )
 
 
-@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, layout=LAYOUTS)
-def test_one_element_is_the_vertical_case(
-    seed: int, nodes: int, jammers: int, layout: str, random_scene: Callable
-) -> None:
-    """One dipole gives eq. 2.1 with the axis vertical."""
-    rng = np.random.default_rng(seed)
-    scene, position = random_scene(rng, nodes, jammers), _place(rng)
-    alone = element_positions(1, layout, rng.uniform(0.1, 2.0), rng.uniform(0.0, 6.0))
-    expected = sinr(scene, position, VERTICAL)
-    np.testing.assert_allclose(digital_sinr(scene, position, alone), expected, rtol=1e-12)
-
-
 @pytest.mark.parametrize("case", ["apart", "two jammers as one", "a jammer at a node"])
 @pytest.mark.parametrize("jamming_w", [1.0, 1e3, 1e5, 1e7, 1e9])
 def test_digital_combining_keeps_its_digits(
@@ -140,7 +111,7 @@ def test_digital_combining_keeps_its_digits(
             jammers_m[1] = jammers_m[0] + 1e-6
         elif case == "a jammer at a node":
             jammers_m[0] = nodes_m[0] + 1e-5
-        field = scene(nodes_m, [1.0, 1.0], jammers_m, [jamming_w] * 3)
+        field = scene(nodes_m, jammers_m, jammer_powers_w=jamming_w)
         position = rng.uniform([0.0, 0.0, 10.0], [60.0, 60.0, 30.0])
         places = element_positions(int(rng.integers(2, 5)), "circular", 0.5, rng.uniform(0.0, 6.0))
         heard, jamming = _channels(field, position, places)
@@ -187,21 +158,6 @@ def test_without_jammers_the_elements_add_up(
     assert np.all(digital_sinr(scene, position, places) <= most * (1.0 + 1e-12))
 
 
-@given(seed=SEEDS, nodes=NODES, jammers=JAMMERS, elements=st.integers(2, 9), layout=LAYOUTS)
-def test_an_element_less_or_a_jammer_more_never_helps(
-    seed: int, nodes: int, jammers: int, elements: int, layout: str, random_scene: Callable
-) -> None:
-    """Digital combining is not better with an element switched off, nor with one more jammer."""
-    rng = np.random.default_rng(seed)
-    jammed = random_scene(rng, nodes, jammers + 1)
-    calmer = jammed.model_copy(update={"jammers": jammed.jammers[:-1]})
-    position = _place(rng)
-    places = element_positions(elements, layout, 0.5, rng.uniform(0.0, 6.0))
-    values = digital_sinr(calmer, position, places)
-    assert np.all(digital_sinr(calmer, position, places[:-1]) <= values * (1.0 + 1e-9))
-    assert np.all(digital_sinr(jammed, position, places) <= values * (1.0 + 1e-9))
-
-
 @given(seed=SEEDS, jammers=JAMMERS)
 def test_many_poses_at_once(seed: int, jammers: int, random_scene: Callable) -> None:
     """Positions and yaws of any leading shape give what each gives alone."""
@@ -220,7 +176,7 @@ def test_many_poses_at_once(seed: int, jammers: int, random_scene: Callable) -> 
 
 def test_a_node_that_is_not_heard_has_no_weights(scene: Callable) -> None:
     """Straight below the vehicle, in every dipole's null, a node has SINR 0 and weights 0."""
-    below = scene([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0]], [1.0, 1.0], [[5.0, 5.0, 0.0]], [1.0])
+    below = scene([(0, 0, 0), (9, 0, 0)], [(5, 5, 0)])
     places = element_positions(3, "linear", 0.5)
     assert digital_sinr(below, [0.0, 0.0, 10.0], places)[0] == 0.0
     weights = digital_weights(below, [0.0, 0.0, 10.0], places)

@@ -65,15 +65,11 @@ def test_a_node_in_the_null_is_minus_infinity(paper: Scenario) -> None:
 POSE = Pose([3.0, 24.0, 9.0], 0.2, -1.1)
 
 
-def test_a_plain_link_has_neither_margin_nor_rate(paper: Scenario) -> None:
-    """Where no node states a weight or requirement, there is the SINR only."""
+def test_links_with_margins(paper: Scenario) -> None:
+    """If any node states a requirement every link has a margin; the least is what the scenario asks for."""
     for link in evaluate(paper, POSE):
         assert (link.margin, link.margin_db, link.secrecy_rate_bps_hz) == (None, None, None)
     assert min_margin(paper, POSE) == min_sinr(paper, POSE)
-
-
-def test_links_with_margins(paper: Scenario) -> None:
-    """If any node states a requirement every link has a margin; the least is what the scenario asks for."""
     stated = apply_overrides(paper, ["nodes.S2.min_sinr_db=-6"])
     first, second = evaluate(stated, POSE)
     assert first.margin == first.sinr
@@ -87,14 +83,8 @@ def test_links_with_margins(paper: Scenario) -> None:
 
 def test_links_of_the_downlink(paper: Scenario) -> None:
     """With the secrecy rate a link is the node's reception of the drone: its SNR and its rate."""
-    secret = apply_overrides(
-        paper,
-        [
-            "objective=secrecy-rate",
-            "transmitter.power_w=2",
-            "eavesdroppers=[{position_m = [-20, 15, 4]}]",
-        ],
-    )
+    changes = ["transmitter.power_w=2", "eavesdroppers=[{position_m = [-20, 15, 4]}]"]
+    secret = apply_overrides(paper, ["objective=secrecy-rate", *changes])
     links = evaluate(secret, POSE)
     at = (secret, POSE.position_m, POSE.antenna_axis)
     assert [link.sinr for link in links] == list(node_snr(*at))

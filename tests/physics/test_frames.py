@@ -10,13 +10,7 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.spatial.transform import Rotation
 
-from nullpose.physics import (
-    Pose,
-    flu_from_frd,
-    frd_from_flu,
-    pose_frames,
-    rotation_world_from_body,
-)
+from nullpose.physics import Pose, flu_from_frd, frd_from_flu, pose_frames, rotation_world_from_body
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import ned_from_enu
 
@@ -74,6 +68,13 @@ def test_a_level_vehicle_that_faces_north() -> None:
     np.testing.assert_allclose(frames.enu.quaternion_wxyz, [math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)])
     assert frames.enu.position_m == (1.0, 2.0, 3.0)
     assert frames.ned.position_m == (2.0, 1.0, -3.0)
+    assert list(frames.to_dict()) == [
+        "enu",
+        "ned",
+    ]  # without an origin no place on the Earth, nor an empty one
+    earthly = pose_frames(ON_EARTH, Pose((1.0, 2.0, 3.0), 0.1, 0.2, 0.3)).to_dict()
+    assert list(earthly["geodetic"]) == ["lat_deg", "lon_deg", "alt_m"]
+    assert json.loads(json.dumps(earthly, allow_nan=False)) == earthly
 
 
 @given(poses)
@@ -83,19 +84,6 @@ def test_the_place_on_the_earth_is_that_of_the_position(pose: Pose) -> None:
     assert place is not None
     theirs = pymap3d.enu2geodetic(*pose.position_m, 50.0, 14.5, 230.0)
     assert (place.lat_deg, place.lon_deg, place.alt_m) == pytest.approx(tuple(map(float, theirs)), abs=1e-12)
-
-
-def test_plain_data_names_the_order_and_leaves_out_what_is_not_known() -> None:
-    """Without an origin there is no place on the Earth, not an empty one; both orders are there by name."""
-    pose = Pose((1.0, 2.0, 3.0), 0.1, 0.2, 0.3)
-    local, earthly = (pose_frames(scenario, pose).to_dict() for scenario in (LOCAL, ON_EARTH))
-    assert list(local) == ["enu", "ned"]
-    assert list(earthly) == ["enu", "ned", "geodetic"]
-    assert list(earthly["geodetic"]) == ["lat_deg", "lon_deg", "alt_m"]
-    for frame in ("enu", "ned"):
-        wxyz, xyzw = local[frame]["quaternion_wxyz"], local[frame]["quaternion_xyzw"]
-        assert [wxyz[i] for i in (1, 2, 3, 0)] == xyzw
-    assert json.loads(json.dumps(earthly, allow_nan=False)) == earthly
 
 
 def test_body_frames() -> None:

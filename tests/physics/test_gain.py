@@ -41,13 +41,9 @@ def test_gain_integrates_to_two_thirds_of_the_sphere() -> None:
     heights, weights = np.polynomial.legendre.leggauss(8)
     azimuths = np.arange(16) * (2.0 * math.pi / 16)
     across = np.sqrt(1.0 - heights**2)
+    turns = [np.cos(azimuths), np.sin(azimuths)]
     directions = np.stack(
-        [
-            across[:, None] * np.cos(azimuths),
-            across[:, None] * np.sin(azimuths),
-            np.broadcast_to(heights[:, None], (8, 16)),
-        ],
-        axis=-1,
+        [*(across[:, None] * turn for turn in turns), np.tile(heights[:, None], 16)], axis=-1
     )
     axis = np.array([2.0, -3.0, 6.0]) / 7.0
     gain = antenna_gain(np.zeros(3), axis, 5.0 * directions.reshape(-1, 3)).reshape(8, 16)

@@ -41,9 +41,8 @@ def test_the_jamming_power_is_gone(
     """Neither eq. 3.2 nor eq. 2.1 at its axis feels the jammer's power, up to 120 dB more of it."""
     rng = np.random.default_rng(seed)
     one = random_scene(rng, 3, 1)
-    louder = scene(
-        one.node_positions_m, one.node_powers_w, one.jammer_positions_m, factor * one.jammer_powers_w
-    )
+    one = scene(one.node_positions_m, one.jammer_positions_m, jammer_powers_w=one.jammer_powers_w)
+    louder = scene(one.node_positions_m, one.jammer_positions_m, jammer_powers_w=factor * one.jammer_powers_w)
     position, _ = random_poses(rng)
     quiet = zero_interference_sinr(one, position)
     np.testing.assert_array_equal(zero_interference_sinr(louder, position), quiet)
@@ -51,12 +50,21 @@ def test_the_jamming_power_is_gone(
     np.testing.assert_allclose(sinr(louder, position, axis), quiet, rtol=1e-12)
 
 
-@pytest.mark.parametrize("jammers", [0, 2])
-def test_equation_3_2_is_for_one_jammer(jammers: int, random_scene: Callable) -> None:
-    """Without a jammer, or with two, eq. 3.2 is refused, and the message says how many there are."""
-    scene = random_scene(np.random.default_rng(1), 2, jammers)
-    with pytest.raises(ValueError, match=f"one jammer; this scenario has {jammers}"):
-        zero_interference_sinr(scene, np.array([0.0, 0.0, 10.0]))
+@pytest.mark.parametrize(
+    ("form", "nodes", "jammers", "words"),
+    [
+        (zero_interference_sinr, 2, 0, "one jammer; this scenario has 0"),
+        (zero_interference_sinr, 2, 2, "one jammer; this scenario has 2"),
+        (maximum_gain_axis, 1, 1, "two nodes; this scenario has 1"),
+        (maximum_gain_sinr, 3, 1, "two nodes; this scenario has 3"),
+    ],
+)
+def test_other_numbers_are_refused(
+    form: Callable, nodes: int, jammers: int, words: str, random_scene: Callable
+) -> None:
+    """Eq. 3.2 is for one jammer and eq. 3.4 for two nodes; the message says how many there are."""
+    with pytest.raises(ValueError, match=words):
+        form(random_scene(np.random.default_rng(1), nodes, jammers), np.array([0.0, 0.0, 10.0]))
 
 
 @given(seed=SEEDS)
@@ -95,12 +103,3 @@ def test_equation_3_5_is_2_1_with_the_normalised_axis(
     np.testing.assert_allclose(
         sinr(scene, position, maximum_gain_axis(scene, position)), expected, rtol=1e-10
     )
-
-
-@pytest.mark.parametrize("nodes", [1, 3])
-@pytest.mark.parametrize("form", [maximum_gain_axis, maximum_gain_sinr])
-def test_equation_3_4_is_for_two_nodes(form: Callable, nodes: int, random_scene: Callable) -> None:
-    """With another number of nodes eq. 3.4 is refused, and the message says how many there are."""
-    scene = random_scene(np.random.default_rng(2), nodes, 1)
-    with pytest.raises(ValueError, match=f"two nodes; this scenario has {nodes}"):
-        form(scene, np.array([0.0, 0.0, 10.0]))

@@ -2,41 +2,30 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
 from nullpose.physics import eavesdropper_snr, node_snr, received_power_w, secrecy_rate
-from nullpose.scenario import Eavesdropper, Jammer, Node, Scenario, Transmitter
+from nullpose.scenario import Eavesdropper, Jammer, Node, Scenario
 
 SEEDS = st.integers(0, 2**32 - 1)
 
 
-def random_secret(
-    rng: np.random.Generator, nodes: int = 3, eavesdroppers: int = 2, **tables: Any
-) -> Scenario:
+def random_secret(rng: np.random.Generator, nodes: int = 3, eavesdroppers: int = 2) -> Scenario:
     """Returns a scene with places on a field of 100 m and noise over two decades."""
-
-    def somewhere() -> tuple[float, ...]:
-        return tuple(rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0]))
-
-    return Scenario(
-        **{
+    places = rng.uniform([0.0, 0.0, 0.0], [100.0, 100.0, 5.0], (nodes + eavesdroppers, 3)).tolist()
+    points = [{"position_m": at, "noise_w": 10.0 ** rng.uniform(-5.0, -3.0)} for at in places]
+    return Scenario.from_dict(
+        {
             "objective": "secrecy-rate",
-            "airspace": {"altitude_m": [-1e4, 1e4]},
+            "airspace": {"altitude_m": [8.0, 40.0]},
             "receiver": {"noise_w": 1e-3, "reference_gain_db": 3.0},
-            "transmitter": Transmitter(power_w=10.0 ** rng.uniform(-1.0, 1.0)),
-            "nodes": [
-                Node(position_m=somewhere(), noise_w=10.0 ** rng.uniform(-5.0, -3.0)) for _ in range(nodes)
-            ],
-            "eavesdroppers": [
-                Eavesdropper(position_m=somewhere(), noise_w=10.0 ** rng.uniform(-5.0, -3.0))
-                for _ in range(eavesdroppers)
-            ],
+            "transmitter": {"power_w": 10.0 ** rng.uniform(-1.0, 1.0)},
+            "nodes": points[:nodes],
+            "eavesdroppers": points[nodes:],
         }
-        | tables
     )
 
 

@@ -8,6 +8,7 @@ from hypothesis import given, strategies as st
 from scipy.spatial.transform import Rotation
 
 from nullpose.physics import sinr
+from nullpose.scenario import Receiver
 
 SEEDS = st.integers(0, 2**32 - 1)
 NODES = st.integers(1, 6)
@@ -38,56 +39,41 @@ def test_sinr_is_equation_2_1(
 
 @given(seed=SEEDS)
 def test_moving_the_whole_scene_changes_nothing(
-    seed: int, scene: Callable, random_scene: Callable, random_poses: Callable
+    seed: int, random_scene: Callable, random_poses: Callable
 ) -> None:
     """Rotating and shifting nodes, jammers, position and axis together leaves every SINR unchanged."""
     rng = np.random.default_rng(seed)
-    before = random_scene(rng, 4, 2)
-    position, axis = random_poses(rng)
-    rotation = Rotation.from_quat(rng.normal(size=4)).as_matrix()
-    shift_m = rng.uniform(-100.0, 100.0, 3)
-    after = scene(
-        before.node_positions_m @ rotation.T + shift_m,
-        before.node_powers_w,
-        before.jammer_positions_m @ rotation.T + shift_m,
-        before.jammer_powers_w,
-    )
-    np.testing.assert_allclose(
-        sinr(after, rotation @ position + shift_m, rotation @ axis),
-        sinr(before, position, axis),
-        rtol=1e-9,
-    )
+    before, (position, axis) = random_scene(rng, 4, 2), random_poses(rng)
+    rotation, shift_m = Rotation.from_quat(rng.normal(size=4)).as_matrix(), rng.uniform(-100.0, 100.0, 3)
+    moved_m = before.source_positions_m @ rotation.T + shift_m
+    after = sinr(before, rotation @ position + shift_m, rotation @ axis, moved_m)
+    np.testing.assert_allclose(after, sinr(before, position, axis), rtol=1e-9)
 
 
 @given(seed=SEEDS, nodes=NODES, jammers=JAMMERS)
 def test_one_more_jammer_never_helps(
-    seed: int, nodes: int, jammers: int, scene: Callable, random_scene: Callable, random_poses: Callable
+    seed: int, nodes: int, jammers: int, random_scene: Callable, random_poses: Callable
 ) -> None:
     """Adding a jammer raises no node's SINR, at any pose."""
     rng = np.random.default_rng(seed)
     more = random_scene(rng, nodes, jammers + 1)
-    fewer = scene(
-        more.node_positions_m,
-        more.node_powers_w,
-        more.jammer_positions_m[:-1],
-        more.jammer_powers_w[:-1],
-    )
+    fewer = more.model_copy(update={"jammers": more.jammers[:-1]})
     positions, axes = random_poses(rng, 50)
     assert np.all(sinr(more, positions, axes) <= sinr(fewer, positions, axes))
 
 
 @given(seed=SEEDS, gain_db=st.floats(-120.0, 20.0))
 def test_path_gain_weighs_against_the_noise_only(
-    seed: int, gain_db: float, scene: Callable, random_scene: Callable, random_poses: Callable
+    seed: int, gain_db: float, random_scene: Callable, random_poses: Callable
 ) -> None:
     """A path gain at 1 m is the same as that much less noise."""
     rng = np.random.default_rng(seed)
-    plain = random_scene(rng, 3, 2)
-    ground = (plain.node_positions_m, plain.node_powers_w, plain.jammer_positions_m, plain.jammer_powers_w)
-    gained = scene(*ground, reference_gain_db=gain_db)
-    quieter = scene(*ground, noise_w=plain.receiver.noise_power_w / 10.0 ** (gain_db / 10.0))
-    position, axis = random_poses(rng)
-    np.testing.assert_allclose(sinr(gained, position, axis), sinr(quieter, position, axis), rtol=1e-12)
+    plain, pose = random_scene(rng, 3, 2), random_poses(rng)
+    noise_w = plain.receiver.noise_power_w
+    gained = Receiver(noise_w=noise_w, reference_gain_db=gain_db)
+    quieter = Receiver(noise_w=noise_w / 10.0 ** (gain_db / 10.0), reference_gain_db=0.0)
+    ratios = [sinr(plain.model_copy(update={"receiver": each}), *pose) for each in (gained, quieter)]
+    np.testing.assert_allclose(*ratios, rtol=1e-12)
 
 
 def test_shapes_follow_the_poses(random_scene: Callable, random_poses: Callable) -> None:

@@ -71,6 +71,7 @@ def test_shapes_are_cut_into_convex_parts(name: str) -> None:
     rng = np.random.default_rng(3)
     for first in range(len(polygon)):
         check_parts(np.roll(polygon, first, axis=0), rng)
+        check_hull(np.roll(polygon, first, axis=0), rng)
 
 
 @settings(max_examples=50)
@@ -78,7 +79,9 @@ def test_shapes_are_cut_into_convex_parts(name: str) -> None:
 def test_stars_are_cut_into_convex_parts(seed: int, count: int) -> None:
     """Random star-shaped polygons of up to twelve vertices."""
     rng = np.random.default_rng(seed)
-    check_parts(star(rng, count), rng)
+    polygon = star(rng, count)
+    check_parts(polygon, rng)
+    check_hull(polygon, rng)
 
 
 def check_hull(polygon: np.ndarray, rng: np.random.Generator) -> None:
@@ -96,23 +99,6 @@ def check_hull(polygon: np.ndarray, rng: np.random.Generator) -> None:
     np.testing.assert_array_equal(shares, depth_m(points, hull) > 0.0)
     for corner in polygon:
         assert depth_m(corner[None], hull)[0] >= -1e-12 * np.max(high - low)
-
-
-@pytest.mark.parametrize("name", SHAPES)
-def test_hull_and_pockets_of_shapes(name: str) -> None:
-    """The same shapes, from every vertex."""
-    polygon = np.array(SHAPES[name], dtype=float)
-    rng = np.random.default_rng(5)
-    for first in range(len(polygon)):
-        check_hull(np.roll(polygon, first, axis=0), rng)
-
-
-@settings(max_examples=50)
-@given(seed=SEEDS, count=st.integers(3, 12))
-def test_hull_and_pockets_of_stars(seed: int, count: int) -> None:
-    """Random polygons: the hull is the polygon and its pockets, each counter-clockwise."""
-    rng = np.random.default_rng(seed)
-    check_hull(star(rng, count), rng)
 
 
 def test_many_vertices_are_cut_in_seconds() -> None:

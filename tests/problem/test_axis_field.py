@@ -13,15 +13,6 @@ from nullpose.problem.axis_field import AxisField
 SHARES = st.floats(0.0, 1.0)
 
 
-def axis_at(field: AxisField, position_m: np.ndarray) -> np.ndarray:
-    """Returns the unit axis that an affine field gives at a position."""
-    kind, offset = field.arrays.kind, field.arrays.offset
-    matrix = field.arrays.matrix
-    assert kind == 1
-    axis = offset + matrix @ position_m
-    return axis / np.linalg.norm(axis)
-
-
 @given(seed=st.integers(0, 2**32 - 1))
 def test_the_paper_s_orientations_are_affine(seed: int, random_problem: Callable) -> None:
     """Eqs. 3.1 and 3.4 are affine in the position, up to the length and the sign of the axis."""
@@ -31,10 +22,10 @@ def test_the_paper_s_orientations_are_affine(seed: int, random_problem: Callable
     jammer = scene.jammer_positions_m[0]
     first, second = scene.node_positions_m
     null = AxisField.affine(jammer, -np.eye(3))
-    np.testing.assert_allclose(axis_at(null, position), zero_interference_axis(position, jammer), atol=1e-14)
+    np.testing.assert_allclose(null.axis_at(position), zero_interference_axis(position, jammer), atol=1e-14)
     # the columns of the matrix of (s2 - s1) x p are the products with the unit vectors
     across = AxisField.affine(np.cross(first, second), np.cross(second - first, np.eye(3)).T)
-    parallel = axis_at(across, position) @ maximum_gain_axis(scene, position)
+    parallel = across.axis_at(position) @ maximum_gain_axis(scene, position)
     assert abs(parallel) == pytest.approx(1.0, abs=1e-12)
 
 
@@ -71,14 +62,6 @@ def test_the_kind_tells_what_a_band_holds(one: float, other: float) -> None:
     ends[:] = 9.0  # a copy: the field itself does not change
     assert field.band == ((least, greatest) if field.is_free else (0.0, 1.0))
     assert not np.any(field.arrays.offset == 9.0)
-
-
-def test_bands_at_their_ends() -> None:
-    """The whole sphere is the free field, level axes are a cone, the upright one is the vertical field."""
-    assert AxisField.within(0.0, 1.0).arrays.kind == AxisField.free().arrays.kind
-    assert AxisField.within(0.0, 0.0).arrays.kind == 3
-    for ours, theirs in zip(AxisField.within(1.0, 1.0).arrays, AxisField.vertical().arrays, strict=True):
-        np.testing.assert_array_equal(ours, theirs)
 
 
 @pytest.mark.parametrize(

@@ -13,34 +13,22 @@ from nullpose.scenario import Scenario
 SEEDS = st.integers(0, 2**32 - 1)
 
 
-def scene_of(rng: np.random.Generator, **tables: object) -> Scenario:
-    """Returns a scene of three nodes with a path gain and a noise that are not one, and what is asked for."""
-    places = rng.uniform(0.0, [100.0, 100.0, 5.0], (9, 3)).tolist()
-    plain: dict = {
-        "airspace": {"altitude_m": [10.0, 40.0]},
-        "receiver": {"noise_dbm": -60.0, "reference_gain_db": -40.0},
-        "nodes": [{"position_m": at, "power_w": 10.0 ** rng.uniform(-1.0, 1.0)} for at in places[:3]],
-        "jammers": [{"position_m": at, "power_w": 10.0 ** rng.uniform(-1.0, 1.0)} for at in places[3:5]],
-    }
-    return Scenario.from_dict(plain | tables)
+PLAIN = {
+    "airspace": {"altitude_m": [10.0, 40.0]},
+    "receiver": {"noise_dbm": -60.0, "reference_gain_db": -40.0},
+}
 
 
 def secret_scene(rng: np.random.Generator, ears: int) -> Scenario:
     """Returns three nodes, some with noise of their own, so many eavesdroppers, and jammers or none."""
-    tables: dict = {
-        "objective": "secrecy-rate",
-        "transmitter": {"power_w": 10.0 ** rng.uniform(-2.0, 1.0)},
-        "nodes": [{"position_m": at} for at in rng.uniform(0.0, [100.0, 100.0, 5.0], (3, 3)).tolist()],
-        "eavesdroppers": [
-            {"position_m": at, "noise_dbm": rng.uniform(-70.0, -50.0)}
-            for at in rng.uniform(0.0, [100.0, 100.0, 5.0], (ears, 3)).tolist()
-        ],
-    }
-    tables["nodes"][0]["noise_dbm"] = -55.0
-    tables["nodes"][1]["jamming_dbm"] = -58.0
-    if rng.uniform() < 0.5:
-        tables["jammers"] = []
-    return scene_of(rng, **tables)
+    places = rng.uniform(0.0, [100.0, 100.0, 5.0], (5 + ears, 3)).tolist()
+    nodes = [{"position_m": at} for at in places[:3]]
+    nodes[0]["noise_dbm"], nodes[1]["jamming_dbm"] = -55.0, -58.0
+    jammers = [{"position_m": at, "power_w": 10.0 ** rng.uniform(-1.0, 1.0)} for at in places[3:5]]
+    listeners = [{"position_m": at, "noise_dbm": rng.uniform(-70.0, -50.0)} for at in places[5:]]
+    secrecy = {"objective": "secrecy-rate", "transmitter": {"power_w": 10.0 ** rng.uniform(-2.0, 1.0)}}
+    ground = {"nodes": nodes, "jammers": jammers if rng.uniform() < 0.5 else [], "eavesdroppers": listeners}
+    return Scenario.from_dict(PLAIN | secrecy | ground)
 
 
 @given(seed=SEEDS)
@@ -78,10 +66,7 @@ def test_jamming_beyond_arithmetic_is_refused(jammer: dict[str, float], path: st
         "airspace": {"altitude_m": [8.0, 30.0]},
         "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
         "nodes": [{"position_m": [0, 0, 0], "power_w": 1.0}],
-        "jammers": [
-            {"position_m": [30, 5, 4], "power_w": 1e15},
-            {"position_m": [17, 15, 4], **jammer},
-        ],
+        "jammers": [{"position_m": [30, 5, 4], "power_w": 1e15}, {"position_m": [17, 15, 4], **jammer}],
     }
     with pytest.raises(ScenarioError) as caught:
         build_family(Scenario.from_dict(data))

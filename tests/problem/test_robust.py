@@ -12,15 +12,7 @@ from nullpose.physics import ErrorCase, ratios_under
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.robust import BindingCase, build_robust_family, point_uncertainty_m
-from nullpose.scenario import (
-    Airspace,
-    Eavesdropper,
-    Jammer,
-    Node,
-    Receiver,
-    Scenario,
-    Transmitter,
-)
+from nullpose.scenario import Airspace, Eavesdropper, Jammer, Node, Receiver, Scenario, Transmitter
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -37,14 +29,12 @@ def a_scene(rng: np.random.Generator, *, secret: bool) -> Scenario:
     ears = tuple(Eavesdropper(position_m=place(rng), uncertainty_m=float(i + 1)) for i in range(2))
     if not secret:
         nodes = (*nodes[:2], Node(position_m=place(rng), power_w=1.0, weight=2.5))
+    objective = "secrecy-rate" if secret else "min-sinr"
+    heard = {"transmitter": Transmitter(power_w=1.5), "eavesdroppers": ears} if secret else {}
+    receiver = Receiver(noise_w=1e-3, reference_gain_db=0.0)
+    ground = {"nodes": nodes, "jammers": jammers} | heard
     return Scenario(
-        objective="secrecy-rate" if secret else "min-sinr",
-        airspace=Airspace(altitude_m=(10.0, 40.0)),
-        receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
-        transmitter=Transmitter(power_w=1.5) if secret else None,
-        nodes=nodes,
-        jammers=jammers,
-        eavesdroppers=ears if secret else (),
+        objective=objective, airspace=Airspace(altitude_m=(10.0, 40.0)), receiver=receiver, **ground
     )
 
 

@@ -10,12 +10,7 @@ from nullpose.problem.schemes import RECORDS, Scheme, as_scheme
 
 def test_names_are_a_contract() -> None:
     """The schemes' names are what files and command lines say."""
-    assert [scheme.value for scheme in Scheme] == [
-        "optimum",
-        "zero-interference",
-        "maximum-gain",
-        "vertical",
-    ]
+    assert [scheme.value for scheme in Scheme] == ["optimum", "zero-interference", "maximum-gain", "vertical"]
     assert len({scheme.label for scheme in Scheme}) == len(Scheme)
     assert [scheme.record.name for scheme in Scheme] == list(RECORDS)
 

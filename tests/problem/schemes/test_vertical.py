@@ -25,11 +25,8 @@ def test_the_paper_by_differential_evolution(ratio: float, low: tuple, high: tup
     """Differential evolution on eq. 2.1, in the room where the optimum lies, comes to the same value."""
     one = paper(ratio)
 
-    def cost(positions: np.ndarray) -> np.ndarray:
-        return -np.log(np.min(sinr(one, positions.T, UP), axis=-1))
-
     searched = differential_evolution(
-        cost,
+        lambda positions: -np.log(np.min(sinr(one, positions.T, UP), axis=-1)),
         [*zip(low, high, strict=True), (8.0, 9.0)],
         seed=3,
         vectorized=True,

@@ -19,9 +19,7 @@ from nullpose.solver.options import SolveOptions
 def three_jammers(scene: Callable) -> Scenario:
     """Returns a scene of two nodes and three jammers of unlike powers."""
     return scene(
-        [(0, 0, 0), (0, 50, 0)],
-        [(17, 15, 4), (-25, 40, 1), (30, 30, 0)],
-        jammer_powers_w=[0.3, 5.0, 1.0],
+        [(0, 0, 0), (0, 50, 0)], [(17, 15, 4), (-25, 40, 1), (30, 30, 0)], jammer_powers_w=[0.3, 5.0, 1.0]
     )
 
 

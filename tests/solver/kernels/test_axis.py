@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.linalg import sqrtm
 from scipy.optimize import minimize
-from scipy.spatial.transform import Rotation
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -115,28 +114,6 @@ def test_no_multiplier_is_below_the_value(
     assert np.all(tops >= value * (1.0 - 1e-12))
 
 
-@given(seed=SEEDS)
-def test_powers_over_six_decades(seed: int, random_scene: Callable) -> None:
-    """Nodes a million times stronger than the others take no part: leaving them out changes nothing."""
-    rng = np.random.default_rng(seed)
-    scene = random_scene(rng, 8, 1, 10.0)
-    boost = np.array([1.0, 1.0, 1.0, 1.0, 1e6, 1e6, 1e6, 1e6])
-    family = build_family(scene)
-    family = family.changed(numerator_weight=family.numerator_weight * boost)
-    weak = family.changed(
-        numerator_isotropic=np.zeros(4),
-        numerator_weight=family.numerator_weight[:4],
-        numerator_point=np.arange(4),
-        denominator_of=np.zeros(4, dtype=np.int64),
-    )
-    p = np.array([50.0, 50.0, 12.0])
-    value, _ = found(family, p)
-    alone, axis = found(weak, p)
-    assert value <= alone * (1.0 + 1e-12)
-    if np.all(ratios_at(family, p, axis)[4:] >= alone):
-        assert value == pytest.approx(alone, rel=1e-12)
-
-
 @pytest.mark.parametrize("nodes", [3, 4, 5])
 @pytest.mark.parametrize("tremor_m", [0.0, 1e-9])
 def test_unlike_nodes_at_equal_distances(nodes: int, tremor_m: float, scene: Callable) -> None:
@@ -167,19 +144,6 @@ def test_an_axis_beside_the_null(seed: int, scene: Callable) -> None:
     assert value >= silent * (1.0 - 1e-9)
     assert value == pytest.approx(silent, rel=1e-3)
     assert np.linalg.norm(np.cross(axis, null)) < 1e-3
-
-
-@given(seed=SEEDS, nodes=st.integers(1, 10))
-def test_turning_the_scene_turns_the_axis(seed: int, nodes: int, random_scene: Callable) -> None:
-    """Rotating points and position together rotates the axis and leaves the value."""
-    rng = np.random.default_rng(seed)
-    family = build_family(random_scene(rng, nodes, 2, 10.0))
-    p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
-    turn = Rotation.from_quat(rng.normal(size=4)).as_matrix()
-    turned = family.changed(points_m=family.points_m @ turn.T)
-    before, after = np.empty(3), np.empty(3)
-    value = best_axis(family.arrays, p, before)
-    assert best_axis(turned.arrays, turn @ p, after) == pytest.approx(value, abs=1e-11)
 
 
 def test_denominators_that_are_equal_are_one(random_scene: Callable) -> None:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from nullpose.problem.airspace import airspace_zones
-from nullpose.problem.family import Family
+from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.solver.kernels.borders import borders, choose_border, slope_and_rest
 from nullpose.solver.kernels.jit import kernel
@@ -62,25 +62,13 @@ def test_a_constraint_at_the_centre(seed: int, kind: float) -> None:
     assert value >= exact
 
 
-def domain_of(airspace: Airspace, balls_m: np.ndarray, radius_m: float) -> tuple:
+def domain_of(airspace: Airspace, balls_m: np.ndarray, radius_m: float) -> Domain:
     """Returns a domain with keep-out balls and the zones of an airspace."""
-    zones = airspace_zones(airspace)
-    return Family(
-        points_m=np.zeros((1, 3)),
-        numerator_isotropic=np.zeros(1),
-        numerator_weight=np.ones(1),
-        numerator_point=np.zeros(1, dtype=np.int64),
-        denominator_of=np.zeros(1, dtype=np.int64),
-        denominator_isotropic=np.ones(1),
-        denominator_start=np.zeros(2, dtype=np.int64),
-        denominator_point=np.zeros(0, dtype=np.int64),
-        denominator_weight=np.zeros(0),
-        low_m=np.array([-99.0, -99.0, 8.0]),
-        high_m=np.array([99.0, 99.0, 40.0]),
-        keep_out_points_m=balls_m,
-        keep_out_m=radius_m,
-        **zones,
-    ).domain
+    arrays = [np.array([-99.0, -99.0, 8.0]), np.array([99.0, 99.0, 40.0]), balls_m.copy()]
+    zones = airspace_zones(airspace).values()
+    for array in (*arrays, *zones):
+        array.flags.writeable = False
+    return Domain(*arrays, radius_m, *zones)
 
 
 TWO_ZONES = Airspace(

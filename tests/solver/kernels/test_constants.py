@@ -1,10 +1,11 @@
-"""The lemmas' numbers, derived again."""
+"""The lemmas' numbers, derived again: the solver's copies and the verifier's."""
 
 import math
 
 import numpy as np
 import pytest
 
+from nullpose.certificate import lemmas
 from nullpose.solver.kernels import constants
 
 ANGLES = np.linspace(0.0, math.pi, 20_001)
@@ -50,6 +51,11 @@ THIRD = extremes(blocks(27.0 * K * M**2 - 6.0 * K**3, 9.0 * M**3 - 18.0 * K**2 *
         ("NULL_MIXED", 2.0 * 2.0 + 2.0),
         ("NULL_SWING", 2.0 + TURN),
         ("DIRECTION_BEND", TURN),
+        # the verifier's, which puts them together where it uses them
+        ("FORM_SWING", float(np.max(np.abs(np.sin(2.0 * ANGLES)) + 2.0 * M**2))),
+        ("AREA_BEND", 2.0 * TURN),
+        ("NULL_SWERVE", 2.0 + TURN),
+        ("SPREAD_OVER_NORM", math.sqrt(2.0)),  # of diag(1, -1, 0), which has the largest
         ("DIRECTION_THIRD", float(np.max(6.0 * K**2 * M))),
         ("VECTOR_SLOPE", max(map(abs, FIRST))),
         ("VECTOR_BEND", max(map(abs, SECOND))),
@@ -59,5 +65,7 @@ THIRD = extremes(blocks(27.0 * K * M**2 - 6.0 * K**3, 9.0 * M**3 - 18.0 * K**2 *
 )
 def test_a_number_of_a_lemma_is_what_it_bounds_rounded_up(name: str, value: float) -> None:
     """No bound is too small, and none is needlessly large."""
-    number = getattr(constants, name)
-    assert value * (1.0 - 1e-9) <= number <= value * 1.001
+    numbers = [vars(module)[name] for module in (constants, lemmas) if name in vars(module)]
+    assert numbers
+    for number in numbers:
+        assert value * (1.0 - 1e-9) <= number <= value * 1.001

@@ -5,9 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from tests.certificate.plain import boxes_at, make_leaves
 
-from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import matrices
 from nullpose.certificate.shear import shear_of
@@ -17,16 +16,7 @@ from nullpose.solver.kernels.exclusion import add_dipole_sum
 from nullpose.solver.kernels.expansion import frame_at
 from nullpose.solver.kernels.jit import kernel
 from nullpose.solver.kernels.links import add_form, link_form
-from nullpose.solver.kernels.node import (
-    CENTRE,
-    COLUMNS,
-    COUNT,
-    FACE,
-    HALF,
-    INDEX,
-    LEVEL,
-    WEIGHT,
-)
+from nullpose.solver.kernels.node import CENTRE, COLUMNS, COUNT, FACE, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -147,21 +137,14 @@ def test_the_solvers_sum_is_above_the_exact_one(kind: int, leak: float, seed: in
 def test_the_verifiers_sum_is_above_the_exact_one(kind: int, leak: float, seed: int) -> None:
     """Likewise, with the coordinates that it names itself."""
     rng, family, weights, level, anchor, centre, half = case_of(seed, leak)
-    whole, none = np.zeros(1, dtype=np.int64), -np.ones(1, dtype=np.int64)
-    leaves = Leaves(
-        box=np.zeros((1, 6), dtype=np.int64),
-        cell=np.full((1, 5), -1),
+    leaves = make_leaves(
+        1,
         test=np.array([kind]),
         point=np.array([anchor]),
         level=np.array([level]),
-        mix=whole,
         mixes=({0: weights[0], 1: weights[1]},),
-        sides=np.zeros((1, 2)),
-        band=np.zeros(1),
-        ball=none,
-        ball_multiplier=np.zeros(1),
     )
-    boxes = Boxes(leaf=whole, centre=centre[None], half=half[None])
+    boxes = boxes_at(centre[None], half)
     total, shear = dipole_sum(family, leaves, boxes, [])
     assert kind == TOWARDS_POINT or not shear.on[0]
     basis = shear.basis.middle()[:, :, 0]
@@ -203,7 +186,7 @@ def test_coordinates_turn_in_small_boxes(seed: int) -> None:
     if np.any(v) and np.linalg.norm(np.cross(r, v)) < 0.1 * np.linalg.norm(r):  # near the dipole's own null
         return
     way = turned_axes(family, anchor, centre, centre + rng.uniform(-0.01, 0.01, 3))
-    boxes = Boxes(leaf=np.zeros(1, dtype=np.int64), centre=centre[None], half=np.full((1, 3), 0.01))
+    boxes = boxes_at(centre[None], 0.01)
     shear = shear_of(family, SimpleNamespace(test=np.array([TOWARDS_POINT]), point=np.array([anchor])), boxes)
     assert shear.on[0]
     assert np.linalg.norm(way - np.eye(3), 2) <= shear.most.high[0, 0] * (1.0 + 1e-9)

@@ -3,16 +3,11 @@ import math
 import numpy as np
 import pytest
 
+from nullpose.certificate.forms import matrices
 from nullpose.solver.kernels.axis import best_axis_of_forms
 from nullpose.solver.kernels.dual import dual_multipliers
 
 ISOTROPIC = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
-
-
-def matrix_of(form: np.ndarray) -> np.ndarray:
-    """Return the 3x3 matrix of a form kept as six numbers."""
-    xx, yy, zz, xy, xz, yz = form
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def random_forms(rng: np.random.Generator, count: int) -> np.ndarray:
@@ -26,7 +21,7 @@ def random_forms(rng: np.random.Generator, count: int) -> np.ndarray:
 
 def dual_value(forms: np.ndarray, multipliers: np.ndarray) -> float:
     """Return the largest eigenvalue of the weighted sum of forms."""
-    return float(np.linalg.eigvalsh(matrix_of(multipliers @ forms))[-1])
+    return float(np.linalg.eigvalsh(matrices((multipliers @ forms)[:, None])[0])[-1])
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 40])
@@ -43,7 +38,7 @@ def test_multipliers_bound_the_best_axis(count: int) -> None:
         bound = dual_value(forms, multipliers)
         assert bound >= best * (1.0 - 1e-12)
         assert primal == pytest.approx(bound, rel=1e-5)
-        assert np.all(np.linalg.eigvalsh(matrix_of(matrix)) > 0.0)
+        assert np.all(np.linalg.eigvalsh(matrices(matrix[:, None])[0]) > 0.0)
         assert np.sum(matrix[:3]) == pytest.approx(1.0, abs=1e-12)
 
 

@@ -70,16 +70,8 @@ class Case:
     def verdict(self, level: float) -> int:
         """Returns what becomes of the node at a level; its row keeps the multipliers."""
         self.row[LEVEL] = level
-        return int(
-            examined(
-                self.family.arrays,
-                self.family.domain,
-                self.field.arrays,
-                np.zeros(COLUMNS),
-                self.row,
-                np.empty(3),
-            )
-        )
+        problem = self.family.arrays, self.family.domain, self.field.arrays
+        return int(examined(*problem, np.zeros(COLUMNS), self.row, np.empty(3)))
 
     def values(self, positions: np.ndarray, axes: np.ndarray) -> np.ndarray:
         """Returns the smallest ratio at poses, (n, 3) and (n, 3); minus infinity where one is not allowed."""
@@ -93,9 +85,8 @@ class Case:
         spans = zip(family.denominator_start[:-1], family.denominator_start[1:], strict=True)
         jamming = np.stack([np.sum(entries[:, a:b], axis=1) for a, b in spans], axis=1)
         below = (family.denominator_isotropic + jamming)[:, family.denominator_of]
-        ratios = (
-            family.numerator_isotropic + family.numerator_weight * links[:, family.numerator_point]
-        ) / below
+        above = family.numerator_isotropic + family.numerator_weight * links[:, family.numerator_point]
+        ratios = above / below
         allowed = self.airspace.clearance_m(positions) >= 0.0
         away = np.linalg.norm(family.keep_out_points_m - positions[:, None], axis=-1)
         allowed &= np.min(away, axis=1, initial=np.inf) >= family.keep_out_m

@@ -3,11 +3,13 @@
 import math
 from collections.abc import Callable
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
+from nullpose.certificate.pose_value import exact, link
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.links import derivatives, log_ratios, min_log_ratio
@@ -35,29 +37,13 @@ def kernel_derivatives(
 
 def exact_forms(family: Family, pose: list[Fraction]) -> tuple[list[Fraction], list[Fraction]]:
     """Returns every ratio's numerator and denominator at a pose (p, u), in exact rational arithmetic."""
-    p, u = pose[:3], pose[3:]
-    size = sum(x * x for x in u)
-    links = []
-    for point in family.points_m:
-        r = [Fraction(float(q)) - x for q, x in zip(point, p, strict=True)]
-        square = sum(x * x for x in r)
-        dot = sum(a * b for a, b in zip(u, r, strict=True))
-        links.append((size * square - (1 - Fraction(family.leak)) * dot**2) / square**2)
-    numerators = [
-        Fraction(float(isotropic)) * size + Fraction(float(weight)) * links[point]
-        for isotropic, weight, point in zip(
-            family.numerator_isotropic, family.numerator_weight, family.numerator_point, strict=True
-        )
-    ]
-    totals = []
-    for group, isotropic in enumerate(family.denominator_isotropic):
-        total = Fraction(float(isotropic)) * size
-        for entry in range(family.denominator_start[group], family.denominator_start[group + 1]):
-            total += (
-                Fraction(float(family.denominator_weight[entry])) * links[family.denominator_point[entry]]
-            )
-        totals.append(total)
-    return numerators, [totals[group] for group in family.denominator_of]
+    p, u = np.array(pose[:3]), np.array(pose[3:])
+    links = np.array([link(point, p, u, Fraction(family.leak)) for point in exact(family.points_m)])
+    above = exact(family.numerator_isotropic) + exact(family.numerator_weight) * links[family.numerator_point]
+    entries = exact(family.denominator_weight) * links[family.denominator_point]
+    sums = [sum(entries[a:b], Fraction(0)) for a, b in pairwise(family.denominator_start)]
+    below = exact(family.denominator_isotropic) + np.array(sums)
+    return list(above * (u @ u)), list(below[family.denominator_of] * (u @ u))
 
 
 def exact_derivatives(

@@ -32,20 +32,6 @@ def test_roots_are_those_of_the_companion_matrix(seed: int, degree: int) -> None
         np.testing.assert_allclose(roots_of(coefficients), expected, atol=1e-9)
 
 
-@given(seed=SEEDS, degree=st.integers(2, 8))
-def test_every_change_of_sign_is_found(seed: int, degree: int) -> None:
-    """Between two points of a fine grid where the sign changes there is a root, and there it is zero."""
-    coefficients = np.random.default_rng(seed).normal(size=degree + 1)
-    polynomial = Polynomial(coefficients)
-    found = roots_of(coefficients)
-    grid = np.linspace(-1.0, 1.0, 4001)
-    values = polynomial(grid)
-    for i in np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) < 0.0):
-        assert np.any((found >= grid[i]) & (found <= grid[i + 1]))
-    np.testing.assert_allclose(polynomial(found), 0.0, atol=1e-13)
-    assert np.all(np.diff(found) > 0.0)
-
-
 @pytest.mark.parametrize("edge", [-1.0, 1.0])
 def test_roots_on_the_edge(edge: float) -> None:
     """A root on an edge is kept, a hair beyond too, and one further out is not."""

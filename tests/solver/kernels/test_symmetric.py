@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.solver.kernels.symmetric import cholesky_factor, cholesky_solve, eigen3, gauss_solve, tangents
+from nullpose.solver.kernels.symmetric import cholesky_factor, cholesky_solve, eigen3, gauss_solve
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -90,20 +90,3 @@ def test_gauss_of_a_singular_system(size: int) -> None:
     broken[0, 0] = np.nan
     for matrix in (np.zeros((size, size)), deficient, broken):
         assert not gauss_solve(matrix.copy(), np.ones(size), size)
-
-
-@given(seed=SEEDS)
-def test_tangents_make_a_frame(seed: int) -> None:
-    """The two tangents of a unit vector are unit vectors across it and each other, right-handed."""
-    u = np.random.default_rng(seed).normal(size=3)
-    u /= np.linalg.norm(u)
-    check_frame(u)
-
-
-def check_frame(u: np.ndarray) -> None:
-    """Checks that (u, a, b) is a right-handed orthonormal frame."""
-    a, b = np.empty(3), np.empty(3)
-    tangents(u, a, b)
-    frame = np.stack([u, a, b])
-    np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-15)
-    assert np.linalg.det(frame) == pytest.approx(1.0, abs=1e-14)

@@ -5,11 +5,9 @@ leaves are held by a leaf of the spoiled one, and whether each leaf's statement 
 of its box.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pytest
 from benchmarks.mutations.truth import Data, Problem, allowed_axes, claim_fault
 
 from nullpose.certificate.file import scenario_digest
@@ -235,9 +233,3 @@ class Judge:
             form[a, v] += multipliers[side] * (low + 0.5 * width)
             form[v, a] += multipliers[side] * (low + 0.5 * width)
         return form
-
-
-@pytest.fixture(scope="session")
-def judge_of() -> Callable[[Data, np.random.Generator], Judge]:
-    """Returns a function: the judge of what becomes of a sound certificate's data."""
-    return Judge
