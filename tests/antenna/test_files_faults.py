@@ -72,8 +72,8 @@ def only(kept: Callable[[int], bool]) -> Change:
 FIELDS, GAINS = "complex-csv", "csv"
 FAULTS: dict[str, tuple[str, Change, dict[str, object], str]] = {
     "empty": (GAINS, lambda _: " \n\n", {}, "the file is empty"),
-    "unknown": (GAINS, lambda _: "hello\n", {}, "no known format; must be one of nec, ffs, cst"),
-    "other format": (GAINS, str, {"file_format": "ffd"}, "stated to be ffd, and looks like csv"),
+    "unknown": (GAINS, lambda _: "hello\n", {}, "no known format; export .* nec, ffs, cst"),
+    "other format": (GAINS, str, {"file_format": "ffd"}, "must be one of nec.*it looks like csv"),
     "no such format": (GAINS, str, {"file_format": "ffe"}, "got the format 'ffe', must be one of nec"),
     "short csv": (FIELDS, cut(1000), {}, "angles are 0, 5, 10 ... 65 degrees, must go from 0 to 180"),
     "short nec": ("nec", cut(1000), {}, "azimuths are 0, 5, 10 .* must go from 0 to 360 .* cut short"),

@@ -95,8 +95,8 @@ def test_latitude_and_longitude_exchanged(run: Run, tmp_path: Path) -> None:
         run("check", scene(tmp_path, swap=True)),
         "1 fault",
         "nodes[0]: lat_deg and lon_deg are",
-        "km from the origin, must be within 100 km (and so in 2 more); are latitude and longitude exchanged? "
-        "The other way round it is 0.21 km",
+        "km from the origin, must be within 100 km (and so in 2 more); is a sign lost, or are latitude and "
+        "longitude exchanged?",
     )
     assert len(told.splitlines()) == 2
 

@@ -68,7 +68,7 @@ def test_a_box_is_a_polygon_too(seed: int) -> None:
         ({}, "", "neither x_m and y_m nor centre_m and radius_m nor polygon_m is given, exactly one"),
         ({"altitude_m": [0, 9]}, "", "exactly one must be"),
         ({"x_m": [0, 1]}, "", "x_m given without y_m; add it"),
-        ({"radius_m": 1.0}, "", "radius_m given without centre_m; add it"),
+        ({"radius_m": 1.0}, "", "radius_m given without centre_m or centre_lat_lon_deg; add it"),
         (
             {"x_m": [0, 1], "y_m": [0, 1], "radius_m": 1.0},
             "",

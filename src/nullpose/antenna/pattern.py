@@ -105,13 +105,9 @@ def harmonics_of_rows(rows: Sequence[Sequence[float]]) -> Harmonics:
     Args:
         rows: for each degree n, 2 n + 1 numbers.
 
-    Raises:
-        ValueError: a row has another length.
     """
     cosine, sine = np.zeros((2, len(rows), len(rows)))
     for n, row in enumerate(rows):
-        if len(row) != 2 * n + 1:
-            raise ValueError(f"harmonics[{n}]: got {len(row)} numbers, must be {2 * n + 1}")
         cosine[n, : n + 1], sine[n, 1 : n + 1] = row[: n + 1], row[n + 1 :]
     return Harmonics(cosine, sine)
 

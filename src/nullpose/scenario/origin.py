@@ -184,20 +184,18 @@ def metric_key(key: str) -> str:
     return EARTHLY_CORNERS.get(key, "altitude_m" if key in EARTHLY_RANGES else "position_m")
 
 
-def in_metres(table: Any, origin: Origin, swapped: bool = False) -> dict[str, Floats]:
+def in_metres(table: Any, origin: Origin) -> dict[str, Floats]:
     """Return the metres that follow from what a table states on the Earth, by key.
 
     Args:
         table: a point, an airspace or a zone, in which None stands for what is not stated or at fault.
         origin: where the metres count from.
-        swapped: whether latitudes and longitudes are to be exchanged.
     """
     *_, base_m = origin.geodetic
     found: RawTable = {}
 
     def enu_m(places: Any, height_m: float) -> Floats:
         flat = np.asarray(places, dtype=np.float64)
-        flat = np.clip(flat[..., ::-1], [-90.0, -180.0], [90.0, 180.0]) if swapped else flat
         heights_m = np.full((*flat.shape[:-1], 1), height_m)
         return enu_from_geodetic(np.concatenate([flat, heights_m], axis=-1), origin.geodetic)
 

@@ -51,7 +51,7 @@ def origin_faults(
         return
     yield from _unknown_altitudes(origin, earthly)
     metres = {place: in_metres(tables[place], origin) for place in earthly}
-    far = list(_far(origin, tables, metres))
+    far = list(_far(metres))
     yield from far
     if not far:
         yield from _apart(tables, earthly, metres)
@@ -85,27 +85,20 @@ def _unknown_altitudes(
             )
 
 
-def _far(
-    origin: Origin, tables: Mapping[Place, Any], metres: Mapping[Place, Raw]
-) -> Iterator[tuple[Place, str]]:
-    """Yield, once for all places that are too far from the origin, whether exchanged they would not be."""
-    far_m: dict[Place, float] = {}
-    swapped_m = 0.0
-    for place, values in metres.items():
-        for metric, value in values.items():
-            if metric != "altitude_m" and size_m(value) > FARTHEST_M:
-                earthly = [key for key, of in EARTHLY_CORNERS.items() if of == metric]
-                far_m[*place, *earthly] = size_m(value)
-                swapped_m = max(swapped_m, size_m(in_metres(tables[place], origin, swapped=True)[metric]))
+def _far(metres: Mapping[Place, Raw]) -> Iterator[tuple[Place, str]]:
+    """Yield, once for all, that places are too far from the origin."""
+    far_m = {
+        (*place, *(key for key, of in EARTHLY_CORNERS.items() if of == metric)): size_m(value)
+        for place, values in metres.items()
+        for metric, value in values.items()
+        if metric != "altitude_m" and size_m(value) > FARTHEST_M
+    }
     for place, away_m in list(far_m.items())[:1]:
-        words = (
+        yield (
+            place,
             f"lat_deg and lon_deg are {away_m / 1e3:.0f} km from the origin, must be within "
-            f"{FARTHEST_M / 1e3:.0f} km{_more(far_m)}"
+            f"{FARTHEST_M / 1e3:.0f} km{_more(far_m)}; is a sign lost, or {EXCHANGED}",
         )
-        advice = f"is a sign lost, or {EXCHANGED.replace('?', ' in one of the two?')}"
-        if swapped_m <= FARTHEST_M:
-            advice = f"{EXCHANGED} The other way round it is {swapped_m / 1e3:.2g} km"
-        yield place, f"{words}; {advice}"
 
 
 def _apart(

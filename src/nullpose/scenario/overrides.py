@@ -10,8 +10,6 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
-from pydantic_core import to_jsonable_python
-
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import Raw, RawTable, path_of, refusal
 from nullpose.scenario.origin import EARTHLY_KEYS, POINT_LISTS, metric_key
@@ -21,7 +19,6 @@ from nullpose.scenario.wording import described, listed, nearest, plain
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
-_FROZEN = Section, tuple
 _PATH = re.compile(rf"(?:{_STEP.pattern})+")
 
 
@@ -86,9 +83,7 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         >>> strong.jammers[0].power_w, strong.receiver.noise_dbm
         (10.0, 0.0)
     """
-    # tables are frozen: those that no path leads into are taken as they are
-    data = {key: value for key in Scenario.model_fields if (value := getattr(scenario, key)) is not None}
-    changes = list(overrides)
+    data, changes = scenario.to_dict(), list(overrides)
     faults = _applied(changes, data)
     try:
         changed = Scenario.from_dict(data)
@@ -139,8 +134,6 @@ def _apply(override: Override, data: RawTable) -> None:
     steps: list[Any] = [
         int(index) if index else double or single or bare for double, single, bare, index in found
     ]
-    touched = (*POINT_LISTS, "airspace", "origin") if steps[0] == "origin" else steps[:1]
-    data |= {key: to_jsonable_python(data[key]) for key in touched if isinstance(data.get(key), _FROZEN)}
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
     if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "gain_dbi", "harmonics"):
         data["antenna"].pop("harmonics", None)  # what was read of a file is no longer right

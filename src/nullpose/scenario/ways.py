@@ -49,9 +49,8 @@ class Ways:
         missing = [key for key in group if not any(alike in present for alike in self.alike(key))]
         if missing:
             others = ", or ".join(" and ".join(other) for other in self.groups if other != group)
-            twins = [twin for twin, key in self.twins if key in missing]
-            instead = f" ({' or '.join(twins)} will do as well)" if twins else ""
-            yield f"{begin} given without {' and '.join(missing)}; add it, or {others}{instead}"
+            needed = " and ".join(" or ".join(self.alike(key)) for key in missing)
+            yield f"{begin} given without {needed}; add it, or {others}"
 
     def alike(self, key: str) -> list[str]:
         """Return a key of a group together with those that may be given in its place."""

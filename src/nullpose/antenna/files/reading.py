@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 import zlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -61,20 +62,16 @@ def read_pattern(
     Raises:
         ScenarioError: the file cannot be read, or would mislead.
     """
-    source = os.fspath(path)
-    try:
-        lines = _lines(Path(source))
+    with _lines_of(path) as lines:
         name = _format_of("\n".join(text for _, text in lines), file_format)
-        table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(source).name} ({name})")
+        table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(path).name} ({name})")
         if table.caveat and not estimate:
             refuse(f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
         require_antenna(table := _scaled(table))
         harmonics = require_fit(table)
         if not table.caveat:
             require_rows(table, harmonics)
-        return table
-    except ScenarioError as error:
-        raise ScenarioError(error.faults, source) from None
+    return table
 
 
 def read_profile(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray]:
@@ -86,53 +83,54 @@ def read_profile(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray]:
     Raises:
         ScenarioError: the file cannot be read, or does not span the angles.
     """
-    source = os.fspath(path)
-    try:
-        angle_deg, gain = profile_of(_lines(Path(source)))
+    with _lines_of(path) as lines:
+        angle_deg, gain = profile_of(lines)
         theta_deg, phi_deg = np.linspace(0.0, 180.0, 721), np.arange(0.0, 360.0, 90.0)
         fine = np.repeat(np.interp(theta_deg, angle_deg, gain)[:, None], len(phi_deg), axis=1)
         require_antenna(PatternTable(theta_deg=theta_deg, phi_deg=phi_deg, gain=fine))
-        return angle_deg, gain
+    return angle_deg, gain
+
+
+@contextmanager
+def _lines_of(path: str | os.PathLike[str]) -> Iterator[Lines]:
+    """Give the lines of a file that are not blank; faults that are found in them name the file."""
+    try:
+        content = _content(Path(path))
+        encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+        text = content.decode(encoding, errors="replace")
+        lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+        if not lines:
+            refuse("the file is empty; must hold a radiation pattern")
+        yield lines
     except ScenarioError as error:
-        raise ScenarioError(error.faults, source) from None
+        raise ScenarioError(error.faults, os.fspath(path)) from None
 
 
-def _lines(path: Path) -> Lines:
+def _content(path: Path) -> bytes:
+    is_whole = True
     try:
         content = read_bytes(path, _MOST_BYTES)
         if content.startswith(b"\x1f\x8b"):
             unpacker = zlib.decompressobj(wbits=31)
             content = unpacker.decompress(content, _MOST_BYTES)
-            if not unpacker.eof:
-                refuse(
-                    f"its content is cut short, or exceeds {_MOST_BYTES / 1e6:g} MB, the most that is read"
-                )
-    except ScenarioError:
-        raise
+            is_whole = unpacker.eof
     except (OSError, ValueError, zlib.error) as error:
         refuse(f"it cannot be read: {getattr(error, 'strerror', None) or error}")
-    encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
-    text = content.decode(encoding, errors="replace")
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    if not lines:
-        refuse("the file is empty; must hold a radiation pattern")
-    return lines
+    if not is_whole:
+        refuse(f"its content is cut short, or exceeds {_MOST_BYTES / 1e6:g} MB, the most that is read")
+    return content
 
 
 def _format_of(text: str, asserted: str | None) -> str:
     formats = ", ".join(FORMATS)
-    if asserted is not None and asserted not in FORMATS:
-        refuse(f"got the format {asserted!r}, must be one of {formats}")
     looks = [
         name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE | re.IGNORECASE)
     ]
     if asserted is None and not looks:
-        refuse(
-            f"it has the marks of no known format; must be one of {formats}. Export the pattern in one of "
-            "them"
-        )
-    if asserted is not None and asserted not in looks:
-        refuse(f"it is stated to be {asserted}, and looks like {looks[0] if looks else f'none of {formats}'}")
+        refuse(f"it has the marks of no known format; export the pattern in one of {formats}")
+    if asserted not in (None, *looks):
+        looks_like = looks[0] if looks else "none of them"
+        refuse(f"got the format {asserted!r}, must be one of {formats}; it looks like {looks_like}")
     return asserted or looks[0]
 
 
@@ -140,16 +138,10 @@ def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> Pat
     """Return the table of a frequency, or of the only one."""
     if not blocks:
         refuse("there is no table of gains or fields in it; is the file cut short?")
-    if frequency_hz is not None and not 0.0 < frequency_hz < np.inf:
-        refuse(f"got the frequency {frequency_hz:g} Hz, must be more than 0 and finite")
     each_hz = [block.frequency_hz or frequency_hz or 0.0 for block in blocks]
     frequencies = [f"{hz:.10g}" for hz in dict.fromkeys(each_hz) if hz]
     more = f" and {len(frequencies) - _MOST_NAMED} more" if len(frequencies) > _MOST_NAMED else ""
-    listed = (
-        f"{', '.join(frequencies[:_MOST_NAMED])} Hz{more}"
-        if frequencies
-        else "frequencies that it does not say"
-    )
+    listed = f"{', '.join(frequencies[:_MOST_NAMED]) or 'unknown frequencies, in'} Hz{more}"
     if frequency_hz is None and len(set(each_hz)) > 1:
         refuse(
             f"it has {len(blocks)} tables, at {listed}; state one frequency, by --frequency or frequency_hz"
