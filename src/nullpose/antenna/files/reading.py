@@ -147,7 +147,7 @@ def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> Pat
             f"it has {len(blocks)} tables, at {listed}; state one frequency, by --frequency or frequency_hz"
         )
     nearest_hz = min(each_hz, key=lambda hz: abs(hz - (frequency_hz or hz)))
-    if frequency_hz is not None and abs(nearest_hz - frequency_hz) > _SAME_FREQUENCY * frequency_hz:
+    if frequency_hz is not None and not abs(nearest_hz - frequency_hz) < _SAME_FREQUENCY * frequency_hz:
         refuse(f"got the frequency {frequency_hz:.10g} Hz, must be one of the file's: {listed}")
     whole, faults = [], []
     for block in (block for block, hz in zip(blocks, each_hz, strict=True) if hz == nearest_hz):
