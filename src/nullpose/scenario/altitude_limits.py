@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import RawTable, refusal
@@ -152,8 +153,6 @@ def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
 
 def _heights_m(feature: Feature) -> Floats:
     """Return the heights of a placemark's corners, where its altitudeMode gives them a meaning."""
-    import shapely
-
     if feature.properties.get("altitudeMode") not in _OF_KML or feature.geometry is None:
         return np.zeros(0)
     heights_m = shapely.get_coordinates(feature.geometry, include_z=True)[:, 2]

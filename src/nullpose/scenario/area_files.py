@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
+from shapely import Polygon
 
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
-from nullpose.scenario.areas import Area, areas_of, corners_of
+from nullpose.scenario.areas import Area, areas_of
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import Raw, RawTable, refusal
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.polygon import MOST_CORNERS
+from nullpose.scenario.shapes import corners_of
 from nullpose.scenario.units import EARTHLY_RANGES
-
-if TYPE_CHECKING:
-    from shapely import Polygon
 
 REACH_M = 6e4
 """How far east, west, north and south of the origin zones of files count; in degrees this square lies within
@@ -160,15 +160,11 @@ def _ends(value: object) -> tuple[float, float] | None:
 
 
 def _everywhere(lon_deg: float = 0.0) -> Polygon:
-    import shapely
-
     return shapely.box(lon_deg - 1e4, -1e4, lon_deg + 1e4, 1e4)
 
 
 def _box_deg(ends_m: Floats, place: Floats) -> Polygon:
     """Return the box of degrees about a rectangle of the local frame, and a little more."""
-    import shapely
-
     east_m, north_m = np.meshgrid(*np.linspace(ends_m[0], ends_m[1], 9).T)
     places = geodetic_from_enu(np.stack([east_m, north_m, 0.0 * east_m], axis=-1).reshape(-1, 3), place)
     corners = places[:, 1::-1]

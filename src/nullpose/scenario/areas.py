@@ -5,30 +5,19 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
+import shapely
+from shapely import Polygon
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.altitude_limits import Ground, altitude_limits
-from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import EXCHANGED, RawTable, refusal
+from nullpose.scenario.faults import EXCHANGED, RawTable
 from nullpose.scenario.geo_file import NAMES, Feature
+from nullpose.scenario.shapes import box_about, corners_of, cut, near, parts_of, sound
 
-if TYPE_CHECKING:
-    from shapely import LinearRing, Polygon
-    from shapely.geometry.base import BaseGeometry
-
-# shapely is imported where there is an area: most scenarios have none. Coordinates are longitudes, which go
-# on across the antimeridian, and latitudes.
-
-_SAME_CORNER_DEG = 9e-8  # a centimetre
-_STRAIGHT_DEG = 0.02  # an edge of this length, straight in degrees, is within 0.2 m of straight in metres
-_CUT_DEG = 0.05  # the same within a metre, for edges that bound nothing
-_LOOPS = 0.01  # of the area inside a ring: larger loops may mean that its corners are out of order
 _LONGEST_NAME = 80
 _LIKE_RADII = re.compile("radi|buffer|diameter", re.IGNORECASE)
 _PASSED_OVER = ("point", "line", "wall", "feature without a place")
@@ -66,8 +55,8 @@ class Area:
 
     def cut(self, box: Polygon) -> bool:
         """Leave out what lies outside a box of degrees; return whether anything is left."""
-        self.polygons = [part for polygon in self.polygons for part in _cut(polygon, box)]
-        self.cylinders = [cylinder for cylinder in self.cylinders if _box_about(*cylinder).intersects(box)]
+        self.polygons = [part for polygon in self.polygons for part in cut(polygon, box)]
+        self.cylinders = [cylinder for cylinder in self.cylinders if box_about(*cylinder).intersects(box)]
         return bool(self.polygons or self.cylinders)
 
 
@@ -186,8 +175,6 @@ def areas_of(
 
 def _area(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> Area | None:
     """Find what a feature covers within reach; count what it is."""
-    import shapely
-
     west, _, east, _ = reach.bounds
     middle_deg = 0.5 * (west + east)
     polygons, cylinders = [], []
@@ -203,11 +190,13 @@ def _area(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool
             counts["line"] += 1
         else:
             ring = part if part.geom_type == "Polygon" else shapely.Polygon(part.coords)
-            polygons.append(_near(ring, middle_deg))
+            polygons.append(near(ring, middle_deg))
     if not (polygons or cylinders):
         return None
     polygons = [polygon for polygon in polygons if polygon.envelope.intersects(reach)]
-    ground = [polygon for each in polygons if (polygon := _sound(each, feature, counts, is_fence)).area]
+    mended = [sound(polygon, feature.place, is_fence) for polygon in polygons]
+    counts["crossing"] += sum(is_crossing for _, is_crossing in mended)
+    ground = [polygon for polygon, _ in mended if polygon.area]
     if polygons and not ground and not cylinders:
         counts["wall"] += 1
         return None
@@ -221,106 +210,6 @@ def _radius_m(feature: Feature) -> Any:
     """Return the radius of a circle as stated, by ED-318 in its extent; None without one."""
     extent = feature.properties.get("extent")
     return feature.properties.get("radius_m", extent.get("radius") if isinstance(extent, dict) else None)
-
-
-def _sound(polygon: Polygon, feature: Feature, counts: Counter[str], is_fence: bool) -> Polygon:
-    """Mend doubled corners and spikes, and make long edges straight in degrees; empty for a wall.
-
-    Raises:
-        ScenarioError: its border crosses itself.
-    """
-    import shapely
-
-    with suppress(shapely.GEOSException):  # a ring within a centimetre stays as it is
-        polygon = shapely.remove_repeated_points(polygon, _SAME_CORNER_DEG)
-    if not polygon.is_valid:
-        # GEOS has the area inside the rings, which spikes do not change and crossings do
-        valid = _valid(polygon)
-        if abs(valid.area - polygon.area) > _SAME_CORNER_DEG * polygon.length:
-            valid = None if is_fence else _enclosed(polygon)
-            counts["crossing"] += 1
-        if valid is None:
-            raise refusal(
-                feature.place,
-                f"its border crosses itself ({shapely.is_valid_reason(polygon)}, longitude and latitude); "
-                "list every corner once, in order around the area",
-            )
-        polygon = valid
-    is_wall = polygon.area <= _SAME_CORNER_DEG * polygon.length
-    return shapely.Polygon() if is_wall else shapely.segmentize(polygon, _STRAIGHT_DEG)
-
-
-def _valid(polygon: Polygon) -> Any:
-    import shapely
-
-    return shapely.make_valid(polygon, method="structure", keep_collapsed=False)
-
-
-def _enclosed(polygon: Polygon) -> Any:
-    """Return all that the rings of a polygon enclose; None where the crossings of a ring are not small."""
-    import shapely
-
-    rings = [shapely.Polygon(ring) for ring in (polygon.exterior, *polygon.interiors)]
-    sound = [_valid(ring) for ring in rings]
-    is_small = all(ring.area >= (1 - _LOOPS) * whole.area for ring, whole in zip(rings, sound, strict=True))
-    return shapely.union_all(sound) if is_small else None
-
-
-def _near(polygon: Polygon, middle_deg: float) -> Polygon:
-    """Move a polygon's longitudes near a middle, going on across the antimeridian."""
-    import shapely
-
-    def moved(corners: Floats) -> Floats:
-        first = corners[0, 0] - 360.0 * round((corners[0, 0] - middle_deg) / 360.0)
-        corners[:, 0] -= 360.0 * np.round((corners[:, 0] - first) / 360.0)
-        return corners
-
-    west, _, east, _ = polygon.bounds
-    is_near = east - west < 180.0 and abs(west - middle_deg) <= 180.0
-    return polygon if is_near else shapely.transform(polygon, moved)
-
-
-def _box_about(lon_deg: float, lat_deg: float, radius_m: Any) -> Polygon:
-    """Return a box of degrees that a cylinder lies in; one about all where its radius is at fault."""
-    import shapely
-
-    is_number = isinstance(radius_m, int | float) and not isinstance(radius_m, bool)
-    is_length = is_number and 0.0 <= radius_m < 4e7
-    half = radius_m / 1.1e5 if is_length else 360.0  # a degree of latitude has 110.57 km at least
-    wide = half / max(np.cos(np.radians(min(abs(lat_deg) + half, 89.0))), 0.01)
-    return shapely.box(lon_deg - wide, lat_deg - half, lon_deg + wide, lat_deg + half)
-
-
-def _cut(polygon: Polygon, box: Polygon) -> list[Polygon]:
-    """Return the parts of a polygon that lie in a box; one that lies in it as it is."""
-    import shapely
-
-    if box.covers(polygon.envelope):
-        return [polygon]
-    # In metres a long edge of the box would leave the parallel, and might cross other edges
-    inside = polygon & shapely.segmentize(box, _CUT_DEG)
-    return [part for part in parts_of(inside) if part.geom_type == "Polygon"]
-
-
-def parts_of(geometry: BaseGeometry | Sequence[BaseGeometry] | None) -> Iterator[Any]:
-    """Yield the single geometries of one that may hold several, without the empty ones."""
-    import shapely
-
-    for part in shapely.get_parts(geometry):
-        if hasattr(part, "geoms"):
-            yield from parts_of(part)
-        elif not part.is_empty:
-            yield part
-
-
-def corners_of(ring: LinearRing) -> list[list[float]]:
-    """Return the corners of a ring as latitudes and longitudes, these from -180 to 180 degrees."""
-    import shapely
-
-    corners = shapely.get_coordinates(ring)[:-1, ::-1]
-    beyond = np.abs(corners[:, 1]) > 180.0
-    corners[beyond, 1] = (corners[beyond, 1] + 180.0) % 360.0 - 180.0
-    return corners.tolist()  # type: ignore[no-any-return]
 
 
 def name_of(feature: Feature) -> str:

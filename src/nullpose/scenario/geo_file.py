@@ -5,32 +5,26 @@ GeoJSON is read here, since GDAL drops what ED-318 states inside a geometry; GDA
 
 from __future__ import annotations
 
-import io
 import json
 import re
 import warnings
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import shapely.geometry
+from shapely.geometry.base import BaseGeometry
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import parse_json
 from nullpose.scenario.faults import EXCHANGED, Raw, refusal
+from nullpose.scenario.kml import kml_of_kmz, require_whole, root_of
 from nullpose.scenario.toml_file import decoded
 from nullpose.scenario.wording import described
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
-
-    from shapely.geometry.base import BaseGeometry
-
-# What reads files is imported where one is read: most scenarios name none.
 
 ENDINGS = (".geojson", ".json", ".kml", ".kmz", ".gpkg", ".shp", ".gpx")
 """How the names of the files end."""
@@ -50,8 +44,6 @@ _NO_MATTER = (
 )
 _POINTS_OF_LINES = {"route_points", "track_points"}  # of GPX, which are in its lines too
 _OF_DRAWING = {"id", "tessellate", "visibility", "drawOrder", "icon", "snippet"}  # GDAL's columns of KML
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_PLACE = re.compile(rf"{_NUMBER},{_NUMBER}(?:,(?:{_NUMBER})?)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,21 +78,15 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
         return list(_features_of_json(decoded(content)))
     if not content.startswith(_SIGNS[ending]):
         raise refusal("", f"it does not begin as a {ending} file does; is it of another kind?")
-    content = _kml_of_kmz(content) if ending == ".kmz" else content
     is_kml = ending in (".kml", ".kmz")
-    expected = _placemarks(content) if is_kml else (0, 0)
-    if ending == ".gpx":
-        _root(content, "gpx")
+    if ending == ".kmz":
+        content = kml_of_kmz(content, MOST_BYTES)
+    document = root_of(content, ending[1:].replace("kmz", "kml")) if is_kml or ending == ".gpx" else None
     # GDAL knows an old GeoPackage by its ending, and reads the journal beside it
-    source = path if ending in (".shp", ".gpkg") else content
-    features = list(_features_of_gdal(source, is_kml))
-    if is_kml and (len(features), min(_corners(features), expected[1])) != expected:
-        raise refusal(
-            "",
-            f"GDAL reads {len(features)} placemarks with {_corners(features)} coordinates, and it has "
-            f"{expected[0]} with {expected[1]}; is a polygon without its outerBoundaryIs, or a LinearRing by "
-            "itself? Export it anew",
-        )
+    features = list(_features_of_gdal(path if document is None else content, is_kml))
+    if is_kml and document is not None:
+        corners = shapely.get_num_coordinates([feature.geometry for feature in features]).sum()
+        require_whole(document, len(features), corners)
     if not features:
         raise refusal("", "there is no feature in it, must be one or more")
     return features
@@ -162,13 +148,10 @@ def _of(value: Any, key: str) -> Any:
 
 def _shape(geometry: object, place: str) -> BaseGeometry | None:
     """Return a GeoJSON geometry as shapely's."""
-    import shapely
-    from shapely.geometry import shape
-
     if geometry is None:
         return None
     try:
-        found = shape(geometry)
+        found = shapely.geometry.shape(geometry)
     except (
         AttributeError,
         IndexError,
@@ -184,87 +167,14 @@ def _shape(geometry: object, place: str) -> BaseGeometry | None:
     return _on_earth(found, place)
 
 
-def _on_earth(shape: BaseGeometry, place: str) -> BaseGeometry:
+def _on_earth(geometry: BaseGeometry, place: str) -> BaseGeometry:
     """Return a geometry whose coordinates are longitudes, which may go on beyond 180, and latitudes."""
-    import shapely
-
-    places = shapely.get_coordinates(shape)
+    places = shapely.get_coordinates(geometry)
     wrong = ~(np.abs(places) <= [360.0, 90.0]).all(axis=1)  # NaN too
     if wrong.any():
         lon, lat = places[wrong.argmax()]
         raise refusal(place, f"got longitude {lon:g} and latitude {lat:g}, must be degrees; {EXCHANGED}")
-    return shape
-
-
-def _kml_of_kmz(content: bytes) -> bytes:
-    import zipfile
-    import zlib
-
-    names, found = [], b""
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            names = [name for name in archive.namelist() if name.lower().endswith(".kml")]
-            for name in names[:1]:
-                with archive.open(name) as file:
-                    found = file.read(MOST_BYTES + 1)
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        OSError,
-        NotImplementedError,
-        RuntimeError,
-        ValueError,
-    ) as error:
-        raise refusal(
-            "", f"this is not KMZ: {str(error) or 'it ends early'}; export it anew, or as .kml"
-        ) from None
-    if len(names) != 1:
-        raise refusal("", f"it has {len(names)} KML files, must be one; extract the one that counts")
-    if len(found) > MOST_BYTES:
-        raise refusal("", f"its KML is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
-    return found
-
-
-def _root(content: bytes, kind: str) -> Element:
-    """Return the root of an XML document of a kind."""
-    from xml.etree import ElementTree
-
-    try:
-        root = ElementTree.fromstring(b"" if b"<!DOCTYPE" in content else content)
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise refusal("", f"this is not {kind.upper()}: {error}; export it anew") from None
-    if _kind(root) != kind:
-        raise refusal("", f"its root is {_kind(root)!r}, must be {kind!r}")
-    return root
-
-
-def _corners(features: Sequence[Feature]) -> int:
-    import shapely
-
-    return int(sum(shapely.get_num_coordinates([feature.geometry for feature in features])))
-
-
-def _placemarks(content: bytes) -> tuple[int, int]:
-    """Count placemarks and coordinates of a KML document; refuse what else may hold areas."""
-    root = _root(content, "kml")
-    kinds, corners = Counter(map(_kind, root.iter())), 0
-    for kind, words in (("NetworkLink", "a link to another file"), ("GroundOverlay", "a picture on a map")):
-        if kinds[kind]:
-            raise refusal("", f"it has a {kind}, {words}, which is not read; save what it shows as KML")
-    for placemark in (each for each in root.iter() if _kind(each) == "Placemark"):
-        for each in placemark.iter():
-            places = (each.text or "").split() if _kind(each) == "coordinates" else []
-            corners += len(places)
-            wrong = next((word for word in places if not _PLACE.fullmatch(word)), None)
-            if wrong is not None:
-                name = f'Placemark "{placemark.findtext("{*}name", "").strip()}"'
-                raise refusal(name, f'got "{wrong[:60]}", must be longitude,latitude without blanks')
-    return kinds["Placemark"], corners
-
-
-def _kind(element: Element) -> str:
-    return element.tag.rpartition("}")[2]
+    return geometry
 
 
 def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
@@ -316,8 +226,6 @@ def _cell(value: Any, is_name: bool) -> Any:
 
 
 def _shape_of_wkb(shape: bytes | None, place: str) -> BaseGeometry | None:
-    import shapely
-
     try:
         return None if shape is None else _on_earth(shapely.from_wkb(shape, on_invalid="fix"), place)
     except shapely.GEOSException as error:

@@ -133,11 +133,7 @@ class GroundPoint(Section):
         """Return the fault that an axis or the depth of a null is given of an antenna that has none."""
         yield from super().faults(raw)
         for key, noun in (("antenna_axis", "axis"), ("null_depth_db", "null")):
-            if (
-                getattr(self, key) is not None
-                and self.antenna in GROUND_ANTENNAS
-                and self.antenna != "dipole"
-            ):
+            if getattr(self, key) is not None and self.antenna in GROUND_ANTENNAS.keys() - {"dipole"}:
                 yield (
                     (key,),
                     f'given, but antenna = "{self.antenna}" has no {noun}; remove it, or write antenna = '
@@ -163,22 +159,7 @@ class GroundPoint(Section):
 
 
 class Emitter(Powered, GroundPoint):
-    """A transmitter on the ground.
-
-    Args:
-        name: how results and overrides refer to it; a scenario names it by its place when left out.
-        position_m: east, north and up from the origin [m], (3,).
-        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
-            position_m; None if the place was not stated so.
-        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
-        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
-        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
-        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
-            perfect null.
-        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
-        power_w: transmit power [W]; or else
-        power_dbm: the same in dBm.
-    """
+    """A transmitter on the ground."""
 
     ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, POWER)
 
@@ -186,17 +167,7 @@ class Emitter(Powered, GroundPoint):
 class Node(Emitter):
     """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
 
-    Args:
-        name: how results and overrides refer to it; a scenario names it by its place when left out.
-        position_m: east, north and up from the origin [m], (3,).
-        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
-            position_m; None if the place was not stated so.
-        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
-        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
-        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
-        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
-            perfect null.
-        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
+    Args beside those of a ground point:
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm; both may be left out where the drone transmits.
         weight: the node's margin is its SINR over this; or else
@@ -265,47 +236,18 @@ class Node(Emitter):
 
 
 class Jammer(Uncertain, Emitter):
-    """A jammer whose signal drowns the nodes.
-
-    Args:
-        name: how results and overrides refer to it; a scenario names it by its place when left out.
-        position_m: east, north and up from the origin [m], (3,).
-        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
-            position_m; None if the place was not stated so.
-        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
-        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
-        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
-        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
-            perfect null.
-        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
-        power_w: transmit power [W]; or else
-        power_dbm: the same in dBm.
-        uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.
-        uncertainty_attitude_deg: roll, pitch and yaw [deg] of the ellipsoid's axes.
-    """
+    """A jammer whose signal drowns the nodes: a ground point that transmits and may be uncertain."""
 
     header: ClassVar[str] = "a jammer, in a table of its own headed [[jammers]]"
     letter: ClassVar[str] = "M"
 
 
 class Eavesdropper(Uncertain, GroundPoint):
-    """A receiver that is not to hear what the drone sends.
+    """A receiver that is not to hear what the drone sends; it may be uncertain.
 
-    Args:
-        name: how results and overrides refer to it; a scenario names it by its place when left out.
-        position_m: east, north and up from the origin [m], (3,).
-        lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
-            position_m; None if the place was not stated so.
-        alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
-        antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
-        antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
-        null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
-            perfect null.
-        gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
+    Args beside those of a ground point:
         noise_w: its receiver's noise [W]; or else
         noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
-        uncertainty_m: radius of a ball [m], or the three semi-axes of an ellipsoid [m], within which it is.
-        uncertainty_attitude_deg: roll, pitch and yaw [deg] of the ellipsoid's axes.
     """
 
     header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"

@@ -9,20 +9,20 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+from shapely import Point
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.areas import counted, name_of, parts_of, unique
+from nullpose.scenario.areas import counted, name_of, unique
 from nullpose.scenario.faults import Raw, RawTable, refusal
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.ground_points import PLACE, Node
 from nullpose.scenario.rules import MOST_MEMBERS
+from nullpose.scenario.shapes import parts_of
 from nullpose.scenario.units import ALTITUDE_KEYS, GEODETIC_KEYS
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import listed, printable, unknown
-
-if TYPE_CHECKING:
-    from shapely import Point
 
 _LOCAL = ("x_m", "y_m", "z_m")
 _PLACE = Ways((_LOCAL, GEODETIC_KEYS), twins=PLACE.twins)

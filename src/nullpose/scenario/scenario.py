@@ -35,21 +35,6 @@ _Objective = Annotated[str, Choice("an objective", RECORDS)]
 class Scenario(Section, PointArrays):
     """Nodes, jammers, a receiver and an airspace, in one world frame: east, north, up (ENU), in metres.
 
-    Args:
-        name: a title for tables and figures; may be empty.
-        objective: the maximised objective: the name of a record in :mod:`nullpose.objectives`.
-        origin: where on the Earth the frame's zero is, or None.
-        airspace: where the vehicle may be.
-        airframe: which antenna axes it reaches; None for all of them.
-        antenna: which antenna it carries; None for a short dipole.
-        array: several upright dipoles in place of the one, or None.
-        receiver: its noise, the path gain at 1 m, and how well the vehicle holds a pose.
-        transmitter: the drone's own power, where it transmits.
-        nodes: the legitimate nodes, one or more.
-        nodes_from: only in files, in place of nodes: the file that lists them; None once it has been read.
-        jammers: the jammers, none or more.
-        eavesdroppers: who listens in, where the drone transmits.
-
     Raises:
         ScenarioError: with every fault of the values together.
     """
@@ -116,15 +101,7 @@ class Scenario(Section, PointArrays):
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
-        """Read the scenario that a TOML file describes; the same as ``nullpose.load``.
-
-        Args:
-            path: the file, of 10 MB at most.
-            allow_outside: whether the file of nodes may be outside the folder of this one.
-
-        Raises:
-            ScenarioError: when the file cannot be read or is faulty; with every fault it has.
-        """
+        """Read the scenario that a TOML file describes; the same as ``nullpose.load``."""
         from nullpose.scenario.loading import load
 
         return load(path, allow_outside=allow_outside)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +13,7 @@ from typing import Any
 
 from nullpose.files import MOST_BYTES, read_bytes
 from nullpose.scenario.faults import RawTable, refusal
-from nullpose.scenario.wording import nearest
+from nullpose.scenario.wording import described, nearest
 
 _TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
 _KEY_TUPLE = re.compile(r"\('([^)]*?)',?\)")
@@ -165,6 +166,29 @@ def _other_file(path: Path, kind: FileKind, base: Path) -> str:
     seen = path.parent / guess
     suggested = seen.relative_to(base) if seen.is_relative_to(base) else seen
     return f"; did you mean {suggested}?" if guess else "; check the path"
+
+
+def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Path:
+    """Locate a file that another one names.
+
+    Args:
+        folder: of the file that names it.
+        file: as it is named.
+        allow_outside: whether it may be anywhere.
+        place: where it is named, for messages.
+
+    Raises:
+        ScenarioError: it is, through links or not, neither in that folder nor below it.
+    """
+    # A null character, which no path may hold, is told of when the file is read.
+    real, root = os.path.realpath(folder / file.replace("\0", "")), os.path.realpath(folder)
+    if not allow_outside and not Path(real).is_relative_to(root):
+        raise refusal(
+            place,
+            f"got {described(file)}, which is outside the folder of the file that names it; put it there, or "
+            "allow this by --allow-outside (in Python allow_outside=True)",
+        )
+    return folder / file
 
 
 def toml_text(scenario: Mapping[str, object]) -> str:

@@ -12,8 +12,7 @@ from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
 from nullpose.scenario.faults import path_of
-from nullpose.scenario.loading import inside
-from nullpose.scenario.toml_file import FileKind, file_text, tables_of
+from nullpose.scenario.toml_file import FileKind, file_text, inside, tables_of
 from nullpose.study.case import Case
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec

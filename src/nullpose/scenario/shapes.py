@@ -1,0 +1,110 @@
+"""Shapes in degrees, x being longitudes, which go on across the antimeridian, and y latitudes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely import LinearRing, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from nullpose.scenario.arrays import Floats
+from nullpose.scenario.faults import refusal
+
+_SAME_CORNER_DEG = 9e-8  # a centimetre
+_STRAIGHT_DEG = 0.02  # an edge of this length, straight in degrees, is within 0.2 m of straight in metres
+_CUT_DEG = 0.05  # the same within a metre, for edges that bound nothing
+_LOOPS = 0.01  # of the area inside a ring: larger loops may mean that its corners are out of order
+
+
+def parts_of(geometry: BaseGeometry | Sequence[BaseGeometry] | None) -> Iterator[Any]:
+    """Yield the single geometries of one that may hold several, without the empty ones."""
+    for part in shapely.get_parts(geometry):
+        if hasattr(part, "geoms"):
+            yield from parts_of(part)
+        elif not part.is_empty:
+            yield part
+
+
+def corners_of(ring: LinearRing) -> list[list[float]]:
+    """Return the corners of a ring as latitudes and longitudes, these from -180 to 180 degrees."""
+    corners = shapely.get_coordinates(ring)[:-1, ::-1]
+    beyond = np.abs(corners[:, 1]) > 180.0
+    corners[beyond, 1] = (corners[beyond, 1] + 180.0) % 360.0 - 180.0
+    return corners.tolist()  # type: ignore[no-any-return]
+
+
+def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:
+    """Mend doubled corners and spikes, and make long edges straight in degrees; empty for a wall.
+
+    Where a ring has small loops, all inside the rings counts.
+
+    Args:
+        polygon: any.
+        place: of its feature, for messages.
+        is_fence: whether every crossing of a border is a fault.
+
+    Returns:
+        The polygon, or several, and whether its border crossed itself.
+
+    Raises:
+        ScenarioError: it does, and may mean that corners are out of order.
+    """
+    with suppress(shapely.GEOSException):  # a ring within a centimetre stays as it is
+        polygon = shapely.remove_repeated_points(polygon, _SAME_CORNER_DEG)
+    valid = polygon if polygon.is_valid else _valid(polygon)
+    # GEOS has the area inside the rings, which spikes do not change and crossings do
+    is_crossing = abs(valid.area - polygon.area) > _SAME_CORNER_DEG * polygon.length
+    if is_crossing:
+        rings = [shapely.Polygon(ring) for ring in (polygon.exterior, *polygon.interiors)]
+        wholes = [_valid(ring) for ring in rings]
+        has_loops = any(
+            ring.area < (1.0 - _LOOPS) * whole.area for ring, whole in zip(rings, wholes, strict=True)
+        )
+        if is_fence or has_loops:
+            raise refusal(
+                place,
+                f"its border crosses itself ({shapely.is_valid_reason(polygon)}, longitude and latitude); "
+                "list every corner once, in order around the area",
+            )
+        valid = shapely.union_all(wholes)
+    is_wall = valid.area <= _SAME_CORNER_DEG * valid.length
+    return shapely.Polygon() if is_wall else shapely.segmentize(valid, _STRAIGHT_DEG), is_crossing
+
+
+def _valid(polygon: Polygon) -> Any:
+    return shapely.make_valid(polygon, method="structure", keep_collapsed=False)
+
+
+def near(polygon: Polygon, middle_deg: float) -> Polygon:
+    """Move a polygon's longitudes near a middle, going on across the antimeridian."""
+
+    def moved(corners: Floats) -> Floats:
+        first = corners[0, 0] - 360.0 * round((corners[0, 0] - middle_deg) / 360.0)
+        corners[:, 0] -= 360.0 * np.round((corners[:, 0] - first) / 360.0)
+        return corners
+
+    west, _, east, _ = polygon.bounds
+    is_near = east - west < 180.0 and abs(west - middle_deg) <= 180.0
+    return polygon if is_near else shapely.transform(polygon, moved)
+
+
+def box_about(lon_deg: float, lat_deg: float, radius_m: Any) -> Polygon:
+    """Return a box of degrees that a cylinder lies in; one about all where its radius is at fault."""
+    is_number = isinstance(radius_m, int | float) and not isinstance(radius_m, bool)
+    is_length = is_number and 0.0 <= radius_m < 4e7
+    half = radius_m / 1.1e5 if is_length else 360.0  # a degree of latitude has 110.57 km at least
+    wide = half / max(np.cos(np.radians(min(abs(lat_deg) + half, 89.0))), 0.01)
+    return shapely.box(lon_deg - wide, lat_deg - half, lon_deg + wide, lat_deg + half)
+
+
+def cut(polygon: Polygon, box: Polygon) -> list[Polygon]:
+    """Return the parts of a polygon that lie in a box; one that lies in it as it is."""
+    if box.covers(polygon.envelope):
+        return [polygon]
+    # In metres a long edge of the box would leave the parallel, and might cross other edges
+    inside = polygon & shapely.segmentize(box, _CUT_DEG)
+    return [part for part in parts_of(inside) if part.geom_type == "Polygon"]
