@@ -47,3 +47,32 @@ def test_json_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
         (3.0, "vertical"),
     ]
     assert [Path(path).exists() for path in answer["files"]] == [True] * 4
+    assert answer["rows"][0]["stats"]["boxes"] > 0
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        (["receiver.noise_w=1"], "exactly one path"),
+        (["jammers.M.power_w", "receiver.noise_w"], "exactly one path"),
+        (["jammers.M.power_w", "receiver.noise_w=-1"], "receiver.noise_w"),
+    ],
+)
+def test_exactly_one_path_is_varied(
+    run: Run, paper: str, tmp_path: Path, settings: list[str], words: str
+) -> None:
+    """None or two paths without a value are refused, and a bad value of a fixed one."""
+    named = [text for setting in settings for text in ("--set", setting)]
+    result = run("sweep", paper, *named, "--from", 1, "--to", 3, "--out", tmp_path / "out")
+    assert (result.exit_code, (tmp_path / "out").exists()) == (2, False)
+    assert words in result.stderr
+
+
+def test_a_time_limit_holds_for_each_row(run: Run, paper: str, tmp_path: Path) -> None:
+    """Every row tells that its proof was stopped, and has a bound."""
+    field = paper.replace("paper.toml", "field.toml")
+    limits = ("--scheme", "optimum", "--time-limit", "1e-9", "--json", "--out", tmp_path)
+    arguments = ("--set", "jammers.van.power_w", "--from", 1, "--to", 2, "--points", 2, *limits)
+    rows = json.loads(run("sweep", field, *arguments).stdout)["rows"]
+    assert [row["reason"] for row in rows] == ["the time limit of 1e-09 s"] * 2
+    assert all(row["upper_bound"] >= row["min_sinr"] for row in rows)

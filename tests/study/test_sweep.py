@@ -53,7 +53,7 @@ def test_more_jamming_never_helps(paper: Scenario) -> None:
 
 
 def test_schemes_that_do_not_apply_are_left_out_with_the_reason(paper: Scenario) -> None:
-    """Without a jammer zero interference is missing from the rows; alone, it is an error."""
+    """Without a jammer zero interference is missing from the rows; named, it is an error."""
     calm = Scenario.from_dict({**paper.to_dict(), "jammers": []})
     table = sweep(calm, "receiver.noise_w", [1e-3])
     assert "zero-interference" not in table.schemes
@@ -72,10 +72,28 @@ def test_faults_come_before_the_first_solve(paper: Scenario) -> None:
     assert ticks == []
 
 
-def test_path_that_does_not_exist(paper: Scenario) -> None:
-    """An unknown path is refused with the nearest one."""
-    with pytest.raises(ScenarioError, match=r"jammers\.M\.power_w"):
-        sweep(paper, "jammers.M.powr_w", [1.0])
+@pytest.mark.parametrize(
+    ("path", "options", "error", "words"),
+    [
+        ("jammers.M.powr_w", {}, ScenarioError, r"jammers\.M\.power_w"),
+        (POWER, {"gap": 0.0}, UsageError, "gap"),
+        (POWER, {"time_limit_s": -1.0}, UsageError, "time"),
+        (POWER, {"node_limit": 0}, UsageError, "node"),
+    ],
+)
+def test_a_faulty_sweep_is_refused(
+    paper: Scenario, path: str, options: dict[str, object], error: type[Exception], words: str
+) -> None:
+    """An unknown path, told with the nearest one, and limits that are none."""
+    with pytest.raises(error, match=words):
+        sweep(paper, path, [1.0], **options)
+
+
+def test_equal_seeds_give_equal_tables() -> None:
+    """To the last digit, whatever was solved before."""
+    field = load(EXAMPLES / "field.toml")
+    tables = [sweep(field, "jammers.van.power_w", [1.0], certify=False, seed=3) for _ in range(2)]
+    assert [row.pose for row in tables[0].rows] == [row.pose for row in tables[1].rows]
 
 
 def test_every_row_is_certified_unless_told_otherwise(paper: Scenario) -> None:

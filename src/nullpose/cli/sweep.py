@@ -13,6 +13,7 @@ from nullpose.cli.options import (
     OutFolder,
     ProofOptions,
     ScenarioFile,
+    SceneOptions,
     Width,
     expanded,
 )
@@ -61,27 +62,26 @@ def sweep(
 
     It writes a table (CSV) and a figure (PNG, SVG, PDF).
     """
-    from nullpose.files import check_outputs
-    from nullpose.scenario.loading import files_of, load
-    from nullpose.study import plan_sweep
+    from nullpose.errors import UsageError
+    from nullpose.study import spaced, sweep as sweep_scenario
 
-    plan = plan_sweep(
-        load(file, allow_outside=allow_outside),
-        settings,
-        start=start,
-        stop=stop,
-        points=points,
-        log=log,
-        schemes=[name.value for name in scheme] if scheme else None,
-        **proof.keywords(fast),
-    )
-    outputs = {f"--out ({name})": out / name for name in ("sweep.csv", "sweep.png", "sweep.svg", "sweep.pdf")}
-    check_outputs(files_of(file), outputs)
-    with compiling_announced(), Ticker(f"sweep of {plan.path}") as ticker:
-        found = plan.run(on_progress=ticker)
-    if plan.scenario.array is not None:
+    varied = [setting.strip() for setting in settings if "=" not in setting]
+    if len(varied) != 1:
+        given = ", ".join(settings)
+        raise UsageError(f"--set: exactly one path to vary is needed, without a value; given {given}")
+    fixed = [setting for setting in settings if "=" in setting]
+    scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside)
+    scenario = scene.read()
+    values = spaced(start, stop, points, log=log)
+    files = [f"sweep.{end}" for end in ("csv", "png", "svg", "pdf")]
+    scene.check_outputs({f"--out ({name})": out / name for name in files})
+    schemes = [name.value for name in scheme] if scheme else None
+    with compiling_announced(), Ticker(f"sweep of {varied[0]}") as ticker:
+        found = sweep_scenario(
+            scenario, varied[0], values, schemes=schemes, on_progress=ticker, **proof.keywords(fast)
+        )
+    if scenario.array is not None:
         say("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep
 
-    files = write_sweep(found, out, log=log, width=width)
-    tell(found, sweep_view, json_output, files=files)
+    tell(found, sweep_view, json_output, files=write_sweep(found, out, log=log, width=width))

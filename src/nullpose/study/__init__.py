@@ -4,7 +4,7 @@ from nullpose.study.antenna_comparison import compare_antennas
 from nullpose.study.case import AIRFRAME_CASES, Case, cases_of
 from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
 from nullpose.study.poses_csv import poses_from_csv
-from nullpose.study.sweep import SweepPlan, plan_sweep, spaced, sweep
+from nullpose.study.sweep import spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import Field, value_map
 from nullpose.study.vehicles import (
@@ -25,7 +25,6 @@ __all__ = [
     "Guaranteed",
     "ResultRow",
     "ResultTable",
-    "SweepPlan",
     "cases_of",
     "compare_airframes",
     "compare_antennas",
@@ -33,7 +32,6 @@ __all__ = [
     "difference",
     "evaluate_against",
     "least_sufficient",
-    "plan_sweep",
     "poses_from_csv",
     "share",
     "spaced",

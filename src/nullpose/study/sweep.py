@@ -1,11 +1,10 @@
-"""Many solves along one setting of a scenario, as asked for in Python or on the command line."""
+"""Many solves along one setting of a scenario."""
 
 from __future__ import annotations
 
 import math
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import product
 from types import MappingProxyType
 from typing import Unpack
@@ -28,7 +27,7 @@ def sweep(
     path: str,
     values: Sequence[float],
     *,
-    schemes: Sequence[str] = tuple(Scheme),
+    schemes: Sequence[str] | None = None,
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> ResultTable:
@@ -37,20 +36,21 @@ def sweep(
     Where the best value can only fall along the setting, a point takes the bound of a freer one if a pose of
     that one reaches it; such a row has no certificate.
 
-    Schemes that have no meaning at some value are left out, with the reason in the table. Every value is
-    checked before the first solve. An interrupt ends the sweep, during a proof as anywhere else.
+    Every value is checked before the first solve. An interrupt ends the sweep, during a proof as anywhere
+    else.
 
     Args:
-        scenario: the scenario whose setting is varied.
+        scenario: the scenario whose setting is varied; an array is left out.
         path: the setting, as in ``jammers.M.power_w``.
         values: what to set it to, in its own unit.
-        schemes: which cases to solve.
+        schemes: which cases to solve, each of which must have a meaning at every value; without it all that
+            have, the others being left out with the reason in the table.
         on_progress: called after each solve with how many are done and how many there are.
         options: as for :func:`nullpose.solver.solve`.
 
     Raises:
         ScenarioError: the path does not exist, or a value makes no valid scenario.
-        UsageError: no scheme applies, or a bad limit.
+        UsageError: a scheme does not apply, or a bad limit.
         KeyboardInterrupt: Ctrl-C ended a proof.
 
     Example:
@@ -66,71 +66,62 @@ def sweep(
           100 W  maximum-gain  -1.116 dB
     """
     require_scenario(scenario)
+    chosen, sign = SolveOptions(**options), freedom(path, scenario)
     scenarios = _scenarios_along(scenario, path, values)
-    reasons = {scheme: _not_applicable_along(scenarios, scheme) for scheme in map(Scheme, schemes)}
-    left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
-    applicable = [scheme for scheme, reason in reasons.items() if not reason]
-    if not applicable:
-        raise UsageError("\n".join(f"{scheme}: {reason}" for scheme, reason in left_out.items()))
+    cases: list[Case] = []
+    left_out: dict[str, str] = {}
+    for scheme in Scheme if schemes is None else map(Scheme, schemes):
+        reasons = [(value, scheme.not_applicable(varied)) for value, varied in scenarios]
+        value, reason = next(((value, reason) for value, reason in reasons if reason), (0.0, ""))
+        if reason and schemes is not None:
+            raise UsageError(f"scheme {scheme}: {reason} (at {value:g}); try another scheme")
+        if reason:
+            left_out[scheme.value] = f"{reason} (at {value:g})"
+        else:
+            cases.append(Case(name=scheme.value, scheme=scheme))
 
-    solve_options, sign = SolveOptions(**options), freedom(path, scenario)
-    found: dict[Scheme, list[Result]] = defaultdict(list)
-    rows: dict[tuple[float, Scheme], ResultRow] = {}
+    found: dict[str, list[Result]] = defaultdict(list)
+    rows: dict[tuple[float, str], ResultRow] = {}
     # a point that bounds others comes first; without a direction the order is that of the values
     order = sorted(scenarios, key=lambda point: -sign * point[0])
-    for (value, varied), scheme in product(order, applicable):
-        implied = from_freer(varied, found[scheme], solve_options) if sign else None
-        result = implied or solve(varied, scheme, **options)
+    for (value, varied), case in product(order, cases):
+        implied = from_freer(varied, found[case.name], chosen) if sign else None
+        result = implied or solve(varied, case.name, **options)
         if result.interrupted:
             raise KeyboardInterrupt
-        found[scheme].append(result)
-        case = Case(name=scheme.value, scheme=scheme)
-        rows[value, scheme] = ResultRow.of(value, result, case)
+        found[case.name].append(result)
+        rows[value, case.name] = ResultRow.of(value, result, case)
         if on_progress is not None:
-            on_progress(len(rows), len(order) * len(applicable))
-    in_order = (rows[value, scheme] for value, _ in scenarios for scheme in applicable)
+            on_progress(len(rows), len(order) * len(cases))
+    in_order = (rows[value, case.name] for value, _ in scenarios for case in cases)
     return ResultTable(path, tuple(in_order), MappingProxyType(left_out))
 
 
 def _scenarios_along(
     scenario: Scenario, path: str, values: Sequence[float]
 ) -> tuple[tuple[float, Scenario], ...]:
-    """Return each value of a setting with the scenario that has it.
-
-    Args:
-        scenario: the scenario whose setting is varied.
-        path: the setting, as in ``jammers.M.power_w``.
-        values: what to set it to, in its own unit.
+    """Pair each value of a setting with the scenario that has it.
 
     Raises:
-        ScenarioError: the path does not exist, or values make no valid scenario; every fault once.
+        ScenarioError: the path does not exist, or values make no valid scenario; every fault once, so that a
+            long sweep gives a short message.
     """
     varied: list[tuple[float, Scenario]] = []
-    faults: dict[str, list[tuple[float, Fault]]] = defaultdict(list)
+    at: dict[str, list[float]] = defaultdict(list)
+    faults: dict[str, Fault] = {}
     for value in map(float, values):
         try:
             varied.append((value, apply_overrides(scenario, [Override(path, value)]).without_array))
         except ScenarioError as error:
             for fault in error.faults:
-                faults[fault.path].append((value, fault))
-    if faults:
-        raise ScenarioError([_summary(found) for found in faults.values()], source=f"sweep of {path}")
+                faults.setdefault(fault.path, fault)
+                at[fault.path].append(value)
+    others = {place: len(wrong) - 1 for place, wrong in at.items()}
+    more = {place: f" and {n} other value{'s' * (n > 1)}" if n else "" for place, n in others.items()}
+    found = [Fault(key, f"{each.message} (at {at[key][0]:g}{more[key]})") for key, each in faults.items()]
+    if found:
+        raise ScenarioError(found, source=f"sweep of {path}")
     return tuple(varied)
-
-
-def _not_applicable_along(scenarios: Sequence[tuple[float, Scenario]], scheme: Scheme) -> str:
-    """Give the reason for which a scheme has no meaning at a value; empty if it has at all of them."""
-    reasons = {value: reason for value, varied in scenarios if (reason := scheme.not_applicable(varied))}
-    value, reason = next(iter(reasons.items()), (0.0, ""))
-    return reason if len(reasons) in (0, len(scenarios)) else f"{reason} (at {value:g})"
-
-
-def _summary(found: Sequence[tuple[float, Fault]]) -> Fault:
-    """Return one fault for all the values that have it, so that a long sweep gives a short message."""
-    value, fault = found[0]
-    others = len(found) - 1
-    more = f" and {others} other value{'s' * (others > 1)}" if others else ""
-    return Fault(fault.path, f"{fault.message} (at {value:g}{more})")
 
 
 def spaced(start: float, stop: float, points: int, *, log: bool = False) -> tuple[float, ...]:
@@ -162,80 +153,3 @@ def spaced(start: float, stop: float, points: int, *, log: bool = False) -> tupl
         raise UsageError("\n  ".join([f"range of the sweep: {count}", *faults]))
     values = (np.geomspace if log else np.linspace)(start, stop, points)
     return (start, *(float(f"{value:.{_DIGITS}g}") for value in values[1:-1]), stop)
-
-
-@dataclass(frozen=True, slots=True)
-class SweepPlan:
-    """A sweep that can be run.
-
-    Args:
-        scenario: the scenario, fixed settings applied.
-        path: the setting that is varied.
-        values: what it is set to.
-        schemes: the cases to solve.
-        options: of every solve.
-    """
-
-    scenario: Scenario
-    path: str
-    values: tuple[float, ...]
-    schemes: tuple[Scheme, ...]
-    options: SolveKeywords
-
-    def run(self, on_progress: Callable[[int, int], None] | None = None) -> ResultTable:
-        """Run the sweep.
-
-        Args:
-            on_progress: called after each solve with how many are done and how many there are.
-        """
-        return sweep(
-            self.scenario,
-            self.path,
-            self.values,
-            schemes=self.schemes,
-            on_progress=on_progress,
-            **self.options,
-        )
-
-
-def plan_sweep(
-    scenario: Scenario,
-    settings: Sequence[str],
-    *,
-    start: float,
-    stop: float,
-    points: int,
-    log: bool = False,
-    schemes: Sequence[str] | None = None,
-    **options: Unpack[SolveKeywords],
-) -> SweepPlan:
-    """Return the plan of a sweep, in which every value and scheme was looked at.
-
-    Args:
-        scenario: the scenario to start from.
-        settings: one path to vary, and any number of ``path=value`` to fix.
-        start: the first value.
-        stop: the last value.
-        points: how many values.
-        log: space the values by a constant ratio.
-        schemes: the cases to solve, each of which must apply; without it all that do.
-        options: as for :func:`nullpose.solver.solve`.
-
-    Raises:
-        UsageError: not exactly one path to vary, a bad range or limit, or a scheme that does not apply.
-        ScenarioError: a fixed setting is at fault.
-    """
-    varied = [setting.strip() for setting in settings if "=" not in setting]
-    if len(varied) != 1:
-        raise UsageError(
-            f"--set: exactly one path to vary is needed, without a value; given {', '.join(settings)}"
-        )
-    SolveOptions(**options)
-    values = spaced(start, stop, points, log=log)
-    base = apply_overrides(scenario, [setting for setting in settings if "=" in setting])
-    wanted = tuple(Scheme if schemes is None else map(Scheme, schemes))
-    scenarios = _scenarios_along(base, varied[0], values)
-    for scheme in wanted if schemes is not None else ():
-        for _, at_value in scenarios:
-            scheme.require_applicable(at_value)
-    return SweepPlan(base, varied[0], values, wanted, options)

@@ -95,7 +95,7 @@ def make(tmp_path: Path) -> Make:
                 for point, at_point in enumerate(cells[scene])
                 for case, cell in zip(spec.case_names, at_point, strict=True)
             ]
-            folder.add(first, last, as_parquet(spec, rows, 0, 1.0))
+            folder.add(first, last, as_parquet(spec, rows, 1.0))
         return tmp_path / "study"
 
     return made

@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,11 +28,6 @@ _CAPTIONS = {
     "distribution": "The distribution over scenes",
     "gain": "The gains of each case, with their confidence intervals",
 }
-_GAINS = {"gain_median": "median gain", "shift_worst_tenth": "gain in the worst tenth"}
-_REST = (
-    "; rows that are not certified count with the value of their pose, a lower bound of the optimum, failed "
-    "rows not at all, and study.csv has the reasons"
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,21 +93,31 @@ def report_study(
             table, cases, requirement, lambda batch: file.write(_csv(batch, header=file.tell() == 0))
         )
     figures = _write_figures(summary, prepare_folder(target / "figures"))
-    leader, proof = _leader(summary), _proof_sentence(summary)
-    answer = _gain_sentence(summary, leader)
+    leader = _leader(summary)
+    reference = str(summary.cases.loc[leader, "against"] if leader else summary.cases.index[0])
     done = f"{summary.scenes:,} of {table.spec.n_scenes:,} scenes"
     unfinished = "" if summary.is_complete else f"This study is not finished: {done} are done."
+    unit, spec = table.quantity.unit, table.spec
     page: dict[str, object] = {
-        "title": table.spec.name or "A study without a name",
+        "summary": summary,
+        "title": spec.name or "A study without a name",
         "unfinished": unfinished,
-        "sentences": [answer, proof],
-        "numbers": _three_numbers(summary, leader),
-        "table": _table(summary),
-        "captions": {name: _CAPTIONS[name] for name in figures},
+        "counts": {name: int(summary.frame[name.replace("-", "_")].sum()) for name in STATUSES},
+        "leader": leader,
+        "reference": reference,
+        "requirement": "" if requirement is None else f"{requirement:g} {unit}",
+        "swept": spec.swept,
+        "words": point_words(spec, -1),
+        "points": {point: point_words(spec, point) for point in shown_points(spec)},
+        "captions": _CAPTIONS,
         "images": {name: base64.b64encode(svg.read_bytes()).decode() for name, (_, svg) in figures.items()},
         "confidence": percent(CONFIDENCE),
-        "seed": table.spec.seed,
+        "percent": percent,
+        "cell": partial(_cell, summary),
+        "with_unit": lambda point, case, name: with_unit(summary.row(point, case)[name], table.quantity),
     }
+    sentences = _rendered("sentences.txt.jinja", page).splitlines()
+    page["sentences"] = sentences
     files = (
         write_text(target / "report.md", _rendered("report.md.jinja", page)),
         write_text(target / "report.html", _rendered("report.html.jinja", page)),
@@ -119,8 +125,8 @@ def report_study(
         data,
         *(path for pair in figures.values() for path in pair),
     )
-    notes = tuple(filter(None, (unfinished, proof)))
-    return StudyReport(answer=answer, notes=notes, summary=summary, files=files)
+    notes = tuple(filter(None, (unfinished, *sentences[1:])))
+    return StudyReport(answer=sentences[0], notes=notes, summary=summary, files=files)
 
 
 def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | None) -> float | None:
@@ -145,62 +151,6 @@ def _leader(summary: Summary) -> str:
     )
 
 
-def _gain_sentence(summary: Summary, leader: str) -> str:
-    if not summary.scenes:
-        return "No scene is solved yet."
-    quantity, words, phrases = summary.quantity, point_words(summary.spec, -1), summary.cases["phrase"]
-    scenes = f"Over {summary.scenes:,} scenes{f' at {words}' if words else ''}"
-    if not leader:
-        row = summary.row(-1, summary.cases.index[0])
-        levels = [with_unit(row[name], quantity) for name in ("median", "worst_tenth")]
-        return (
-            f"{scenes} {phrases.iloc[0]} reaches a {quantity.smallest} of {levels[0]} in the median and "
-            f"{levels[1]} in the worst tenth."
-        )
-    gains = [f"{_cell(summary, -1, leader, name)} {quantity.unit}" for name in _GAINS]
-    return (
-        f"{scenes} {phrases[leader]} gains {gains[0]} in the median and {gains[1]} in the worst tenth over "
-        f"{phrases[summary.cases.loc[leader, 'against']]} ({percent(CONFIDENCE)} confidence in brackets)."
-    )
-
-
-def _proof_sentence(summary: Summary) -> str:
-    """Count rows by status, and say how the others count."""
-    counts = {name: int(summary.frame[name.replace("-", "_")].sum()) for name in STATUSES}
-    rows = sum(counts.values())
-    if not rows:
-        return ""
-    kinds = [f"{count:,} {name.replace('-', ' ')}" for name, count in counts.items() if count]
-    return f"Of {rows:,} rows: {', '.join(kinds)}{'' if counts['certified'] == rows else _REST}."
-
-
-def _three_numbers(summary: Summary, leader: str) -> dict[str, str]:
-    """Write the median of the reference and the two gains of the leading case, at the last combination."""
-    quantity = summary.quantity
-    reference = summary.cases.loc[leader, "against"] if leader else summary.cases.index[0]
-    numbers = {f"median {quantity.smallest}, {reference}": summary.row(-1, reference)["median"]}
-    for name, words in _GAINS.items() if leader else ():
-        numbers[f"{words}, {leader}"] = summary.row(-1, leader)[name]
-    return {words: with_unit(value, quantity) for words, value in numbers.items()}
-
-
-def _table(summary: Summary) -> list[dict[str, str]]:
-    """Write the statistics of each case at the combinations that are shown."""
-    unit, rows = summary.quantity.unit, []
-    names = {"median": "median", "worst_tenth": "worst tenth", **_GAINS}
-    for point in shown_points(summary.spec):
-        for case in summary.cases.index:
-            row, cells = summary.row(point, case), {"case": case}
-            if summary.spec.swept:
-                cells["at"] = point_words(summary.spec, point)
-            cells |= {f"{words}, {unit}": _cell(summary, point, case, name) for name, words in names.items()}
-            if summary.requirement is not None:
-                cells[f"below {summary.requirement:g} {unit}"] = percent(row["outage"], 1)
-            cells |= {"on a null": percent(row["null_share"], 1)}
-            rows.append(cells | {name: f"{row[name]:,}" for name in ("certified", "failed")})
-    return rows
-
-
 def _cell(summary: Summary, point: int, case: str, name: str) -> str:
     """Write a number with its interval, as in "4.10 (3.90 to 4.30)"; without, if neither end is known."""
     row, quantity = summary.row(point, case), summary.quantity
@@ -217,11 +167,10 @@ def _rendered(template: str, page: Mapping[str, object]) -> str:
     """Fill a template; a text of the study is never markup."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    is_html = template.endswith(".html.jinja")
     environment = Environment(
         loader=PackageLoader("nullpose.report.study"),
-        autoescape=is_html,
-        finalize=None if is_html else _escaped,
+        autoescape=".html." in template,
+        finalize=_escaped if ".md." in template else None,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -10,7 +10,6 @@ from functools import cache, lru_cache
 from importlib.metadata import version
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple
 
 from nullpose.errors import ClusterError, ScenarioError
 from nullpose.scenario import Scenario
@@ -25,22 +24,6 @@ KILLED = "every worker that took this scene died; it may need more memory than t
 _TOGETHER = 512  # scenes at swept values that are in memory, and solved, together
 _CALIBRATED_S = 0.3  # this much work tells the time of a scene
 _CALIBRATING = tuple(1 << doubled for doubled in range(10))  # scenes, until they take that long
-
-
-class SolvedChunk(NamedTuple):
-    """The rows of some scenes.
-
-    Args:
-        content: of their Parquet file.
-        rows: how many there are.
-        failed: how many of them are failures.
-        seconds: time of the work.
-    """
-
-    content: bytes
-    rows: int
-    failed: int
-    seconds: float
 
 
 def rows_of(spec: StudySpec, first: int, last: int, deadly: Collection[int] = ()) -> Iterator[Row]:
@@ -77,10 +60,8 @@ def _drawn(draws: Draws, at: At) -> Scenario | str:
         return reason_of(error)
 
 
-def solve_chunk(
-    spec_json: str, expected: str, first: int, last: int, deadly: Collection[int] = ()
-) -> SolvedChunk:
-    """Solve some scenes; this is the work that a worker is sent.
+def solve_chunk(spec_json: str, expected: str, first: int, last: int, deadly: Collection[int] = ()) -> bytes:
+    """Solve some scenes, as the content of their Parquet file; this is the work that a worker is sent.
 
     Args:
         spec_json: the study as JSON.
@@ -96,10 +77,7 @@ def solve_chunk(
     spec = _spec(spec_json, expected)
     try:
         rows = list(rows_of(spec, first, last, deadly))
-        seconds = time.perf_counter() - began
-        failed = sum(row["status"] == FAILED for row in rows)
-        content = as_parquet(spec, rows, failed, seconds)
-        return SolvedChunk(content, len(rows), failed, seconds)
+        return as_parquet(spec, rows, time.perf_counter() - began)
     except Exception as error:  # not every exception can be sent from one process to another
         reason = reason_of(error)
     raise ClusterError(f"workers: scenes {first} to {last} cannot be worked on: {reason}")
@@ -117,7 +95,9 @@ def seconds_per_scene(spec_json: str, expected: str) -> float:
     """
     solve_chunk(spec_json, expected, 0, 0)
     for scenes in _CALIBRATING:
-        seconds = solve_chunk(spec_json, expected, 0, scenes - 1).seconds
+        began = time.perf_counter()
+        solve_chunk(spec_json, expected, 0, scenes - 1)
+        seconds = time.perf_counter() - began
         if seconds >= _CALIBRATED_S:
             break
     return seconds / scenes

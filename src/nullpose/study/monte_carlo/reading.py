@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from nullpose.errors import UsageError
 from nullpose.solver import Rigour
-from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, Part, require_extra
+from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, require_extra
 from nullpose.study.monte_carlo.rows import read_parquet, schema_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -65,7 +65,11 @@ class StudyTable:
             UsageError: a part is damaged.
         """
         for part in self._parts:
-            yield self._read(part)
+            try:
+                yield self._as_frame(read_parquet(self.spec, part.path))
+            except ValueError as error:
+                again = "nullpose study run, given the same spec and folder, does it anew"
+                raise UsageError(f"{part.path}: damaged ({error}); {again}") from None
         if not self._parts:
             yield self._as_frame(schema_of(self.spec).empty_table())
 
@@ -88,13 +92,6 @@ class StudyTable:
         swept = {path: list(values) for path, values in spec.sweep}
         in_order = arrays.reindex({**swept, "case": list(spec.case_names)})
         return in_order.assign_attrs(name=spec.name, objective=self.manifest["objective"])
-
-    def _read(self, part: Part) -> pd.DataFrame:
-        try:
-            return self._as_frame(read_parquet(self.spec, part.path))
-        except ValueError as error:
-            again = "nullpose study run, given the same spec and folder, does it anew"
-            raise UsageError(f"{part.path}: damaged ({error}); {again}") from None
 
     def _as_frame(self, table: Any) -> pd.DataFrame:
         frame = table.to_pandas()

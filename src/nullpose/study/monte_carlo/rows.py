@@ -61,18 +61,18 @@ def schema_of(spec: StudySpec) -> pa.Schema:
     return pa.schema([("scene", pa.int64()), ("point", pa.int32()), *swept, ("case", case), *results])
 
 
-def as_parquet(spec: StudySpec, rows: Sequence[Row], failed: int, seconds: float) -> bytes:
+def as_parquet(spec: StudySpec, rows: Sequence[Row], seconds: float) -> bytes:
     """Pack rows into a Parquet file; its pages have checksums, its footer the counts.
 
     Args:
         spec: the study.
         rows: in the order of the file.
-        failed: number of failures among them.
         seconds: time that the work took.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
+    failed = sum(row["status"] == FAILED for row in rows)
     schema = schema_of(spec).with_metadata({"failed": str(failed), "seconds": repr(seconds)})
     table = pa.Table.from_pylist([row | spec.points[row["point"]] for row in rows], schema=schema)
     content = io.BytesIO()

@@ -15,8 +15,8 @@ from pathlib import Path
 
 from nullpose.errors import UsageError
 from nullpose.files import prepare_folder
-from nullpose.study.monte_carlo.chunk import SolvedChunk, fingerprint, seconds_per_scene, solve_chunk
-from nullpose.study.monte_carlo.folder import Folder, require_extra
+from nullpose.study.monte_carlo.chunk import fingerprint, seconds_per_scene, solve_chunk
+from nullpose.study.monte_carlo.folder import Folder, Part, require_extra
 from nullpose.study.monte_carlo.loading import require_sound
 from nullpose.study.monte_carlo.mounts import with_best_mounts
 from nullpose.study.monte_carlo.reading import StudyStatus, study_spec, study_status
@@ -66,16 +66,16 @@ class _Tally:
     def __init__(self, scenes: int, on_progress: Callable[[StudyProgress], None] | None) -> None:
         self.at = StudyProgress(scenes=scenes)
         self._on_progress = on_progress
-        self._began, self._before = time.monotonic(), 0
+        self.start()
 
     def start(self) -> None:
         """Count what is done from now on towards the rate."""
         self._began, self._before = time.monotonic(), self.at.done
 
-    def count(self, scenes: int, rows: int, failed: int) -> None:
+    def count(self, part: Part) -> None:
         """Count a part."""
-        at = self.at
-        self.at = replace(at, done=at.done + scenes, rows=at.rows + rows, failed=at.failed + failed)
+        (rows, failed, _), at = part.counts(), self.at
+        self.at = replace(at, done=at.done + part.scenes, rows=at.rows + rows, failed=at.failed + failed)
 
     def look(self, workers: int, note: str) -> None:
         """Take the number of workers, and tell a note."""
@@ -149,11 +149,12 @@ def run_study(
         with workers_of(scheduler, workers, tally.look) as crew:
             if is_new:
                 size = _size(spec, crew, study) if chunk is None else chunk
-                folder.write_manifest(spec, size, versions())
+                versions = {name: version(name) for name in _LIBRARIES}
+                code = {"python": platform.python_version(), "code": fingerprint()}
+                folder.write_manifest(spec, size, versions | code)
                 to_do = _resume(folder, spec, tally)
-            for (first, last), solved in _solved(crew, study, to_do, tally):
-                folder.add(first, last, solved.content)
-                tally.count(last - first + 1, solved.rows, solved.failed)
+            for (first, last), content in _solved(crew, study, to_do, tally):
+                tally.count(folder.add(first, last, content))
                 tally.tell()
     return study_status(folder.path)
 
@@ -162,8 +163,7 @@ def _resume(folder: Folder, spec: StudySpec, tally: _Tally) -> Iterator[Scenes]:
     """Count the sound parts of earlier runs; return the scenes of each part to do."""
     sound, damaged = folder.clean(spec)
     for part in sound:
-        rows, failed, _ = part.counts()
-        tally.count(part.scenes, rows, failed)
+        tally.count(part)
     tally.start()
     if damaged:
         tally.tell(f"{damaged} part{'s' * (damaged > 1)} damaged, to be done anew")
@@ -174,9 +174,9 @@ def _resume(folder: Folder, spec: StudySpec, tally: _Tally) -> Iterator[Scenes]:
 
 def _solved(
     crew: Workers, study: tuple[str, str], to_do: Iterable[Scenes], tally: _Tally
-) -> Iterator[tuple[Scenes, SolvedChunk]]:
+) -> Iterator[tuple[Scenes, bytes]]:
     """Yield the parts as they are solved; a few are with the workers at a time, earlier scenes first."""
-    queue, pending = iter(to_do), dict[Future[SolvedChunk], Scenes]()
+    queue, pending = iter(to_do), dict[Future[bytes], Scenes]()
     while True:
         for scenes in islice(queue, max(0, crew.in_flight - len(pending))):
             pending[crew.submit(solve_chunk, *study, *scenes)] = scenes
@@ -185,12 +185,12 @@ def _solved(
         for future in wait(pending, LOOK_S, FIRST_COMPLETED).done:
             first, last = scenes = pending.pop(future)
             try:
-                solved = crew.outcome(future)
+                content = crew.outcome(future)
             except WorkerDiedError:
                 tally.tell(f"workers died at scenes {first} to {last}: each is tried by itself")
                 deadly = [scene for scene in range(first, last + 1) if _is_deadly(crew, study, scene)]
-                solved = crew.outcome(crew.submit(solve_chunk, *study, first, last, deadly))
-            yield scenes, solved
+                content = crew.outcome(crew.submit(solve_chunk, *study, first, last, deadly))
+            yield scenes, content
         crew.look()
 
 
@@ -209,9 +209,3 @@ def _size(spec: StudySpec, crew: Workers, study: tuple[str, str]) -> int:
     except WorkerDiedError:  # of a scene that will show again in its own part
         return 1
     return max(1, min(MOST_IN_A_PART, spec.n_scenes, int(_PART_S / max(seconds, 1e-9))))
-
-
-def versions() -> dict[str, str]:
-    """List the versions that a manifest records."""
-    libraries = {name: version(name) for name in _LIBRARIES}
-    return libraries | {"python": platform.python_version(), "code": fingerprint()}
