@@ -32,7 +32,7 @@ def test_any_sweep_can_be_drawn(paper: Scenario, log: bool) -> None:
     assert axes.get_xlabel() == "Position of jammer M, east  (m)"
     assert axes.get_xscale() == ("log" if log else "linear")
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [CURVES[s].label for s in table.schemes]
+    assert [text.get_text() for text in legend.get_texts()] == [CURVES[s].label for s in table.names]
 
 
 def bands_of(figure: Figure) -> list[PolyCollection]:

@@ -41,13 +41,13 @@ def test_a_sweep_is_so_many_solves(paper: Scenario) -> None:
 def test_all_four_cases_unless_told_otherwise(paper: Scenario) -> None:
     """The default is the paper's four cases."""
     table = sweep(paper, POWER, [1.0])
-    assert table.schemes == ("optimum", "zero-interference", "maximum-gain", "vertical")
+    assert table.names == ("optimum", "zero-interference", "maximum-gain", "vertical")
 
 
 def test_more_jamming_never_helps(paper: Scenario) -> None:
     """No scheme's value grows with the jammer's power."""
     table = sweep(paper, POWER, [1e-3, 1e-1, 1.0, 1e2, 1e5])
-    for scheme in table.schemes:
+    for scheme in table.names:
         values = [row.min_sinr for row in table.of(scheme)]
         assert all(later <= earlier * (1.0 + 1e-9) for earlier, later in itertools.pairwise(values))
 
@@ -56,7 +56,7 @@ def test_schemes_that_do_not_apply_are_left_out_with_the_reason(paper: Scenario)
     """Without a jammer zero interference is missing from the rows; named, it is an error."""
     calm = Scenario.from_dict({**paper.to_dict(), "jammers": []})
     table = sweep(calm, "receiver.noise_w", [1e-3])
-    assert "zero-interference" not in table.schemes
+    assert "zero-interference" not in table.names
     assert "jammer" in table.left_out["zero-interference"]
     with pytest.raises(UsageError, match="jammer"):
         sweep(calm, "receiver.noise_w", [1e-3], schemes=["zero-interference"])

@@ -47,7 +47,7 @@ TABLE = ResultTable("receiver.noise_w", tuple(row(v, s) for v in (1.0, 2.0) for 
 def test_values_and_schemes_come_once_in_order() -> None:
     """Each value and each scheme is listed once."""
     assert TABLE.values == (1.0, 2.0)
-    assert TABLE.schemes == ("optimum", "vertical")
+    assert TABLE.names == ("optimum", "vertical")
     assert [r.value for r in TABLE.of("vertical")] == [1.0, 2.0]
 
 

@@ -45,7 +45,7 @@ class Reproduction:
         return {
             "scenario": self.table.rows[0].scenario.name,
             "levels_are": "P_M/P, the jamming-to-transmission power ratio",
-            "figure2": {name: asdict(Certainty.of(self.table.of(name))) for name in self.table.schemes},
+            "figure2": {name: asdict(Certainty.of(self.table.of(name))) for name in self.table.names},
             "provenance": dict(self.table.rows[0].provenance),
         }
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nullpose.files import write_csv
 from nullpose.notebook import html_table, imported
-from nullpose.objectives import RECORDS, USUAL, Quantity
+from nullpose.objectives import RECORDS, USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.solver import Result
@@ -19,6 +19,9 @@ from nullpose.study.case import Case
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+
+_POSE = ("x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +92,27 @@ class ResultRow(Result):
         quantity, bound = self.objective.quantity, self.objective.upper_bound
         return None if bound is None or quantity.is_rate else quantity.in_unit(bound)
 
+    def record(self) -> dict[str, Any]:
+        """List the columns of the row in a file, its case apart; None for no number."""
+        columns, axis = self.row(), self.pose.antenna_axis.tolist()
+        attitude = {name: columns.pop(name) for name in _POSE}
+        del columns["case"], columns["status"], columns["binding_node"]
+        numbers = {
+            "min_sinr": self.min_sinr,
+            "min_sinr_db": self.min_sinr_db,
+            "upper_bound_db": self.upper_bound_db,
+            "relative_gap": self.objective.relative_gap,
+        }
+        return {
+            "scheme": str(self.scheme),
+            "status": self.status.value,
+            "rigour": self.objective.rigour.value,
+            **(numbers | attitude | dict(zip(("axis_x", "axis_y", "axis_z"), axis, strict=True)) | columns),
+            **{f"sinr_{link.node}_db": link.sinr_db for link in self.links},
+            "note": self.note,
+            "reason": self.reason,
+        }
+
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain data, angles in radians."""
         objective, guaranteed = self.objective, self.guaranteed
@@ -145,11 +169,6 @@ class ResultTable:
         return tuple(dict.fromkeys(row.value for row in self.rows if not math.isnan(row.value)))
 
     @property
-    def schemes(self) -> tuple[str, ...]:
-        """The schemes, each once, in order."""
-        return tuple(dict.fromkeys(str(row.scheme) for row in self.rows))
-
-    @property
     def names(self) -> tuple[str, ...]:
         """The names of the cases, each once, in order."""
         return tuple(dict.fromkeys(row.name for row in self.rows))
@@ -195,7 +214,7 @@ class ResultTable:
         """
         records = self._records()
         heading = list(records[0]) if records else [self.path]
-        return write_csv(path, [heading, *([_text(cell) for cell in record.values()] for record in records)])
+        return write_csv(path, [heading, *(record.values() for record in records)])
 
     def frame(self) -> pd.DataFrame:
         """Return the table as a data frame of pandas with the columns of the CSV file.
@@ -222,63 +241,18 @@ class ResultTable:
         return "; ".join([f"ResultTable({title}: {span}{names}", *self._absent()]) + ")"
 
     def _repr_html_(self) -> str | None:
-        swept = [{self.path: row.value} if self.path else {"case": row.name} for row in self.rows]
-        return html_table([first | row.row() for first, row in zip(swept, self.rows, strict=True)])
+        return html_table(
+            [{self.path: row.value} | row.row() if self.path else row.row() for row in self.rows]
+        )
 
     def _absent(self) -> list[str]:
         return [f"left out: {name} ({reason})" for name, reason in self.left_out.items()]
 
     def _records(self) -> list[dict[str, Any]]:
         """List the rows with every column, numbers as such; None for no number."""
-        numbers = _NUMBERS | {
-            name: take for row in self.rows[:1] for name, take in _further_numbers(row.objective.quantity)
-        }
         return [
-            {
-                **({self.path: row.value} if self.path else {"case": row.label}),
-                "scheme": str(row.scheme),
-                "status": row.status.value,
-                "rigour": row.objective.rigour.value,
-                **{name: take(row) for name, take in numbers.items()},
-                **{f"sinr_{link.node}_db": link.sinr_db for link in row.links},
-                "note": row.note,
-                "reason": row.reason,
-            }
-            for row in self.rows
+            {self.path or "case": row.value if self.path else row.label} | row.record() for row in self.rows
         ]
 
 
-def _text(cell: object) -> str:
-    """Write a cell of a CSV file, a number to its last digit."""
-    return "" if cell is None else cell if isinstance(cell, str) else repr(float(cell))  # type: ignore[arg-type]
-
-
-_Number = Callable[[ResultRow], float | None]
-
 _SINR = RECORDS[USUAL].quantities[0]
-
-# The columns of numbers of every table.
-_NUMBERS: dict[str, _Number] = {
-    "min_sinr": lambda row: row.min_sinr,
-    "min_sinr_db": lambda row: row.min_sinr_db,
-    "upper_bound_db": lambda row: row.upper_bound_db,
-    "relative_gap": lambda row: row.objective.relative_gap,
-    "x_m": lambda row: row.pose.position_m[0],
-    "y_m": lambda row: row.pose.position_m[1],
-    "z_m": lambda row: row.pose.position_m[2],
-    "roll_deg": lambda row: math.degrees(row.pose.roll_rad),
-    "pitch_deg": lambda row: math.degrees(row.pose.pitch_rad),
-    "yaw_deg": lambda row: math.degrees(row.pose.yaw_rad),
-    "axis_x": lambda row: row.pose.antenna_axis[0],
-    "axis_y": lambda row: row.pose.antenna_axis[1],
-    "axis_z": lambda row: row.pose.antenna_axis[2],
-}
-
-
-def _further_numbers(quantity: Quantity) -> Iterator[tuple[str, _Number]]:
-    """Yield the columns of a quantity other than the SINR."""
-    unit = "bps_hz" if quantity.is_rate else "db"
-    if quantity != _SINR:
-        yield f"{quantity.name}_{unit}", lambda row: quantity.in_unit(row.objective.value)
-    if quantity.is_rate:
-        yield f"upper_bound_{unit}", lambda row: row.objective.upper_bound

@@ -43,7 +43,7 @@ def draw_curves(axes: Axes, table: ResultTable) -> bool:
     apart = _VISIBLE
     if quantity_of(table).is_rate:
         apart = 0.01 * float(np.max(_in_unit(table.rows, "value")))
-    seen = [_draw_scheme(axes, table, scheme, apart) for scheme in table.schemes]
+    seen = [_draw_scheme(axes, table, scheme, apart) for scheme in table.names]
     return any(seen)
 
 

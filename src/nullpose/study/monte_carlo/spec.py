@@ -145,11 +145,6 @@ class StudySpec(Section):
         return tuple(case.name for case in self.cases)
 
     @property
-    def rows_per_scene(self) -> int:
-        """How many rows a scene has: one for each case at each combination of swept values."""
-        return len(self.points) * len(self.cases)
-
-    @property
     def drawn(self) -> dict[str, Points]:
         """What is drawn, by kind, in the order in which it is drawn."""
         points_by_kind = ((kind, getattr(self, kind)) for kind in POINT_LISTS)
