@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import RawTable, refusal
+from nullpose.scenario.faults import RawTable, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.units import EARTHLY_RANGES
 
@@ -106,11 +106,11 @@ def _end(place: str, value: Any, unit: Any, datum: Any) -> _End | None:
     is_number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _FAR_M
     if unit in _FLIGHT_LEVELS and is_number:
         return _End(100.0 * _FOOT_M * value, "altitude_msl_m", _WEATHER_M)
-    if not is_number or unit not in _UNITS_M or datum not in _DATUMS:
-        raise refusal(
-            place,
-            f"got {value!r} in {unit} over {datum}, must be a number in M, FT or FL over GND, MSL or WGS84",
-        )
+    require(
+        is_number and unit in _UNITS_M and datum in _DATUMS,
+        place,
+        f"got {value!r} in {unit} over {datum}, must be a number in M, FT or FL over GND, MSL or WGS84",
+    )
     return _End(value * _UNITS_M[unit], _DATUMS[datum], _WEATHER_M if datum in ("STD", "2") else 0.0)
 
 
@@ -142,12 +142,13 @@ def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
     """
     if over == key:
         return 0.0
-    if absent := [EARTHLY_RANGES[each] for each in {over, key} if ground_m[each] is None]:
-        raise refusal(
-            place,
-            f"it states {over}, to be compared with {key}; add {' and '.join(absent)} to [origin], which "
-            "says how far these are apart",
-        )
+    absent = [EARTHLY_RANGES[each] for each in {over, key} if ground_m[each] is None]
+    require(
+        not absent,
+        place,
+        f"it states {over}, to be compared with {key}; add {' and '.join(absent)} to [origin], which says "
+        "how far these are apart",
+    )
     return (ground_m[key] or 0.0) - (ground_m[over] or 0.0)
 
 

@@ -13,7 +13,7 @@ from shapely import Polygon
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
 from nullpose.scenario.areas import Area, areas_of
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import Raw, RawTable, refusal
+from nullpose.scenario.faults import Raw, RawTable, refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.polygon import MOST_CORNERS
@@ -92,8 +92,8 @@ def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     place, ground_m = _place(origin), _ground_m(origin)
     reach = _everywhere(0.0 if place is None else float(place[1]))
     areas = areas_of(features, reach, ground_m, is_fence=True)
-    if len(areas.areas) != 1 or len(areas.polygons) != 1 or areas.areas[0].cylinders:
-        raise refusal("", f"it has {areas.counts['area']} areas, must be one polygon, the fence")
+    is_fence = len(areas.areas) == len(areas.polygons) == 1 and not areas.areas[0].cylinders
+    require(is_fence, "", f"it has {areas.counts['area']} areas, must be one polygon, the fence")
     (polygon,) = areas.polygons
     holes = [
         {"name": f"hole {index} of the fence", "polygon_lat_lon_deg": corners_of(ring)}
@@ -116,12 +116,12 @@ def _altitudes(airspace: Raw, fence: Area, ground_m: Ground) -> Iterator[tuple[s
             continue
         over_m = shift_m(fence.place, over, key, ground_m)
         low_m, high_m = max(ends_m[0], limits_m[0] + over_m), min(ends_m[1], limits_m[1] + over_m)
-        if low_m > high_m:
-            raise refusal(
-                fence.place,
-                f"its {over} = {fence.limits[over]} has no altitude in common with the airspace's {key} = "
-                f"{airspace[key]}; change either",
-            )
+        require(
+            low_m <= high_m,
+            fence.place,
+            f"its {over} = {fence.limits[over]} has no altitude in common with the airspace's {key} = "
+            f"{airspace[key]}; change either",
+        )
         yield key, [low_m, high_m]
 
 

@@ -40,6 +40,12 @@ def refusal(path: str, message: str, source: str = "") -> ScenarioError:
     return ScenarioError([Fault(path, message)], source)
 
 
+def require(holds: object, path: str, message: str) -> None:
+    """Raise the error of one fault unless a condition holds, as :func:`refusal` words it."""
+    if not holds:
+        raise refusal(path, message)
+
+
 def rejection(message: str) -> PydanticCustomError:
     """Return the exception with which a validator refuses a value, in exactly these words."""
     # The message travels as context: braces in it (from user text) are then not taken for placeholders.

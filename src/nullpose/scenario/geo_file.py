@@ -21,7 +21,7 @@ from shapely.geometry.base import BaseGeometry
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import parse_json
-from nullpose.scenario.faults import EXCHANGED, Raw, refusal
+from nullpose.scenario.faults import EXCHANGED, Raw, refusal, require
 from nullpose.scenario.kml import kml_of_kmz, require_whole, root_of
 from nullpose.scenario.toml_file import decoded
 from nullpose.scenario.wording import described
@@ -76,8 +76,8 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
     ending = path.suffix.lower()
     if ending in (".geojson", ".json"):
         return list(_features_of_json(decoded(content)))
-    if not content.startswith(_SIGNS[ending]):
-        raise refusal("", f"it does not begin as a {ending} file does; is it of another kind?")
+    begin = f"it does not begin as a {ending} file does; is it of another kind?"
+    require(content.startswith(_SIGNS[ending]), "", begin)
     is_kml = ending in (".kml", ".kmz")
     if ending == ".kmz":
         content = kml_of_kmz(content, MOST_BYTES)
@@ -87,25 +87,25 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
     if is_kml and document is not None:
         corners = shapely.get_num_coordinates([feature.geometry for feature in features]).sum()
         require_whole(document, len(features), corners)
-    if not features:
-        raise refusal("", "there is no feature in it, must be one or more")
+    require(features, "", "there is no feature in it, must be one or more")
     return features
 
 
 def _features_of_json(text: str) -> Iterator[Feature]:
     data = parse_json(text)
-    if not isinstance(data, dict):
-        raise refusal("", f"got {described(data)}, must be a FeatureCollection")
+    require(isinstance(data, dict), "", f"got {described(data)}, must be a FeatureCollection")
     kind, members = data.get("type"), data.get("features")
-    if isinstance(members, list) and any(isinstance(_of(each, "geometry"), list) for each in members):
-        raise refusal("", "this is ED-269 JSON, which is not read; convert it to ED-318, which is GeoJSON")
+    is_ed_269 = isinstance(members, list) and any(isinstance(_of(each, "geometry"), list) for each in members)
+    require(not is_ed_269, "", "this is ED-269 JSON, which is not read; convert it to ED-318, a GeoJSON")
     if kind in (*_GEOMETRIES, "GeometryCollection", "Feature"):
-        members = [data if kind == "Feature" else {"type": "Feature", "geometry": data}]
-    elif kind != "FeatureCollection":
-        allowed = 'must be "FeatureCollection", "Feature" or a geometry'
-        raise refusal("type", f"got {described(kind)}, {allowed}")
-    if not isinstance(members, list) or not members:
-        raise refusal("features", f"got {described(members)}, must be a list of one feature or more")
+        kind, members = (
+            "FeatureCollection",
+            [data if kind == "Feature" else {"type": "Feature", "geometry": data}],
+        )
+    allowed = 'must be "FeatureCollection", "Feature" or a geometry'
+    require(kind == "FeatureCollection", "type", f"got {described(kind)}, {allowed}")
+    is_list = isinstance(members, list) and members
+    require(is_list, "features", f"got {described(members)}, must be a list of one feature or more")
     if "crs" in data:
         _require_wgs84(json.dumps(data["crs"]).rstrip('}"]'))
     faults: list[Fault] = []
@@ -122,13 +122,11 @@ def _features_of_json(text: str) -> Iterator[Feature]:
 
 def _features_of_member(place: str, member: Any) -> Iterator[Feature]:
     geometry, properties = _of(member, "geometry"), _of(member, "properties")
-    if _of(member, "type") != "Feature":
-        allowed = 'must be an object with "type": "Feature"'
-        raise refusal(place, f"got {described(_of(member, 'type'))}, {allowed}")
-    if "geometry" not in member:
-        raise refusal(f"{place}.geometry", "missing; a feature without a place states null")
-    if not isinstance(properties, dict | None):
-        raise refusal(f"{place}.properties", f"got {described(properties)}, must be an object")
+    kind = _of(member, "type")
+    require(kind == "Feature", place, f'got {described(kind)}, must be an object with "type": "Feature"')
+    require("geometry" in member, f"{place}.geometry", "missing; a feature without a place states null")
+    is_object = isinstance(properties, dict | None)
+    require(is_object, f"{place}.properties", f"got {described(properties)}, must be an object")
     parts = _of(geometry, "geometries")
     if isinstance(parts, list) and any({"layer", "extent"} & set(each) for each in parts if each):
         shapes = {f"{place}.geometry.geometries[{index}]": each for index, each in enumerate(parts)}
@@ -191,8 +189,9 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
         except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, RuntimeError) as error:
             raise refusal("", f"GDAL cannot read it: {str(error)[:200]}") from None
     for warning in said:
-        if not any(words in str(warning.message) for words in _NO_MATTER):
-            raise refusal("", f"GDAL reads it in part only: {str(warning.message)[:200]}; export it anew")
+        words = str(warning.message)
+        is_whole = any(harmless in words for harmless in _NO_MATTER)
+        require(is_whole, "", f"GDAL reads it in part only: {words[:200]}; export it anew")
     numbers = count()
     for layer, (meta, _, shapes, columns) in layers:
         if shapes is None:  # a table, such as of styles

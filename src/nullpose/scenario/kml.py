@@ -9,7 +9,7 @@ import zlib
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.faults import refusal, require
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PLACE = re.compile(rf"{_NUMBER},{_NUMBER}(?:,(?:{_NUMBER})?)?")
@@ -36,10 +36,8 @@ def kml_of_kmz(content: bytes, most: int) -> bytes:
         raise refusal(
             "", f"this is not KMZ: {str(error) or 'it ends early'}; export it anew, or as .kml"
         ) from None
-    if len(names) != 1:
-        raise refusal("", f"it has {len(names)} KML files, must be one; extract the one that counts")
-    if len(found) > most:
-        raise refusal("", f"its KML is larger than {most / 1e6:g} MB, the most that is read")
+    require(len(names) == 1, "", f"it has {len(names)} KML files, must be one; extract the one that counts")
+    require(len(found) <= most, "", f"its KML is larger than {most / 1e6:g} MB, the most that is read")
     return found
 
 
@@ -49,8 +47,7 @@ def root_of(content: bytes, kind: str) -> Element:
         root = ElementTree.fromstring(b"" if b"<!DOCTYPE" in content else content)
     except (ElementTree.ParseError, ValueError, LookupError) as error:
         raise refusal("", f"this is not {kind.upper()}: {error}; export it anew") from None
-    if not root.tag.endswith(kind):
-        raise refusal("", f"its root is {root.tag!r}, must be {kind!r}")
+    require(root.tag.endswith(kind), "", f"its root is {root.tag!r}, must be {kind!r}")
     return root
 
 
@@ -66,8 +63,8 @@ def require_whole(root: Element, placemarks: int, corners: int) -> None:
         ScenarioError: there are more, or something else that may hold areas.
     """
     for kind, words in (("NetworkLink", "a link to another file"), ("GroundOverlay", "a picture on a map")):
-        if root.find(f".//{{*}}{kind}") is not None:
-            raise refusal("", f"it has a {kind}, {words}, which is not read; save what it shows as KML")
+        is_absent = root.find(f".//{{*}}{kind}") is None
+        require(is_absent, "", f"it has a {kind}, {words}, which is not read; save what it shows as KML")
     written = root.findall(".//{*}Placemark")
     count = 0
     for placemark in written:
@@ -76,9 +73,9 @@ def require_whole(root: Element, placemarks: int, corners: int) -> None:
             if not _PLACE.fullmatch(place):
                 name = f'Placemark "{placemark.findtext("{*}name", "").strip()}"'
                 raise refusal(name, f'got "{place[:60]}", must be longitude,latitude without blanks')
-    if placemarks != len(written) or corners < count:
-        raise refusal(
-            "",
-            f"GDAL reads {placemarks} placemarks with {corners} coordinates, and it has {len(written)} with "
-            f"{count}; is a polygon without its outerBoundaryIs, or a LinearRing by itself? Export it anew",
-        )
+    require(
+        placemarks == len(written) and corners >= count,
+        "",
+        f"GDAL reads {placemarks} placemarks with {corners} coordinates, and it has {len(written)} with "
+        f"{count}; is a polygon without its outerBoundaryIs, or a LinearRing by itself? Export it anew",
+    )

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from nullpose.errors import ScenarioError
-from nullpose.scenario.faults import ONLY_LOCAL, Raw, RawTable, refusal
+from nullpose.scenario.faults import ONLY_LOCAL, Raw, RawTable, refusal, require
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import (
@@ -119,8 +119,8 @@ def scenario_from_text(content: bytes, name: str) -> Scenario:
     """
     try:
         tables = tables_of(uploaded_text(content))
-        if "nodes_from" in tables:
-            raise refusal("nodes_from", f"{ONLY_LOCAL}; list the nodes here, under [[nodes]]")
+        is_whole = "nodes_from" not in tables
+        require(is_whole, "nodes_from", f"{ONLY_LOCAL}; list the nodes here, under [[nodes]]")
         return Scenario.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError(error.faults, name) from None

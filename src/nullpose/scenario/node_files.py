@@ -15,7 +15,7 @@ from shapely import Point
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.areas import counted, name_of, unique
-from nullpose.scenario.faults import Raw, RawTable, refusal
+from nullpose.scenario.faults import Raw, RawTable, refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.ground_points import PLACE, Node
 from nullpose.scenario.rules import MOST_MEMBERS
@@ -69,8 +69,7 @@ def nodes_of_csv(text: str, faults: list[Fault]) -> Iterator[ListedNode]:
         raise refusal("", f"this is not CSV: {error}; check the quotes") from None
     if wrong := [Fault(f"line {line}", message) for message in _header_faults(header)]:
         raise ScenarioError(wrong)
-    if not rows:
-        raise refusal("", "there is no line below the header, must be one for each node")
+    require(rows, "", "there is no line below the header, must be one for each node")
     for line, row in rows:
         if len(row) == len(header):
             yield _node_of_row(f"line {line}", dict(zip(header, row, strict=True)))
@@ -141,8 +140,7 @@ def nodes_of_features(
                 yield _node_of_point(feature, part, values | ({"name": name} if name else {}))
             except ScenarioError as error:
                 faults += error.faults
-    if not nodes:
-        raise refusal("", f"it has no point, must have one for each node; it has {counted(passed)}")
+    require(nodes, "", f"it has no point, must have one for each node; it has {counted(passed)}")
     words = [f"passed over: {counted(passed)}"] if any(passed.values()) else []
     words += [f"properties not read: {', '.join(sorted(unread))}"] if unread else []
     if words:
@@ -166,10 +164,8 @@ def _node_of_point(feature: Feature, point: Point, values: Raw) -> ListedNode:
         key, height_m = "alt_msl_m", feature.properties["ele"]
     height = {key: height_m} if key and height_m is not None else {}
     for wrong in ("position_m", "lat_deg", "lon_deg", *(ALTITUDE_KEYS if height else ())):
-        if wrong in values:
-            raise refusal(f"{where}.properties.{wrong}", _NO_PLACE)
-    if not height and values.keys().isdisjoint(ALTITUDE_KEYS):
-        raise refusal(coordinates, _NO_HEIGHT)
+        require(wrong not in values, f"{where}.properties.{wrong}", _NO_PLACE)
+    require(height or values.keys() & ALTITUDE_KEYS, coordinates, _NO_HEIGHT)
     place = {"lon_deg": point.x, "lat_deg": point.y} | height
     places = {"": where, "position_m": f"{where}.geometry"}
     places |= {each: f"{where}.properties.{each}" for each in values}

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.faults import Raw, RawTable, path_of, refusal
+from nullpose.scenario.faults import Raw, RawTable, path_of, refusal, require
 from nullpose.scenario.origin import EARTHLY_KEYS, POINT_LISTS, metric_key
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
@@ -128,8 +128,7 @@ def _source(overrides: Sequence[str | Override]) -> str:
 def _apply(override: Override, data: RawTable) -> None:
     """Set one value of a raw scenario, and drops what it replaces."""
     path = override.path
-    if not _PATH.fullmatch(path):
-        raise refusal(path, "this is not a path")
+    require(_PATH.fullmatch(path), path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))
     steps: list[Any] = [
         int(index) if index else double or single or bare for double, single, bare, index in found

@@ -12,7 +12,7 @@ from shapely import LinearRing, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.faults import require
 
 _SAME_CORNER_DEG = 9e-8  # a centimetre
 _STRAIGHT_DEG = 0.02  # an edge of this length, straight in degrees, is within 0.2 m of straight in metres
@@ -64,12 +64,12 @@ def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:
         has_loops = any(
             ring.area < (1.0 - _LOOPS) * whole.area for ring, whole in zip(rings, wholes, strict=True)
         )
-        if is_fence or has_loops:
-            raise refusal(
-                place,
-                f"its border crosses itself ({shapely.is_valid_reason(polygon)}, longitude and latitude); "
-                "list every corner once, in order around the area",
-            )
+        require(
+            not (is_fence or has_loops),
+            place,
+            f"its border crosses itself ({shapely.is_valid_reason(polygon)}, longitude and latitude); list "
+            "every corner once, in order around the area",
+        )
         valid = shapely.union_all(wholes)
     is_wall = valid.area <= _SAME_CORNER_DEG * valid.length
     return shapely.Polygon() if is_wall else shapely.segmentize(valid, _STRAIGHT_DEG), is_crossing

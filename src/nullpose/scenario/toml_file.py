@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from nullpose.files import MOST_BYTES, read_bytes
-from nullpose.scenario.faults import RawTable, refusal
+from nullpose.scenario.faults import RawTable, refusal, require
 from nullpose.scenario.wording import described, nearest
 
 _TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
@@ -78,17 +78,18 @@ def uploaded_text(content: bytes) -> str:
     Raises:
         ScenarioError: it is no text, or it does.
     """
-    if len(content) > MOST_BYTES:
-        raise refusal("", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
+    is_small = len(content) <= MOST_BYTES
+    require(is_small, "", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
     text = decoded(content)
-    if text.count("=") > _MOST_KEYS:
-        raise refusal("", f"it has more than {_MOST_KEYS} keys, the most that is read")
-    if any(map(_is_monstrous, text.split("\n"))) and any(
-        map(_is_monstrous, _WORD.findall(_NO_WORD.sub("text", text)))
-    ):
-        raise refusal(
-            "", f"a key has more than {_MOST_PARTS} parts, or a word more than {_LONGEST_WORD} characters"
-        )
+    is_short = text.count("=") <= _MOST_KEYS
+    require(is_short, "", f"it has more than {_MOST_KEYS} keys, the most that is read")
+    is_suspect = any(map(_is_monstrous, text.split("\n")))
+    words = _WORD.findall(_NO_WORD.sub("text", text)) if is_suspect else ()
+    require(
+        not any(map(_is_monstrous, words)),
+        "",
+        f"a key has more than {_MOST_PARTS} parts, or a word more than {_LONGEST_WORD} characters",
+    )
     return text
 
 
@@ -182,12 +183,12 @@ def inside(folder: Path, file: str, allow_outside: bool, place: str = "") -> Pat
     """
     # A null character, which no path may hold, is told of when the file is read.
     real, root = os.path.realpath(folder / file.replace("\0", "")), os.path.realpath(folder)
-    if not allow_outside and not Path(real).is_relative_to(root):
-        raise refusal(
-            place,
-            f"got {described(file)}, which is outside the folder of the file that names it; put it there, or "
-            "allow this by --allow-outside (in Python allow_outside=True)",
-        )
+    require(
+        allow_outside or Path(real).is_relative_to(root),
+        place,
+        f"got {described(file)}, which is outside the folder of the file that names it; put it there, or "
+        "allow this by --allow-outside (in Python allow_outside=True)",
+    )
     return folder / file
 
 

@@ -70,6 +70,12 @@ def refuse(message: str, line: int = 0) -> NoReturn:
     raise ScenarioError([Fault(f"line {line}" if line else "", message)])
 
 
+def require(holds: object, message: str, line: int = 0) -> None:
+    """Raise the error of one fault unless a condition holds, as :func:`refuse` does."""
+    if not holds:
+        refuse(message, line)
+
+
 def numbers(lines: Lines, count: int, what: str, separator: str | None = None) -> FloatArray:
     """Return the numbers of some lines, (n, count), all finite.
 
@@ -82,8 +88,7 @@ def numbers(lines: Lines, count: int, what: str, separator: str | None = None) -
     Raises:
         ScenarioError: a line has others, or there is none.
     """
-    if not lines:
-        refuse(f"there is no row of {what}; is the file cut short?")
+    require(lines, f"there is no row of {what}; is the file cut short?")
     rows = []
     for line, text in lines:
         try:
@@ -113,8 +118,10 @@ def rows_of(lines: Lines, start: int, count: float, width: int, what: str) -> Fl
         ScenarioError: there are fewer, or one has other numbers.
     """
     got = len(lines) - start
-    if not 0 < count <= got or count % 1.0:
-        refuse(f"{count:g} rows are announced and {got} lines follow; is the file cut short?", lines[-1][0])
+    is_count = 0 < count <= got and count % 1.0 == 0.0
+    require(
+        is_count, f"{count:g} rows are announced and {got} lines follow; is the file cut short?", lines[-1][0]
+    )
     return numbers(lines[start : start + int(count)], width, what)
 
 
@@ -138,13 +145,15 @@ def gridded(block: Block, source: str) -> PatternTable:
     Raises:
         ScenarioError: rows are missing, contradict each other or are beyond the sphere.
     """
-    if block.frequency_hz and not _FREQUENCIES_HZ[0] <= block.frequency_hz <= _FREQUENCIES_HZ[1]:
-        refuse(f"its frequency is {block.frequency_hz:g} Hz, must be 1 kHz to 10 THz; is the unit right?")
+    hz = block.frequency_hz or _FREQUENCIES_HZ[0]
+    is_frequency = _FREQUENCIES_HZ[0] <= hz <= _FREQUENCIES_HZ[1]
+    require(is_frequency, f"its frequency is {hz:g} Hz, must be 1 kHz to 10 THz; is the unit right?")
     theta, phi = np.round(block.theta_deg, 3), np.round(block.phi_deg, 3)
     beyond = (np.abs(theta) > 180.0) | (np.abs(phi) > 360.0)
     _refuse_row(block, beyond, "is beyond the sphere; polar angles go from 0 to 180, azimuths from 0 to 360")
-    if len(phi) and np.ptp(phi) == 0.0:
-        refuse(f"it has one cut, at phi = {phi[0]:g} degrees; export the whole sphere, all azimuths")
+    require(
+        np.ptp(phi), f"it has one cut, at phi = {phi[0]:g} degrees; export the whole sphere, all azimuths"
+    )
     back = theta < 0.0  # the same direction seen the other way round, where both unit vectors turn over
     thetas, rows = np.unique(np.abs(theta), return_inverse=True)
     phis, columns = np.unique(np.round(phi + 180.0 * back, 3) % 360.0, return_inverse=True)
@@ -154,9 +163,9 @@ def gridded(block: Block, source: str) -> PatternTable:
     first[rows[::-1], columns[::-1]] = np.arange(len(rows))[::-1]
     turn = _fill_poles(first, phis)
     holes = np.argwhere(first < 0)
-    if len(holes):
+    for row, column in holes[:1]:
         refuse(
-            f"there is no row for theta = {thetas[holes[0][0]]:g}, phi = {phis[holes[0][1]]:g} degrees"
+            f"there is no row for theta = {thetas[row]:g}, phi = {phis[column]:g} degrees"
             f"{f', nor for {len(holes) - 1} other directions' if len(holes) > 1 else ''}; the grid must have "
             "every direction. Is the file cut short?"
         )
@@ -218,9 +227,9 @@ def _refuse_row(block: Block, bad: NDArray[np.bool_], why: str) -> None:
 
 def _require_even(name: str, angles_deg: FloatArray, end_deg: float) -> None:
     even = np.linspace(0.0, end_deg, len(angles_deg))
-    if len(angles_deg) < _FEWEST or np.max(np.abs(angles_deg - even)) > _UNEVEN_DEG:
-        first = ", ".join(f"{angle:g}" for angle in angles_deg[:3])
-        refuse(
-            f"{name} are {first} ... {angles_deg[-1]:g} degrees, must go from 0 to {end_deg:g} in equal "
-            f"steps, {_FEWEST} angles at least; export the whole sphere. Is the file cut short?"
-        )
+    first = ", ".join(f"{angle:g}" for angle in angles_deg[:3])
+    require(
+        len(angles_deg) >= _FEWEST and np.max(np.abs(angles_deg - even)) <= _UNEVEN_DEG,
+        f"{name} are {first} ... {angles_deg[-1]:g} degrees, must go from 0 to {end_deg:g} in equal "
+        f"steps, {_FEWEST} angles at least; export the whole sphere. Is the file cut short?",
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.antenna.files.block import FloatArray, refuse
+from nullpose.antenna.files.block import FloatArray, refuse, require
 from nullpose.antenna.harmonics import (
     HIGHEST_DEGREE,
     MOST_MISSED,
@@ -34,16 +34,16 @@ def require_antenna(table: PatternTable) -> None:
     """
     mean = mean_gain(table)
     floor = float(np.sum(solid_angles(table)[table.gain <= _FLOOR * np.max(table.gain)]))
-    if floor > _MOST_FLOOR:
-        refuse(
-            f"{100.0 * floor:.0f} % of all directions have no gain (a floor, such as -999.99 dB), and would "
-            "be taken for nulls; state what the antenna does there"
-        )
-    if mean > (_OVER_FED_ESTIMATE if table.caveat else _OVER_FED):
-        refuse(
-            f"the average gain over the sphere is {10.0 * np.log10(mean):.1f} dB: it radiates more than "
-            "it is fed; must be 0 dB at most. Is the unit right: dBi, dBd, linear?"
-        )
+    require(
+        floor <= _MOST_FLOOR,
+        f"{100.0 * floor:.0f} % of all directions have no gain (a floor, such as -999.99 dB), and would "
+        "be taken for nulls; state what the antenna does there",
+    )
+    require(
+        mean <= (_OVER_FED_ESTIMATE if table.caveat else _OVER_FED),
+        f"the average gain over the sphere is {10.0 * np.log10(mean):.1f} dB: it radiates more than "
+        "it is fed; must be 0 dB at most. Is the unit right: dBi, dBd, linear?",
+    )
 
 
 def require_fit(table: PatternTable) -> Harmonics:
@@ -57,15 +57,12 @@ def require_fit(table: PatternTable) -> Harmonics:
     """
     found = fit(table, supported_degree(table))
     part, step_deg = missed_share(table, found), 180.0 / (len(table.theta_deg) - 1)
-    if part > MOST_MISSED:
-        advice = "export finer steps, or fields with their phases"
-        if found.degree == HIGHEST_DEGREE:
-            advice = f"solvers take no degree above {HIGHEST_DEGREE}, and its beam needs a higher one"
-        refuse(
-            f"steps of {step_deg:g} degrees do not follow the pattern: smoothed to the degree that they "
-            f"allow, {found.degree}, it is off by {100.0 * part:.0f} % of the peak, must be 1 % at "
-            f"most; {advice}"
-        )
+    require(
+        part <= MOST_MISSED,
+        f"steps of {step_deg:g} degrees do not follow the pattern: smoothed to the degree that they allow, "
+        f"{found.degree}, it is off by {100.0 * part:.0f} % of the peak, must be 1 % at most; export finer "
+        f"steps, or fields with their phases; no degree above {HIGHEST_DEGREE} is taken",
+    )
     return found
 
 

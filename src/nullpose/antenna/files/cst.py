@@ -15,7 +15,7 @@ from nullpose.antenna.files.block import (
     Lines,
     from_db,
     numbers,
-    refuse,
+    require,
     rows_of,
 )
 
@@ -47,31 +47,33 @@ def read_ffs(lines: Lines) -> Iterator[Block]:
     words = ("#freq", "power", "#phi", "re(e_theta)", *_AXES)
     found = {word: [i + 1 for i, text in heads if word in text] for word in words}
     blocks = len(found["re(e_theta)"])
-    if not found["power"] or len(found["#phi"]) != blocks:
-        refuse("the powers, or the counts of azimuths and polar angles, are missing; is the file cut short?")
+    require(
+        found["power"] and len(found["#phi"]) == blocks,
+        "the powers, or the counts of azimuths and polar angles, are missing; is the file cut short?",
+    )
     for at in found["#freq"]:
-        if (announced := rows_of(lines, at, 1, 1, "a count of frequencies")[0, 0]) != blocks:
-            refuse(f"{announced:g} frequencies are announced and {blocks} follow; must be the same")
+        announced = rows_of(lines, at, 1, 1, "a count of frequencies")[0, 0]
+        require(announced == blocks, f"{announced:g} frequencies are announced and {blocks} follow")
     for word, straight in _AXES.items():
         for at in found[word]:
             axis = rows_of(lines, at, 1, 3, f"the {word} of the source")[0]
-            if np.max(np.abs(axis - straight)) > _UNALIGNED:
-                got, allowed = (" ".join(f"{x:g}" for x in each) for each in (axis, straight))
-                refuse(
-                    f"its {word} is {got}, must be {allowed}: the source is turned; export it unturned",
-                    lines[at][0],
-                )
+            got, allowed = (" ".join(f"{x:g}" for x in each) for each in (axis, straight))
+            require(
+                np.max(np.abs(axis - straight)) <= _UNALIGNED,
+                f"its {word} is {got}, must be {allowed}: the source is turned; export it unturned",
+                lines[at][0],
+            )
     what = "radiated, accepted and stimulated power in W, the frequency in Hz, of each pattern a line each"
     powers = rows_of(lines, found["power"][0], 4 * blocks, 1, what).reshape(-1, 4)
     for power, at, start in zip(powers, found["#phi"], found["re(e_theta)"], strict=True):
         count = float(np.prod(rows_of(lines, at, 1, 2, "the counts of azimuths and polar angles")))
         values = rows_of(lines, start, count, 6, "phi, theta, real and imaginary part of both fields")
-        if not power[1] > 0.0 or np.any(power[:2] > _TOLERANCE * power[1:3]):
-            refuse(
-                f"got {power[0]:g} W radiated, {power[1]:g} W accepted and {power[2]:g} W stimulated; must "
-                "be more than 0, each at most the next",
-                lines[found["power"][0]][0],
-            )
+        require(
+            power[1] > 0.0 and np.all(power[:2] <= _TOLERANCE * power[1:3]),
+            f"got {power[0]:g} W radiated, {power[1]:g} W accepted and {power[2]:g} W stimulated; must "
+            "be more than 0, each at most the next",
+            lines[found["power"][0]][0],
+        )
         yield Block(
             theta_deg=values[:, 1],
             phi_deg=values[:, 0],
@@ -96,12 +98,12 @@ def read_cst(lines: Lines) -> Iterator[Block]:
     ]
     units, columns = dict(heading), {name: i for i, (name, _) in enumerate(heading)}
     total = next(filter(_TOTAL.fullmatch, columns), "")
-    if not total or not all(units.get(name, "").startswith("deg") for name in ("theta", "phi")):
-        refuse(
-            "must have columns Theta [deg.], Phi [deg.] and Abs(Dir.), Abs(Gain), Abs(Realized Gain), "
-            "Abs(Grlz) or Abs(E)",
-            lines[0][0],
-        )
+    require(
+        total and all(units.get(name, "").startswith("deg") for name in ("theta", "phi")),
+        "must have columns Theta [deg.], Phi [deg.] and Abs(Dir.), Abs(Gain), Abs(Realized Gain), "
+        "Abs(Grlz) or Abs(E)",
+        lines[0][0],
+    )
     rows = [row for row in lines[1:] if set(row[1].strip()) != {"-"}]
     values = numbers(rows, len(heading), ", ".join(columns))
     quantity, phases = _QUANTITIES[total[4:6]], [part.replace("abs", "phase") for part in _PARTS]
@@ -137,8 +139,6 @@ def _power(values: FloatArray, unit: str, quantity: str, line: int) -> FloatArra
         return from_db(values) if unit.startswith("db") else values**2
     if unit in _DECIBELS:
         return from_db(values + _DECIBELS[unit])
-    if unit not in _LINEAR:
-        refuse(
-            f"got a {quantity} in [{unit}], must be in one of [{'], ['.join(_DECIBELS)}] or linear, []", line
-        )
+    allowed = f"one of [{'], ['.join(_DECIBELS)}] or linear, []"
+    require(unit in _LINEAR, f"got a {quantity} in [{unit}], must be in {allowed}", line)
     return values

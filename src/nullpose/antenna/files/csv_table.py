@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, refuse
+from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, require
 
 _PROFILE = ("angle_deg", "gain_dbi")
 _FIELDS = (("re_theta", "im_theta"), ("re_phi", "im_phi"))
@@ -38,10 +38,12 @@ def read_csv(lines: Lines) -> Iterator[Block]:
     names = [re.sub(r"\[deg\]$", "_deg", re.sub(r"\[(dbi?)?\]$", "", name)) for name in header]
     columns = dict(zip(names, values.T, strict=True))
     total = next((name for name in _GAINS if name in columns), "")
-    if not columns.keys() >= {"theta_deg", "phi_deg", *([total] if total else chain(*_FIELDS))}:
-        refuse(f"got the header {lines[0][1].strip()[:60]!r}, must have {_ALLOWED}", lines[0][0])
-    if len(columns) < len(names):
-        refuse(f"a column is given twice: {', '.join(names)}; keep one", lines[0][0])
+    needed = {"theta_deg", "phi_deg", *([total] if total else chain(*_FIELDS))}
+    require(
+        columns.keys() >= needed and len(columns) == len(names),
+        f"got the header {lines[0][1].strip()[:60]!r}, must have {_ALLOWED}, each once",
+        lines[0][0],
+    )
     each_hz = [_UNITS[unit] * columns[f"freq[{unit}]"] for unit in _UNITS if f"freq[{unit}]" in columns]
     of_hz = each_hz[0] if each_hz else np.zeros(len(values))
     for frequency_hz in np.unique(of_hz):
@@ -70,13 +72,15 @@ def profile_of(lines: Lines) -> tuple[FloatArray, FloatArray]:
         ScenarioError: the table is faulty, or does not span the angles.
     """
     header, values = _table(lines)
-    if not {*_PROFILE} <= {*header}:
-        refuse(f"got the header {lines[0][1].strip()[:60]!r}, must have {','.join(_PROFILE)}", lines[0][0])
+    got = f"got the header {lines[0][1].strip()[:60]!r}"
+    require({*_PROFILE} <= {*header}, f"{got}, must have {','.join(_PROFILE)}", lines[0][0])
     values = values[:, [header.index(name) for name in _PROFILE]]
     angle, gain_dbi = values[np.argsort(values[:, 0])].T
-    if len(angle) < 2 or angle[0] != 0.0 or angle[-1] != 180.0 or not np.all(np.diff(angle) > 0.0):
-        first = ", ".join(f"{x:g}" for x in (*angle[:2], angle[-1]))
-        refuse(f"angles are {first} degrees (first two, last), must go from 0 to 180, each given once")
+    first = ", ".join(f"{x:g}" for x in (*angle[:2], angle[-1]))
+    require(
+        angle[0] == 0.0 and angle[-1] == 180.0 and np.all(np.diff(angle) > 0.0),
+        f"angles are {first} degrees (first two, last), must go from 0 to 180, each given once",
+    )
     return angle, from_db(gain_dbi)
 
 

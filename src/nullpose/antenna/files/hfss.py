@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, numbers, refuse, rows_of
+from nullpose.antenna.files.block import Block, Lines, numbers, require, rows_of
 
 _MOST_ANGLES = 3601  # steps of .1 degrees
 
@@ -24,8 +24,8 @@ def read_ffd(lines: Lines) -> Iterator[Block]:
     """
     ranges = numbers(lines[:2], 3, "an angle's first, last and count")
     for (line, _), steps in zip(lines, ranges[:, 2], strict=False):
-        if not 1.0 <= steps <= _MOST_ANGLES or steps % 1.0:
-            refuse(f"got {steps:g} angles, must be a whole number from 1 to {_MOST_ANGLES}", line)
+        is_count = 1.0 <= steps <= _MOST_ANGLES and steps % 1.0 == 0.0
+        require(is_count, f"got {steps:g} angles, must be a whole number from 1 to {_MOST_ANGLES}", line)
     angles = [np.linspace(first, last, int(steps)) for first, last, steps in ranges]
     theta, phi = np.meshgrid(*angles, indexing="ij")
     at, found, announced, frequency_hz = 2, 0, None, None
@@ -49,8 +49,7 @@ def read_ffd(lines: Lines) -> Iterator[Block]:
             quantity="field",
         )
         at, found = at + len(values), found + 1
-    if announced not in (None, found):
-        refuse(f"{announced:g} frequencies are announced and {found} follow; must be the same")
+    require(announced in (None, found), f"{announced} frequencies are announced and {found} follow")
 
 
 def _frequency(lines: Lines, at: int) -> tuple[str, float] | None:

@@ -7,7 +7,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import DBD, Block, FloatArray, Lines, from_db, numbers, refuse, rows_of
+from nullpose.antenna.files.block import (
+    DBD,
+    Block,
+    FloatArray,
+    Lines,
+    from_db,
+    numbers,
+    refuse,
+    require,
+    rows_of,
+)
 
 _CUTS = ("HORIZONTAL", "VERTICAL")
 _KEYS = ("GAIN", "FREQUENCY", *_CUTS)
@@ -43,12 +53,11 @@ def read_msi(lines: Lines) -> Iterator[Block]:
     keys: dict[str, tuple[int, str]] = {}
     for i, (line, text) in enumerate(lines):
         key = text.split()[0].upper()
-        if key in keys and key in _KEYS:
-            refuse(f"{key} is given twice; keep one antenna in a file", line)
+        is_twice = key in keys and key in _KEYS
+        require(not is_twice, f"{key} is given twice; keep one antenna in a file", line)
         keys[key] = i, text.split(None, 1)[-1]
     for name in _CUTS:
-        if name not in keys:
-            refuse(f"the cut {name} is missing; both must be there. Is the file cut short?")
+        require(name in keys, f"the cut {name} is missing; both must be there. Is the file cut short?")
     across, down = (_loss_db(lines, keys, name) for name in _CUTS)
     peaks_deg = [int(np.argmin(cut)) for cut in (across, down)]
     advice = (
@@ -59,11 +68,11 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         advice = "Is the vertical angle measured from the zenith? It must be 0 ahead and 90 below"
     for at_deg, where in ((0, "ahead"), (180, "behind")):
         both_db = across[at_deg], down[at_deg]
-        if min(both_db) < _WEAK_DB and abs(both_db[0] - both_db[1]) > _CROSSING_DB:
-            refuse(
-                f"{where}, where its cuts cross, the horizontal one has a loss of {both_db[0]:g} dB and the "
-                f"vertical one {both_db[1]:g} dB; must be the same. {advice}"
-            )
+        require(
+            min(both_db) >= _WEAK_DB or abs(both_db[0] - both_db[1]) <= _CROSSING_DB,
+            f"{where}, where its cuts cross, the horizontal one has a loss of {both_db[0]:g} dB and the "
+            f"vertical one {both_db[1]:g} dB; must be the same. {advice}",
+        )
     at, text = keys.get("GAIN", (0, ""))
     amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", text.strip(), flags=re.IGNORECASE))]
     gain_dbi = numbers(amount, 1, "GAIN, in dBd unless dBi is stated")[0, 0]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, from_db, numbers, refuse
+from nullpose.antenna.files.block import Block, Lines, from_db, numbers, require
 
 _FREQUENCY = re.compile(r"FREQUENCY\s*[:=]\s*(\S+)\s*MHZ", re.IGNORECASE)
 _ROW = "theta, phi, three gains in dB, axial ratio, tilt, then magnitude and phase of both fields"
@@ -26,11 +26,11 @@ def read_nec(lines: Lines) -> Iterator[Block]:
         ScenarioError: a table is faulty.
     """
     frequency_hz = None
-    if not any("RADIATION PATTERNS" in text for _, text in lines):
-        refuse(
-            "this is output of NEC without a pattern; add an RP card to the input, such as "
-            "RP 0 37 73 1000 0 0 5 5 for the whole sphere, and run NEC again"
-        )
+    require(
+        any("RADIATION PATTERNS" in text for _, text in lines),
+        "this is output of NEC without a pattern; add an RP card to the input, such as "
+        "RP 0 37 73 1000 0 0 5 5 for the whole sphere, and run NEC again",
+    )
     for at, (line, text) in enumerate(lines):
         if found := _FREQUENCY.search(text):
             frequency_hz = 1e6 * float(numbers([(line, found[1])], 1, "a frequency in MHz")[0, 0])
@@ -47,8 +47,7 @@ def read_nec(lines: Lines) -> Iterator[Block]:
         size = values[:, [7, 9]] * (gain > 0.0)[:, None]  # at a floor the field has rounding errors left
         strength = np.sum(size**2, axis=1)
         strong = (strength > _STRONG * np.max(strength)) & (gain > 0.0)
-        if not np.any(strong):
-            refuse("the table has no field but zero, so there is no pattern", line)
+        require(np.any(strong), "the table has no field but zero, so there is no pattern", line)
         scale = np.median(gain[strong] / strength[strong])
         heading = "".join(row for _, row in lines[at:start])
         yield Block(

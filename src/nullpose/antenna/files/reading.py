@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, FloatArray, Lines, gridded, refuse
+from nullpose.antenna.files.block import Block, FloatArray, Lines, gridded, refuse, require
 from nullpose.antenna.files.checks import require_antenna, require_fit, require_rows
 from nullpose.antenna.files.cst import read_cst, read_ffs
 from nullpose.antenna.files.csv_table import profile_of, read_csv
@@ -65,8 +65,8 @@ def read_pattern(
     with _lines_of(path) as lines:
         name = _format_of("\n".join(text for _, text in lines), file_format)
         table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(path).name} ({name})")
-        if table.caveat and not estimate:
-            refuse(f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
+        is_told = estimate or not table.caveat
+        require(is_told, f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
         require_antenna(table := _scaled(table))
         harmonics = require_fit(table)
         if not table.caveat:
@@ -99,8 +99,7 @@ def _lines_of(path: str | os.PathLike[str]) -> Iterator[Lines]:
         encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
         text = content.decode(encoding, errors="replace")
         lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-        if not lines:
-            refuse("the file is empty; must hold a radiation pattern")
+        require(lines, "the file is empty; must hold a radiation pattern")
         yield lines
     except ScenarioError as error:
         raise ScenarioError(error.faults, os.fspath(path)) from None
@@ -116,8 +115,8 @@ def _content(path: Path) -> bytes:
             is_whole = unpacker.eof
     except (OSError, ValueError, zlib.error) as error:
         refuse(f"it cannot be read: {getattr(error, 'strerror', None) or error}")
-    if not is_whole:
-        refuse(f"its content is cut short, or exceeds {_MOST_BYTES / 1e6:g} MB, the most that is read")
+    most = f"{_MOST_BYTES / 1e6:g} MB, the most that is read"
+    require(is_whole, f"its content is cut short, or exceeds {most}")
     return content
 
 
@@ -126,29 +125,31 @@ def _format_of(text: str, asserted: str | None) -> str:
     looks = [
         name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE | re.IGNORECASE)
     ]
-    if asserted is None and not looks:
-        refuse(f"it has the marks of no known format; export the pattern in one of {formats}")
-    if asserted not in (None, *looks):
-        looks_like = looks[0] if looks else "none of them"
-        refuse(f"got the format {asserted!r}, must be one of {formats}; it looks like {looks_like}")
+    is_known = asserted is not None or looks
+    require(is_known, f"it has the marks of no known format; export the pattern in one of {formats}")
+    looks_like = f"it looks like {looks[0] if looks else 'none of them'}"
+    is_like = asserted in (None, *looks)
+    require(is_like, f"got the format {asserted!r}, must be one of {formats}; {looks_like}")
     return asserted or looks[0]
 
 
 def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> PatternTable:
     """Return the table of a frequency, or of the only one."""
-    if not blocks:
-        refuse("there is no table of gains or fields in it; is the file cut short?")
+    require(blocks, "there is no table of gains or fields in it; is the file cut short?")
     each_hz = [block.frequency_hz or frequency_hz or 0.0 for block in blocks]
     frequencies = [f"{hz:.10g}" for hz in dict.fromkeys(each_hz) if hz]
     more = f" and {len(frequencies) - _MOST_NAMED} more" if len(frequencies) > _MOST_NAMED else ""
     listed = f"{', '.join(frequencies[:_MOST_NAMED]) or 'unknown frequencies, in'} Hz{more}"
-    if frequency_hz is None and len(set(each_hz)) > 1:
-        refuse(
-            f"it has {len(blocks)} tables, at {listed}; state one frequency, by --frequency or frequency_hz"
-        )
-    nearest_hz = min(each_hz, key=lambda hz: abs(hz - (frequency_hz or hz)))
-    if frequency_hz is not None and not abs(nearest_hz - frequency_hz) < _SAME_FREQUENCY * frequency_hz:
-        refuse(f"got the frequency {frequency_hz:.10g} Hz, must be one of the file's: {listed}")
+    require(
+        frequency_hz is not None or len(set(each_hz)) == 1,
+        f"it has {len(blocks)} tables, at {listed}; state one frequency, by --frequency or frequency_hz",
+    )
+    wanted_hz = each_hz[0] if frequency_hz is None else frequency_hz
+    nearest_hz = min(each_hz, key=lambda hz: abs(hz - wanted_hz))
+    require(
+        frequency_hz is None or abs(nearest_hz - wanted_hz) < _SAME_FREQUENCY * wanted_hz,
+        f"got the frequency {wanted_hz:.10g} Hz, must be one of the file's: {listed}",
+    )
     whole, faults = [], []
     for block in (block for block, hz in zip(blocks, each_hz, strict=True) if hz == nearest_hz):
         try:
@@ -157,27 +158,23 @@ def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> Pat
             faults.append(error)
     if not whole:
         raise faults[0]
-    if len(whole) > 1:
-        starts = ", ".join(str(np.min(table.lines)) for table in whole if table.lines is not None)
-        refuse(f"it has {len(whole)} tables at one frequency, from the lines {starts} on; keep one of them")
+    starts = ", ".join(str(np.min(table.lines)) for table in whole if table.lines is not None)
+    more = f"it has {len(whole)} tables at one frequency, from the lines {starts} on; keep one of them"
+    require(len(whole) == 1, more)
     return replace(whole[0], notes=(*whole[0].notes, *([_OTHERS] if faults else [])))
 
 
 def _scaled(table: PatternTable) -> PatternTable:
     """Return the table, a directivity or a field without a power with an average of 1."""
     mean = mean_gain(table)
-    if not mean > 0.0:
-        refuse("no direction has any gain; is a column missing?")
+    require(mean > 0.0, "no direction has any gain; is a column missing?")
     if table.quantity not in ("directivity", "field"):
         return table
     mean_db, note = 10.0 * np.log10(mean), _NO_POWER
     if table.quantity == "directivity":
         note = f"Its directivity averages to {mean_db:.2f} dB over the sphere; it is scaled to 0 dB."
-        if abs(mean_db) > _OFF_DB:
-            refuse(
-                f"its directivity averages to {mean_db:.1f} dB over the sphere, must be 0 dB. Is the unit "
-                "right?"
-            )
+        off = f"its directivity averages to {mean_db:.1f} dB over the sphere, must be 0 dB"
+        require(abs(mean_db) <= _OFF_DB, f"{off}. Is the unit right?")
     return replace(
         table,
         gain=table.gain / mean,
