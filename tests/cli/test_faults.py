@@ -15,7 +15,6 @@ from typer.testing import Result
 import nullpose.cli.check
 from nullpose.cli.faults import BAD_INPUT, INTERNAL, INTERRUPTED, PIPE_CLOSED
 from nullpose.errors import SolveError
-from nullpose.study import SweepPlan
 
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
@@ -168,7 +167,7 @@ def test_output_folder_that_cannot_be_written(
     run: Run, good: Path, inside: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A file where the folder should be, or above it, is refused before any work."""
-    monkeypatch.setattr(SweepPlan, "run", None)
+    monkeypatch.setattr("nullpose.study.sweep", None)
     out = good / "deeper" if inside else good
     arguments = ("--from", 1, "--to", 2, "--out", out)
     assert_refused(run("sweep", good, "--set", "jammers.M.power_w", *arguments), "cannot write", str(out))

@@ -12,7 +12,6 @@ import pytest
 from typer.testing import Result
 
 from nullpose import load
-from nullpose.study import SweepPlan
 
 Run = Callable[..., Result]
 
@@ -45,7 +44,7 @@ def unsolvable(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(import_module("nullpose.solver"), "solve", fail)
     monkeypatch.setattr(import_module("nullpose.study"), "compare_airframes", fail)
-    monkeypatch.setattr(SweepPlan, "run", fail)
+    monkeypatch.setattr(import_module("nullpose.study"), "sweep", fail)
 
 
 @pytest.mark.usefixtures("unsolvable")

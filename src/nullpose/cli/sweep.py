@@ -63,6 +63,7 @@ def sweep(
     It writes a table (CSV) and a figure (PNG, SVG, PDF).
     """
     from nullpose.errors import UsageError
+    from nullpose.solver import SolveOptions
     from nullpose.study import spaced, sweep as sweep_scenario
 
     varied = [setting.strip() for setting in settings if "=" not in setting]
@@ -72,14 +73,14 @@ def sweep(
     fixed = [setting for setting in settings if "=" in setting]
     scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside)
     scenario = scene.read()
+    options = proof.keywords(fast)
+    SolveOptions(**options)
     values = spaced(start, stop, points, log=log)
     files = [f"sweep.{end}" for end in ("csv", "png", "svg", "pdf")]
     scene.check_outputs({f"--out ({name})": out / name for name in files})
     schemes = [name.value for name in scheme] if scheme else None
     with compiling_announced(), Ticker(f"sweep of {varied[0]}") as ticker:
-        found = sweep_scenario(
-            scenario, varied[0], values, schemes=schemes, on_progress=ticker, **proof.keywords(fast)
-        )
+        found = sweep_scenario(scenario, varied[0], values, schemes=schemes, on_progress=ticker, **options)
     if scenario.array is not None:
         say("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep

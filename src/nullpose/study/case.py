@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, TypeAdapter
 
 from nullpose.objectives import USUAL
 from nullpose.physics import Pose
-from nullpose.problem.schemes import Scheme
+from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, rejection
@@ -46,7 +46,12 @@ Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth o
 Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
-_SchemeName = Annotated[Scheme, Choice("a scheme", tuple(scheme.value for scheme in Scheme))]
+
+def _read_scheme(value: object) -> str:
+    return Choice("a scheme", RECORDS).read(value)
+
+
+_SchemeName = Annotated[Scheme, BeforeValidator(_read_scheme)]
 
 _BY_NAME = _AIRFRAMES | {
     preset: Airframe(preset=preset) for preset in PRESET_TILTS_DEG if preset not in _AIRFRAMES
