@@ -13,9 +13,12 @@ from scipy.optimize import differential_evolution
 import nullpose
 from nullpose.errors import SolveError, UsageError
 from nullpose.physics.array import beam_sinr, digital_sinr, element_positions
+from nullpose.problem.build import build_family
 from nullpose.scenario import Array, Scenario
 from nullpose.solver import Result, Status, solve
-from nullpose.solver.array_task import ArrayTask
+from nullpose.solver.array import array_bound
+from nullpose.solver.array_search import ArraySearch
+from nullpose.solver.kernels.domain import walls
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -120,14 +123,11 @@ def test_another_optimiser_finds_nothing_better(random_scene: Callable) -> None:
     """Differential evolution over position and yaw does not exceed it, and comes close."""
     scenario = random_scene(np.random.default_rng(13), 3, 1, 10.0)
     solution = solve(with_array(scenario, 3))
-    task = ArrayTask.of(scenario, with_array(scenario, 3).array)
-    sides = list(zip(*task.reach(math.log(solution.objective.value)), strict=True))
+    search = ArraySearch(scenario, with_array(scenario, 3).array, 0)
+    sides = list(zip(*search.box(math.log(solution.objective.value)), strict=True))
 
     def cost(state: np.ndarray) -> float:
-        position_m = np.ascontiguousarray(state[:3])
-        if np.any(task.walls(position_m)[0] < 0.0):
-            return 1e3
-        return min(-task.value(np.ascontiguousarray(state)), 1e3)
+        return min(-float(search.judged(state[None].copy())[0]), 1e3)
 
     other = differential_evolution(
         cost, [*sides, (-math.pi, math.pi)], seed=0, maxiter=150, popsize=12, tol=1e-8
@@ -216,3 +216,114 @@ def test_a_scene_without_an_answer_is_said(scene: Callable) -> None:
     point = scene([(0, 0, 0)], x_m=(0.0, 0.0), y_m=(0.0, 0.0), altitude_m=(8.0, 8.0))
     with pytest.raises(SolveError, match="widen the airspace"):
         solve(with_array(point, 2))
+
+
+def search_of(scenario: Scenario, elements: int, layout: str = "linear", spacing: float = 0.5) -> ArraySearch:
+    """The search of an array in a scenario."""
+    array = Array(elements=elements, layout=layout, spacing_wavelengths=spacing)
+    return ArraySearch(scenario, array, 0)
+
+
+def test_turning_by_the_symmetry_changes_nothing(random_scene: Callable) -> None:
+    """A row turned by half a turn, a circle by one of its elements: the ratios are the same."""
+    rng = np.random.default_rng(9)
+    for layout, elements in (("linear", 4), ("circular", 5), ("circular", 2), ("circular", 1)):
+        search = search_of(random_scene(rng, 3, 2, 10.0), elements, layout)
+        state = np.append(rng.uniform([0, 0, 9], [99, 99, 29]), rng.uniform(-3.0, 3.0))
+        turned = state + np.array([0.0, 0.0, 0.0, 2.0 * math.pi / search.symmetry])
+        assert search.judged(turned[None]) == pytest.approx(search.judged(state[None]), abs=1e-9)
+
+
+def test_nothing_out_of_reach_is_as_good(random_scene: Callable) -> None:
+    """Every state with a value has its position in the box that is said to hold all such positions."""
+    rng = np.random.default_rng(1)
+    for _ in range(10):
+        search = search_of(random_scene(rng, 3, 1, jamming_w=1e-3), 4)
+        states = rng.uniform([-200, -200, 8, 0], [300, 300, 30, 6], (30, 4))
+        for state, value in zip(states, search.judged(states), strict=True):
+            low_m, high_m = search.box(value)
+            assert np.all((low_m <= state[:3]) & (state[:3] <= high_m))
+
+
+@pytest.mark.parametrize("layout", ["linear", "circular"])
+@pytest.mark.parametrize("jamming_w", [0.01, 10.0, 1e5])
+def test_no_state_exceeds_the_bound(
+    layout: str, jamming_w: float, random_scene: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of many random states of all yaws none is above the bound, wherever the boxes run out."""
+    monkeypatch.setitem(array_bound.__globals__, "_MOST_BOXES", 20_000)
+    rng = np.random.default_rng(1)
+    search = search_of(random_scene(rng, 2, 2, jamming_w), 3, layout, 0.7)
+    states = rng.uniform([0.0, 0.0, 8.0, -math.pi], [100.0, 100.0, 12.0, math.pi], (3000, 4))
+    search.best = float(np.max(search.judged(states)))
+    assert search.best <= math.log(array_bound(search, gap=1e-2).value)
+
+
+def test_a_bound_reaches_the_gap(random_scene: Callable) -> None:
+    """For the level that it found itself, it stops at the gap; for a lower one, it says more."""
+    search = search_of(random_scene(np.random.default_rng(2), 2, 1, 10.0), 3, "circular", 0.7)
+    search.best = math.log(1e-3)
+    first = array_bound(search, gap=1e-2)
+    assert search.climb(first.state) > math.log(1e-3)
+    search.best = math.log(first.value)
+    again = array_bound(search, gap=1e-2)
+    assert first.value <= again.value <= first.value * 1.0101
+
+
+def test_a_climb_ends_at_a_local_optimum(random_scene: Callable) -> None:
+    """Around the end no state of the domain is better, and the value is that of the state."""
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        search = search_of(random_scene(rng, 3, 1), 4, "circular")
+        start = rng.uniform([0.0, 0.0, 9.0, 0.0], [99.0, 99.0, 29.0, 6.0])
+        value = search.climb(start)
+        assert value == search.judged(search.state[None])[0] >= search.judged(start[None])[0]
+        near = 10.0 ** rng.uniform(-6.0, -3.0, (300, 1)) * rng.normal(size=(300, 4))
+        assert np.max(search.judged(search.state + near)) <= value + 1e-7
+
+
+def test_a_climb_ends_inside(random_scene: Callable) -> None:
+    """Among zones, balls and tight bounds it ends where the airspace allows, outside every ball."""
+    rng = np.random.default_rng(2)
+    zone = {"polygon_m": [(30.0, 30.0), (70.0, 30.0), (50.0, 70.0)]}
+    drum = {"centre_m": (20.0, 60.0), "radius_m": 12.0, "altitude_m": (0.0, 20.0)}
+    for _ in range(6):
+        scene = random_scene(rng, 2, 1, 10.0, x_m=(5.0, 80.0), no_fly=(zone, drum), keep_out_m=12.0)
+        search = search_of(scene, 4, "circular")
+        inside_the_polygon = np.array([50.0, 45.0, 9.0, rng.uniform(0.0, 6.0)])
+        assert np.isfinite(search.climb(inside_the_polygon))
+        assert scene.airspace.allows(search.state[:3])
+        points_m = np.vstack([scene.node_positions_m, scene.jammer_positions_m])
+        assert np.min(np.linalg.norm(points_m - search.state[:3], axis=1)) >= 12.0
+
+
+def test_a_fixed_position_stays(paper: Callable) -> None:
+    """Where the airspace is one point only the yaw moves."""
+    search = search_of(paper(1.0, x_m=(3.0, 3.0), y_m=(20.0, 20.0), altitude_m=(9.0, 9.0)), 4, "circular")
+    start = np.array([3.0, 20.0, 9.0, 2.0])
+    assert search.climb(start) > search.judged(start[None])[0]
+    np.testing.assert_array_equal(search.state[:3], [3.0, 20.0, 9.0])
+
+
+def test_a_wall_between_zones_is_found(paper: Callable) -> None:
+    """Where the airspace leaves a wall of no width, a position on it is found."""
+    zones = [{"x_m": side, "y_m": (-5.0, 45.0)} for side in ((-5.0, 5.0), (5.0, 15.0))]
+    walled = paper(1.0, x_m=(0.0, 10.0), y_m=(0.0, 40.0), no_fly=zones)
+    solution = solve(with_array(walled, 2), certify=False)
+    assert walled.airspace.allows(solution.pose.position_m)
+    assert solution.pose.position_m[0] == pytest.approx(5.0, abs=1e-9)
+
+
+def test_walls_are_distances(paper: Callable) -> None:
+    """Balls, planes and cylinders: the distances to them, and the ways out as unit vectors."""
+    drum = {"centre_m": (0.0, 30.0), "radius_m": 5.0}
+    box = {"x_m": (20.0, 40.0), "y_m": (20.0, 40.0), "altitude_m": (0.0, 15.0)}
+    domain = build_family(paper(1.0, altitude_m=(0.0, 30.0), keep_out_m=3.0, no_fly=(drum, box))).domain
+    position_m = np.array([8.0, 30.0, 12.0])
+    distance_m, ways = walls(domain, position_m)
+    balls = np.linalg.norm(position_m - domain.keep_out_points_m, axis=1) - 3.0
+    np.testing.assert_allclose(distance_m, [*balls, 3.0, 12.0], atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(ways, axis=1), 1.0, rtol=1e-12)
+    for i in range(3):
+        further = walls(domain, position_m + 1e-6 * np.eye(3)[i])[0]
+        np.testing.assert_allclose((further - distance_m) / 1e-6, ways[:, i], atol=1e-5)

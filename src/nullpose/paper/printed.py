@@ -14,7 +14,7 @@ from nullpose.physics.paper_schemes import direction_product
 from nullpose.physics.types import FloatArray
 from nullpose.problem.build import build_family
 from nullpose.scenario import Override, Scenario, apply_overrides
-from nullpose.solver.position_search import search_positions
+from nullpose.solver.position_search import PositionSearch
 
 
 class PrintedPoint(NamedTuple):
@@ -80,5 +80,6 @@ def search_as_printed(scenario: Scenario, level: float, *, seed: int = 0) -> Pri
         return float(np.min(sinr_as_printed(varied, position_m)))
 
     family = build_family(varied)
-    position_m, *_ = search_positions(lambda at_m: math.log(min_sinr(at_m)), family, seed=seed)
-    return PrintedPoint(level, position_m, min_sinr(position_m))
+    search = PositionSearch(lambda at_m: math.log(min_sinr(at_m)), family, seed)
+    search.search()
+    return PrintedPoint(level, search.state, min_sinr(search.state))

@@ -9,18 +9,25 @@ from typing import Any
 import numpy as np
 
 from nullpose.errors import UsageError
-from nullpose.objectives import USUAL, Quantity
+from nullpose.objectives import USUAL, FloatArray, Quantity
 from nullpose.physics import Pose
 from nullpose.physics.array import ComplexArray, digital_sinr, digital_weights, placed_elements
 from nullpose.physics.evaluate import links_of
+from nullpose.problem.axis_field import AxisField
 from nullpose.scenario import Array, Scenario
-from nullpose.solver.array_bound import ArrayBound, array_bound
-from nullpose.solver.array_search import ArrayHunt
-from nullpose.solver.array_task import ArrayTask
+from nullpose.solver.array_search import ArraySearch
 from nullpose.solver.compiling import working_clock
 from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.result import Result, Stats, provenance
+from nullpose.solver.solve_and_prove import solve_and_prove
+
+_MOST_BOXES = 300_000
+_LEAST_BOXES = 20_000
+_WORK = 3e7  # boxes times what one costs: nodes, jammers and elements
+_ROUNDING = 5e-10
+_INSIDE = 0.9  # the gap that is aimed at, of the gap that is asked for: bound and value are rounded
+_LEAST_GAP = 1e-8  # of the vertical case's proof
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,9 +85,10 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
         )
     options = options.of(scenario)
     began = working_clock()
-    task = ArrayTask.of(scenario, array)
-    hunt, bound = _solved(task, options)
-    pose = Pose(hunt.state[:3], 0.0, 0.0, math.remainder(hunt.state[3], 2.0 * math.pi))
+    search = ArraySearch(scenario, array, options.seed)
+    bound = _solved(search, options)
+    yaw_rad = math.remainder(search.state[3], 2.0 * math.pi)
+    pose = Pose(search.state[:3], 0.0, 0.0, yaw_rad)
     places = placed_elements(scenario, pose)
     ratios = {"sinr": digital_sinr(scenario, pose.position_m, places)}
     if scenario.has_margins:
@@ -88,7 +96,7 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
     links = links_of(scenario, ratios)
     value = Quantity.of(scenario).least(links)
     objective = objective_of(scenario, value, None if bound is None else bound.value)
-    reached = bound is None or hunt.reaches(bound.value, options.target)
+    reached = bound is None or bound.value <= math.exp(search.best) * (1.0 + options.target)
     status, reason = status_of(objective, options.target, "" if reached else "box limit reached")
     return Result(
         scenario=scenario,
@@ -99,11 +107,11 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
         links=links,
         stats=Stats(
             wall_s=working_clock() - began,
-            starts=hunt.starts,
-            evaluations=hunt.evaluations,
+            starts=search.starts,
+            evaluations=search.evaluations,
             boxes=0 if bound is None else bound.boxes,
-            searches=len(hunt.ends),
-            agreeing=hunt.agreeing,
+            searches=len(search.ends),
+            agreeing=search.agreeing,
         ),
         provenance=provenance(options.seed) | options.settings,
         reason=reason,
@@ -111,24 +119,92 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
     )
 
 
-def _solved(task: ArrayTask, options: SolveOptions) -> tuple[ArrayHunt, ArrayBound | None]:
+def _solved(search: ArraySearch, options: SolveOptions) -> ArrayBound | None:
     """Search, and prove what is found if that is asked for.
 
     One search and a proof, then more searches, and another proof, where that does not get there; what turns
     up in the first proof is taken up.
     """
-    hunt = ArrayHunt(task, options.seed)
     if not options.certify:
-        hunt.search_on()
-        return hunt, None
-    hunt.search()
-    bound, before = array_bound(task, hunt.best, gap=options.target), hunt.best
-    if hunt.reaches(bound.value, options.target):
-        return hunt, bound
+        search.search_on()
+        return None
+    search.search()
+    bound, before = array_bound(search, gap=options.target), search.best
+    if bound.value <= math.exp(before) * (1.0 + options.target):
+        return bound
     if bound.state is not None:
-        hunt.look(bound.state)
-    hunt.search_on()
-    if hunt.best <= before + options.target:
-        return hunt, bound
-    again = array_bound(task, hunt.best, gap=options.target)
-    return hunt, replace(again, value=min(bound.value, again.value), boxes=bound.boxes + again.boxes)
+        search.climb(bound.state)
+    search.search_on()
+    if search.best <= before + options.target:
+        return bound
+    again = array_bound(search, gap=options.target)
+    return replace(again, value=min(bound.value, again.value), boxes=bound.boxes + again.boxes)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ArrayBound:
+    """A bound on the smallest ratio of an array.
+
+    Args:
+        value: nothing exceeds this.
+        boxes: boxes examined.
+        state: (4,) a promising place that turned up on the way; None if none did.
+    """
+
+    value: float
+    boxes: int
+    state: FloatArray | None = None
+
+
+def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
+    """Bound the smallest ratio over all positions, yaws and weights, by branch and bound.
+
+    A branch and bound over positions and yaws, the best first
+    (:mod:`nullpose.solver.kernels.array_enclosure` bounds a box): it stops at the gap asked for or
+    at a number of boxes, with the bound reached. Turning the vehicle by half a turn, or a circle by one of
+    its elements, changes nothing; so that much yaw is looked at. One element is the vertical case, whose own
+    branch and bound is used.
+
+    Args:
+        search: the array, its scene and the best state found.
+        gap: relative gap to its value at which it is done.
+    """
+    value, nodes = math.exp(search.best), search.problem.nodes
+    upright = _vertical_bound(search, gap)
+    if search.elements == 1 or upright.value <= value * (1.0 + gap):
+        return upright
+    from nullpose.solver.kernels.array_branch import branch_array
+
+    most = _WORK / (nodes * (1 + len(search.problem.points_m) - nodes) * search.elements)
+    low_m, high_m = search.box(search.best)
+    half_m = 0.5 * (high_m - low_m) * (1.0 + _ROUNDING)
+    root = np.array([[*(0.5 * (low_m + high_m)), 0.0], [*half_m, math.pi / search.symmetry]])
+    state = np.full(4, math.nan)
+    level, boxes = value * (1.0 + _INSIDE * gap), int(min(max(most, _LEAST_BOXES), _MOST_BOXES))
+    bound, boxes = branch_array(search.problem, search.family.domain, root, level, boxes, state)
+    return ArrayBound(
+        value=min(upright.value, float(bound) * (1.0 + _ROUNDING)),
+        boxes=upright.boxes + int(boxes),
+        state=state if np.all(np.isfinite(state)) else None,
+    )
+
+
+def _vertical_bound(search: ArraySearch, gap: float) -> ArrayBound:
+    """Bound by K times one vertical dipole with the jammers silent; for K = 1, not silent.
+
+    With ``R >= sigma^2 I``, ``h_k^H R^-1 h_k <= |h_k|^2 / sigma^2``, and ``|h_k|^2`` is K times what one
+    vertical dipole receives at the same position. Where the jammers can be nulled for nothing, the optimum
+    is a flat ridge, along which a branch and bound is slow, and this bound is met.
+    """
+    family = search.family
+    if search.elements > 1:  # only noise is left in the denominators; interferers are still kept clear of
+        family = family.changed(
+            denominator_start=np.zeros_like(family.denominator_start),
+            denominator_point=np.zeros(0, dtype=np.int64),
+            denominator_weight=np.zeros(0),
+        )
+    options = SolveOptions(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
+    outcome = solve_and_prove(family, [AxisField.vertical()], options)
+    assert outcome.upper_bound is not None, "a proof was asked for"
+    value = search.elements * outcome.upper_bound * (1.0 + _ROUNDING)
+    return ArrayBound(value=value, boxes=outcome.nodes)

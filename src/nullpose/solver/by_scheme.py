@@ -19,7 +19,7 @@ from nullpose.solver.compiling import working_clock
 from nullpose.solver.incumbent import Incumbent
 from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
-from nullpose.solver.position_search import search_positions
+from nullpose.solver.position_search import PositionSearch
 from nullpose.solver.result import Result, Stats, provenance
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
@@ -109,18 +109,19 @@ def _by_values(record: SchemeRecord, family: Family, options: SolveOptions) -> O
     from nullpose.solver.kernels.maximum_gain import maximum_gain_value
 
     axis = np.empty(3)
-    position_m, value, starts, evaluations = search_positions(
-        lambda at_m: float(maximum_gain_value(family.arrays, at_m, axis)), family, seed=options.seed
+    search = PositionSearch(
+        lambda at_m: float(maximum_gain_value(family.arrays, at_m, axis)), family, options.seed
     )
-    maximum_gain_value(family.arrays, position_m, axis)
+    search.search()
+    maximum_gain_value(family.arrays, search.state, axis)
     ratios = len(family.numerator_point)
     found = Incumbent(
-        position_m=position_m,
+        position_m=search.state,
         axis=axis,
-        log_value=value,
+        log_value=search.best,
         multipliers=np.full(ratios, 1.0 / ratios),
-        starts=starts,
-        evaluations=evaluations,
+        starts=search.starts,
+        evaluations=search.evaluations,
     )
     if not options.certify:
         return Outcome(incumbent=found)

@@ -90,11 +90,10 @@ class PatternRun(BranchAndBound):
         from nullpose.solver.kernels.root import reach_by_distance
 
         self.branch = branch_pattern
-        self.search.compile()  # before the clock begins
         self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
         began = limit_clock()
         self.deadline = began + self.limits.time_limit_s
-        self.thorough = not self.search.run(light=self.limits.certify)
+        self.thorough = not self.search.search(light=self.limits.certify)
         if not math.isfinite(self.search.best):
             raise SolveError(NO_POSITION)
         reason = ""
@@ -173,9 +172,8 @@ class PatternRun(BranchAndBound):
         if not self.thorough:
             self.thorough, light = True, self.search
             self.search = PatternSearch(self.family, self.antenna, self.reach, self.limits.seed)
-            self.search.compile()
-            self.search.run(light=False)
-            self.search.take(*light.pose)
+            self.search.search(light=False)
+            self.search.take(light.state)
             self.search.starts += light.starts
             self.search.evaluations += light.evaluations
 

@@ -1,8 +1,8 @@
-"""Multistart over positions for objectives that are only known by their values.
+"""The search over positions for objectives that are only known by their values.
 
 For what is not a family of smooth ratios in the position: maximum gain for other than two nodes (its axis
 is itself the answer of an optimisation, so the objective has kinks and may jump) and the paper's eq. 3.5 as
-printed. Nelder-Mead, restarted from its own answer until that no longer moves.
+printed.
 """
 
 from __future__ import annotations
@@ -14,90 +14,73 @@ import numpy as np
 
 from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
-from nullpose.problem.airspace import loosened
 from nullpose.problem.family import Family
-from nullpose.solver.multistart import BORDER_M, NO_POSITION, NOT_RECEIVED, landmarks
+from nullpose.solver.local_search import LocalSearch
+from nullpose.solver.multistart import NOT_RECEIVED
 
-_COARSE = 256
-_POLISHED = 8
+_DRAWN, _CLIMBED = 200, 4  # positions of the search, each time
 _RESTARTS = 6
+_SIZE = 0.05  # of the first simplex, as a share of the box
 
 
-def search_positions(
-    objective: Callable[[FloatArray], float], family: Family, *, seed: int
-) -> tuple[FloatArray, float, int, int]:
-    """Return the best position found, its value, and the numbers of starts and evaluations.
+class PositionSearch(LocalSearch):
+    """A search whose climb is Nelder-Mead, restarted from its own end until that no longer moves.
 
     Args:
         objective: log value of a position, (3,), metres; minus infinity where it has none.
         family: for its domain and for the distances within which a better position must lie.
-        seed: seed of the coarse positions.
-
-    Raises:
-        SolveError: the objective is minus infinity at every position tried.
+        seed: of the positions drawn.
     """
-    from nullpose.solver.kernels.domain import contains
-    from nullpose.solver.kernels.search import cut_box, push_out
 
-    starts = [place for place in landmarks(family) if push_out(place, family.domain)]
-    if not starts:  # what is allowed may be of no width
-        family = loosened(family, BORDER_M)
-        starts = [place for place in landmarks(family) if push_out(place, family.domain)]
-    if not starts:
-        raise SolveError(NO_POSITION)
-    domain, low, high = family.domain, family.low_m, family.high_m
-    evaluations = 0
+    def __init__(self, objective: Callable[[FloatArray], float], family: Family, seed: int) -> None:
+        super().__init__(family, 1.0, seed)
+        self.objective = objective
 
-    def cost(position: FloatArray) -> float:
-        nonlocal evaluations
-        evaluations += 1
-        return -objective(position) if contains(domain, position) else math.inf
+    def search(self) -> None:
+        """Find the best position.
 
-    best_value, best_position = max(((-cost(place), place) for place in starts), key=lambda pair: pair[0])
-    if not math.isfinite(best_value):
-        raise SolveError(NOT_RECEIVED)
-    box_low, box_high = np.empty(3), np.empty(3)
-    cut_box(family.arrays, low, high, best_value, box_low, box_high)
-    draws = np.random.default_rng(seed).uniform(size=(_COARSE, 3))
-    draws[::2, 2] = 0.0  # the optimum is often on the floor
-    for draw in draws:
-        place = box_low + draw * (box_high - box_low)
-        if push_out(place, domain):
-            starts.append(place)
-    ranked = sorted(starts, key=cost)[:_POLISHED]
-    span = float(np.max(box_high - box_low))
-    for place in ranked:
-        value, position = _descend(cost, place, 0.05 * span, low, high)
-        if value > best_value:
-            best_value, best_position = value, position
-    return best_position, best_value, len(ranked), evaluations
+        Raises:
+            SolveError: the objective is minus infinity at every position tried.
+        """
+        if not self.run(_DRAWN, _CLIMBED) > -math.inf:
+            raise SolveError(NOT_RECEIVED)
 
+    def oriented(self, positions_m: FloatArray) -> FloatArray:
+        """Return the positions, which are the states."""
+        return positions_m
 
-def _descend(
-    cost: Callable[[FloatArray], float], start: FloatArray, size: float, low: FloatArray, high: FloatArray
-) -> tuple[float, FloatArray]:
-    """Return the value and the position at the end of restarted Nelder-Mead runs."""
-    from scipy.optimize import minimize
+    def judged(self, states: FloatArray) -> FloatArray:
+        """Evaluate the objective at positions."""
+        from nullpose.solver.kernels.domain import contains
 
-    position, value = start, cost(start)
-    for _ in range(_RESTARTS):
-        corners = position + np.vstack([np.zeros(3), size * np.eye(3)])
-        result = minimize(
-            cost,
-            position,
-            method="Nelder-Mead",
-            bounds=list(zip(low, high, strict=True)),
-            options={
-                "initial_simplex": np.clip(corners, low, high),
-                "xatol": 1e-9,
-                "fatol": 1e-13,
-                "maxfev": 800,
-            },
-        )
-        gain = value - result.fun
-        if result.fun <= value:
-            position, value = np.clip(result.x, low, high), float(result.fun)
-        if not gain > 1e-11:
-            break
-        size *= 0.3
-    return -value, position
+        self.evaluations += len(states)
+        allowed = (contains(self.family.domain, state) for state in states)
+        pairs = zip(states, allowed, strict=True)
+        return np.array([self.objective(state) if inside else -math.inf for state, inside in pairs])
+
+    def climb(self, state: FloatArray) -> float:
+        """Climb to a local optimum, and keep it if it is the best so far; return its value."""
+        from scipy.optimize import minimize
+
+        low_m, high_m = self.family.low_m, self.family.high_m
+        value, size_m = self.take(state), _SIZE * float(np.max(np.diff(self.box(self.best), axis=0)))
+        self.starts += 1
+        for _ in range(_RESTARTS):
+            corners_m = state + np.vstack([np.zeros(3), size_m * np.eye(3)])
+            found = minimize(
+                lambda position_m: -self.judged(position_m[None])[0],
+                state,
+                method="Nelder-Mead",
+                bounds=list(zip(low_m, high_m, strict=True)),
+                options={
+                    "initial_simplex": np.clip(corners_m, low_m, high_m),
+                    "xatol": 1e-9,
+                    "fatol": 1e-13,
+                    "maxfev": 800,
+                },
+            )
+            state, before = np.clip(found.x, low_m, high_m), value
+            value, size_m = max(value, self.take(state)), 0.3 * size_m
+            if not value > before + 1e-11:
+                break
+        return value

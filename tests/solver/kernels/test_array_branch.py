@@ -7,27 +7,28 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Array, Scenario
-from nullpose.solver.array_task import ArrayTask
+from nullpose.solver.array_search import ArraySearch
 from nullpose.solver.kernels.array_branch import branch_array
+from nullpose.solver.kernels.array_response import array_value
 
 LOW, HIGH = np.array([0.0, 0.0, 8.0, -math.pi / 2]), np.array([60.0, 60.0, 12.0, math.pi / 2])
 
 
-def _branch(task: ArrayTask, target: float, most: int = 200_000) -> tuple[float, int, np.ndarray]:
+def _branch(task: ArraySearch, target: float, most: int = 200_000) -> tuple[float, int, np.ndarray]:
     state = np.full(4, math.nan)
     root = np.array([0.5 * (LOW + HIGH), 0.5 * (HIGH - LOW)])
     bound, boxes = branch_array(task.problem, task.family.domain, root, target, most, state)
     return bound, boxes, state
 
 
-def _task(scenario: Scenario) -> ArrayTask:
-    return ArrayTask.of(scenario, Array(elements=3, layout="linear", spacing_wavelengths=0.5))
+def _task(scenario: Scenario) -> ArraySearch:
+    return ArraySearch(scenario, Array(elements=3, layout="linear", spacing_wavelengths=0.5), 0)
 
 
-def _sampled(task: ArrayTask, rng: np.random.Generator) -> float:
+def _sampled(task: ArraySearch, rng: np.random.Generator) -> float:
     states = rng.uniform(LOW, HIGH, (20_000, 4))
     states[::2, 2] = LOW[2]
-    return max(map(task.value, states[[np.all(task.walls(s[:3])[0] >= 0.0) for s in states]]))
+    return float(np.max(task.judged(states)))
 
 
 def test_the_bound_is_that_of_the_box(scene: Callable) -> None:
@@ -40,7 +41,7 @@ def test_the_bound_is_that_of_the_box(scene: Callable) -> None:
         bound, boxes, state = _branch(task, 1.4 * best)
         assert best <= bound == 1.4 * best
         assert boxes < 200_000
-        assert math.exp(task.value(state)) > 0.5 * best
+        assert math.exp(array_value(task.problem, state)) > 0.5 * best
 
 
 def test_a_limit_leaves_a_bound(random_scene: Callable) -> None:

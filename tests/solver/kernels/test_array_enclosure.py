@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Array, Scenario
-from nullpose.solver.array_task import ArrayTask
+from nullpose.solver.array_search import ArraySearch
 from nullpose.solver.kernels.array_enclosure import box_bound
-from nullpose.solver.kernels.array_response import respond
+from nullpose.solver.kernels.array_response import array_value, respond
 
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=4)))
 
 
-def _task(scenario: Scenario, elements: int, layout: str = "linear") -> ArrayTask:
+def _task(scenario: Scenario, elements: int, layout: str = "linear") -> ArraySearch:
     array = Array(elements=elements, layout=layout, spacing_wavelengths=0.6)
-    return ArrayTask.of(scenario, array)
+    return ArraySearch(scenario, array, 0)
 
 
-def _largest(task: ArrayTask, centre: np.ndarray, half: np.ndarray, rng: np.random.Generator) -> float:
+def _largest(task: ArraySearch, centre: np.ndarray, half: np.ndarray, rng: np.random.Generator) -> float:
     inside = np.vstack([CORNERS, rng.uniform(-1.0, 1.0, (40, 4))])
-    return max(math.exp(task.value(state)) for state in centre + half * inside)
+    return max(math.exp(array_value(task.problem, state)) for state in centre + half * inside)
 
 
 @pytest.mark.parametrize("layout", ["linear", "circular"])
@@ -55,7 +55,7 @@ def test_boxes_over_a_point(where: str, reach_m: float, random_scene: Callable) 
         assert _largest(task, centre, half, rng) <= bound * (1.0 + 1e-9)
 
 
-def _excess(task: ArrayTask, centre: np.ndarray, half: np.ndarray) -> float:
+def _excess(task: ArraySearch, centre: np.ndarray, half: np.ndarray) -> float:
     """How far the bound of a one-node scene is above the value and the slope at the centre."""
     logs, slopes = np.empty(1), np.empty((1, 4))
     value = math.exp(respond(task.problem, centre, logs, slopes))
@@ -78,7 +78,7 @@ def test_slopes_of_several_nodes_cancel(scene: Callable) -> None:
     """Half way between two nodes, where what one loses the other gains, the bound is of second order."""
     task = _task(scene([(0, 0, 0), (40, 0, 0)]), 1)
     centre = np.array([20.0, 0.0, 20.0, 0.0])
-    value = math.exp(task.value(centre))
+    value = math.exp(array_value(task.problem, centre))
     excess = [
         box_bound(task.problem, centre, np.array([size, 0.0, 0.0, 0.0])) / value - 1.0 for size in (0.2, 0.1)
     ]

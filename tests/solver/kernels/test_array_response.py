@@ -7,16 +7,16 @@ import pytest
 
 from nullpose.physics.array import digital_sinr, element_positions
 from nullpose.scenario import Array
-from nullpose.solver.array_task import ArrayTask
-from nullpose.solver.kernels.array_response import respond
+from nullpose.solver.array_search import ArraySearch
+from nullpose.solver.kernels.array_response import array_value, respond
 
 CASES = [(1, "linear"), (2, "linear"), (5, "circular"), (8, "linear")]
 
 
-def _response(task: ArrayTask, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _response(task: ArraySearch, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     logs, slopes = np.empty(task.problem.nodes), np.empty((task.problem.nodes, 4))
     worst = respond(task.problem, state, logs, slopes)
-    assert worst == np.min(logs) == task.value(state)
+    assert worst == np.min(logs) == array_value(task.problem, state)
     return logs, slopes
 
 
@@ -29,7 +29,7 @@ def test_values_are_those_of_the_physics(
     rng = np.random.default_rng(elements)
     for jammers in range(4):
         scene = random_scene(rng, 3, jammers, jamming_w)
-        task = ArrayTask.of(scene, Array(elements=elements, layout=layout, spacing_wavelengths=0.6))
+        task = ArraySearch(scene, Array(elements=elements, layout=layout, spacing_wavelengths=0.6), 0)
         state = rng.uniform([0.0, 0.0, 9.0, 0.0], [99.0, 99.0, 29.0, 6.0])
         places = element_positions(elements, layout, 0.6, state[3])
         expected = digital_sinr(scene, state[:3], places)
@@ -42,7 +42,7 @@ def test_slopes_are_those_of_differences(elements: int, layout: str, random_scen
     rng = np.random.default_rng(10 + elements)
     array = Array(elements=elements, layout=layout, spacing_wavelengths=0.6)
     for jammers in range(4):
-        task = ArrayTask.of(random_scene(rng, 3, jammers, 10.0), array)
+        task = ArraySearch(random_scene(rng, 3, jammers, 10.0), array, 0)
         state = rng.uniform([0.0, 0.0, 9.0, 0.0], [99.0, 99.0, 29.0, 6.0])
         slopes = _response(task, state)[1]
         steps = 1e-5 * np.eye(4)
@@ -55,7 +55,7 @@ def test_slopes_are_those_of_differences(elements: int, layout: str, random_scen
 def test_straight_above(scene: Callable) -> None:
     """Straight above a jammer it is not heard, and slopes are finite; above a node, that one is not heard."""
     field = scene([(0, 0, 0), (30, 0, 0)], [(10, 10, 0)], jammer_powers_w=1e6)
-    task = ArrayTask.of(field, Array(elements=3, layout="linear", spacing_wavelengths=0.5))
+    task = ArraySearch(field, Array(elements=3, layout="linear", spacing_wavelengths=0.5), 0)
     above_jammer, above_node = np.array([10.0, 10.0, 9.0, 0.3]), np.array([0.0, 0.0, 9.0, 0.3])
     logs, slopes = _response(task, above_jammer)
     assert np.all(np.isfinite(logs))

@@ -87,8 +87,8 @@ def test_a_pose_keeps_its_cell(which: int, seed: int) -> None:
     inside = cell.copy()
     inside[:6] += cell[HALF : HALF + 6] * rng.uniform(-1.0, 1.0, 6)
     rotation, value = rotation_at(family, inside), np.empty(1)
-    scratch = np.empty(len(family.points_m)), np.empty(len(family.numerator_point))
-    judge(family.arrays, family.domain, ARRAYS[which], inside[None, :3], rotation[None], *scratch, value)
+    state = np.append(inside[:3], rotation)
+    judge(family.arrays, family.domain, ARRAYS[which], state[None], value)
     level = float(np.exp(value[0])) * (1.0 - 1e-9)
     stack = np.empty((4000, len(cell)))
     stack[0] = cell

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.objectives import FloatArray
+from nullpose.solver.kernels.domain import contains
 from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.vectors import minus, over, row, store
 
@@ -169,3 +170,10 @@ def respond(problem, x, logs, slopes):
 def array_value(problem, x):
     """Evaluate the smallest log ratio at a state, as :func:`respond`."""
     return respond(problem, x, np.empty(problem.nodes), np.empty((0, 4)))
+
+
+@heap_kernel
+def judge_array(problem, domain, states, out):
+    """Fill the smallest log ratio of many states, (n, 4), minus infinity where a position is not allowed."""
+    for i in range(len(states)):
+        out[i] = array_value(problem, states[i]) if contains(domain, states[i]) else -math.inf

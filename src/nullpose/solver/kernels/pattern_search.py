@@ -1,16 +1,18 @@
-"""Poses of an antenna with a pattern: their ratios, and climbs among them."""
+"""Poses of an antenna with a pattern: their ratios, and the slopes of these."""
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from nullpose.solver.kernels.domain import contains
 from nullpose.solver.kernels.harmonics import gain_at
-from nullpose.solver.kernels.jit import inner_kernel, kernel
-from nullpose.solver.kernels.symmetric import copy_into, copy_table
+from nullpose.solver.kernels.jit import heap_kernel, inner_kernel, kernel
 from nullpose.solver.kernels.vectors import cross, dot, norm, row, scaled, unit
 
-_FIRST_STEP, _LONGEST_STEP, _LONGER, _SHORTER = 0.1, 0.5, 1.5, 0.91  # radians; a fifth of steps succeed
+_STEP = 1e-6  # of differences, radians
+_LEAST = -1e3  # logarithm that counts for a ratio of zero
 
 
 @kernel
@@ -45,15 +47,6 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
         out[k] = math.log(above / below) if above > 0.0 else -math.inf
         least = min(least, out[k])
     return least
-
-
-@kernel
-def judge(family, domain, pattern, positions, rotations, links, logs, out):
-    """Fill the smallest log ratio of many poses, (n, 3) and (n, 3, 3), minus infinity if not allowed."""
-    for i in range(positions.shape[0]):
-        out[i] = -math.inf
-        if contains(domain, positions[i]):
-            out[i] = fill_log_ratios(family, pattern, positions[i], rotations[i], links, logs)
 
 
 @inner_kernel
@@ -104,42 +97,49 @@ def bring_within_reach(reach, rotation):
         turned_by(rotation, x, y, z, rotation)
 
 
-@kernel
-def wander(family, domain, pattern, reach, noise, scale_m, position, rotation, links, logs, p, r):
-    """Climb by random steps, each kept if it is better and allowed; return the smallest log ratio there.
+@heap_kernel
+def judge(family, domain, pattern, states, out):
+    """Fill the smallest log ratio of many states, (n, 12), minus infinity where a position is not allowed."""
+    links, logs = np.empty(len(family.points_m)), np.empty(len(family.numerator_point))
+    for i in range(len(states)):
+        out[i] = -math.inf
+        if contains(domain, states[i]):
+            rotation = states[i, 3:].reshape(3, 3)
+            out[i] = fill_log_ratios(family, pattern, states[i], rotation, links, logs)
 
-    Steps grow where they succeed and shrink where they do not: ridges, of which a smallest ratio is full, do
-    not throw it off. The pose is changed in place.
+
+@kernel
+def move(reach, state, step, unit_m, position, rotation):
+    """Fill the position and the rotation that a step, (6,), leads to from a state, (12,)."""
+    for i in range(3):
+        position[i] = state[i] + unit_m * step[i]
+    turned_by(state[3:].reshape(3, 3), step[3], step[4], step[5], rotation)
+    bring_within_reach(reach, rotation)
+
+
+@heap_kernel
+def fill_slopes(family, pattern, reach, state, step, unit_m, logs, slopes):
+    """Fill the log ratios of a state moved by a step, none too small, and their slopes by differences.
 
     Args:
         family: the ratios.
-        domain: what is allowed of positions.
         pattern: the antenna's arrays.
         reach: which attitudes there are.
-        noise: (steps, 6) normal numbers.
-        scale_m: metres that count as much as a radian.
-        position: (3,) start and end.
-        rotation: (3, 3) likewise.
-        links: (m,) scratch.
-        logs: (ratios,) scratch.
-        p: (3,) scratch.
-        r: (3, 3) scratch.
+        state: (12,) position and rotation.
+        step: (6,) from there.
+        unit_m: metres of a step that count as much as a radian.
+        logs: output, (ratios,).
+        slopes: output, (ratios, 6).
     """
-    step = _FIRST_STEP
-    best = fill_log_ratios(family, pattern, position, rotation, links, logs)
-    for t in range(noise.shape[0]):
-        for i in range(3):
-            p[i] = min(max(position[i] + step * scale_m * noise[t, i], domain.low_m[i]), domain.high_m[i])
-        turned_by(rotation, step * noise[t, 3], step * noise[t, 4], step * noise[t, 5], r)
-        bring_within_reach(reach, r)
-        value = -math.inf
-        if contains(domain, p):
-            value = fill_log_ratios(family, pattern, p, r, links, logs)
-        if value > best:
-            best = value
-            copy_into(p, position)
-            copy_table(r, rotation)
-            step = min(_LONGEST_STEP, step * _LONGER)
-        else:
-            step *= _SHORTER
-    return best
+    links, near, p, r = np.empty(len(family.points_m)), step.copy(), np.empty(3), np.empty((3, 3))
+    for i in range(6):
+        for side in (-1.0, 1.0):
+            near[i] = step[i] + side * _STEP
+            move(reach, state, near, unit_m, p, r)
+            fill_log_ratios(family, pattern, p, r, links, logs)
+            for k in range(len(logs)):
+                before = 0.0 if side < 0.0 else slopes[k, i]
+                slopes[k, i] = before + side * max(logs[k], _LEAST) / (2.0 * _STEP)
+        near[i] = step[i]
+    move(reach, state, step, unit_m, p, r)
+    fill_log_ratios(family, pattern, p, r, links, logs)
