@@ -6,12 +6,7 @@ import pytest
 from nullpose.antenna import PatternAntenna
 from nullpose.antenna.half_wave import half_wave_harmonics
 from nullpose.antenna.harmonics import directions
-from nullpose.antenna.pattern import (
-    harmonics_of_rows,
-    normalised,
-    profile_harmonics,
-    table_harmonics,
-)
+from nullpose.antenna.pattern import harmonics_of_rows, normalised, profile_harmonics, table_harmonics
 from nullpose.antenna.table import PatternTable
 
 THETA, PHI = np.arange(0.0, 181.0), np.arange(0.0, 360.0)

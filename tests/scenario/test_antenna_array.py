@@ -2,8 +2,8 @@
 
 import pytest
 
-from nullpose.errors import ScenarioError
 from nullpose.scenario import Airframe, Array, Scenario
+from scenes import faults_of, require_fault, small
 
 GOOD = {"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5}
 
@@ -34,31 +34,13 @@ def test_values() -> None:
 )
 def test_faults(key: str, value: object, words: str) -> None:
     """Each number out of range, and each word that is no layout, is refused at its key."""
-    with pytest.raises(ScenarioError) as caught:
-        Array.from_dict(GOOD | {key: value})
-    (fault,) = caught.value.faults
-    assert fault.path == key
-    assert words in fault.message
-
-
-def scene(**tables: object) -> Scenario:
-    """Returns a scene with an array and other tables."""
-    return Scenario(
-        airspace={"altitude_m": [8, 30]},
-        receiver={"noise_w": 1e-3, "reference_gain_db": 0.0},
-        nodes=[{"position_m": [0, 0, 0], "power_w": 1}],
-        array=GOOD,
-        **tables,
-    )
+    require_fault(lambda: Array.from_dict(GOOD | {key: value}), key, words)
 
 
 def test_an_array_stands_upright() -> None:
     """An array goes with a level vehicle and an upright dipole only, which may be said."""
-    assert scene().array == Array(**GOOD)
-    assert scene(airframe=Airframe(preset="level")).airframe is not None
+    assert Scenario.from_dict(small(array=GOOD, airframe=Airframe(preset="level"))).array == Array(**GOOD)
     for airframe in (Airframe(tilt_max_deg=10), Airframe(preset="level", mount_deg=90)):
-        with pytest.raises(ScenarioError) as caught:
-            scene(airframe=airframe)
-        (fault,) = caught.value.faults
-        assert fault.path == "array"
-        assert "remove either table" in fault.message
+        faults = faults_of(small(array=GOOD, airframe=airframe))
+        assert list(faults) == ["array"]
+        assert "remove either table" in faults["array"]

@@ -139,8 +139,7 @@ def test_zones_of_a_file_are_added(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("mode", "key", "value"),
-    [("absolute", "alt_msl_m", 187.0), ("relativeToGround", "alt_agl_m", 2.0)],
+    ("mode", "key", "value"), [("absolute", "alt_msl_m", 187.0), ("relativeToGround", "alt_agl_m", 2.0)]
 )
 def test_nodes_from_kml(mode: str, key: str, value: float, tmp_path: Path) -> None:
     """KML states what its altitudes are over: the sea or the ground."""

@@ -4,118 +4,54 @@ from typing import Any
 
 import pytest
 
-from nullpose.errors import ScenarioError
 from nullpose.scenario import Eavesdropper, Node, Scenario, Transmitter
+from scenes import faults_of, small
 
-SINR: dict[str, Any] = {
-    "airspace": {"altitude_m": [8.0, 30.0]},
-    "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-    "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
-}
-SECRECY: dict[str, Any] = SINR | {
-    "objective": "secrecy-rate",
-    "transmitter": {"power_w": 1.0},
-    "nodes": [{"position_m": [0.0, 0.0, 0.0]}],
-    "eavesdroppers": [{"position_m": [17.0, 15.0, 4.0]}],
-}
-
-
-def faults_of(data: dict[str, Any]) -> dict[str, str]:
-    """Returns the messages, by path, with which a scenario is refused."""
-    with pytest.raises(ScenarioError) as caught:
-        Scenario.from_dict(data)
-    assert len({fault.path for fault in caught.value.faults}) == len(caught.value.faults)
-    return {fault.path: fault.message for fault in caught.value.faults}
-
-
-@pytest.mark.parametrize(
-    ("changes", "faults"),
-    [
-        ({"eavesdroppers": None}, {"eavesdroppers": "headed [[eavesdroppers]]; add it"}),
-        (
-            {"transmitter": None, "eavesdroppers": None},
-            {"transmitter": "missing", "eavesdroppers": "missing"},
-        ),
-        (
-            {"eavesdroppers": None, "eavesdropers": [{"position_m": [1, 2, 3]}]},
-            {"eavesdropers": 'did you mean "eavesdroppers"?'},
-        ),
-        (
-            {"nodes": [{"position_m": [0, 0, 0], "weight": 2}, {"position_m": [9, 0, 0], "min_sinr_db": 2}]},
-            {
-                "nodes[0].weight": "has no meaning with",
-                "nodes[1].min_sinr_db": 'write objective = "min-sinr"',
-            },
-        ),
-        (
-            {"nodes": [{"position_m": [0, 0, 0], "noise_w": 1, "jamming_w": 1, "jamming_dbm": 1}]},
-            {"nodes[0]": "both jamming_w and jamming_dbm are given, at most one"},
-        ),
-        (
-            {"eavesdroppers": [{"position_m": [1, 2, 3], "power_w": 1}]},
-            {"eavesdroppers[0].power_w": "unknown key"},
-        ),
-        (
-            {"eavesdroppers": [{"position_m": [1, 2, 3], "noise_w": 1, "noise_dbm": 1}]},
-            {"eavesdroppers[0]": "both noise_w and noise_dbm are given, at most one"},
-        ),
-        (
-            {"eavesdroppers": [{"position_m": [0, 0, 0]}]},
-            {"eavesdroppers[0].position_m": "nodes and eavesdroppers must be at different places"},
-        ),
-        (
-            {"eavesdroppers": [{"position_m": [1, 1, 1], "name": "S1"}]},
-            {"eavesdroppers[0].name": "the name of nodes[0] already"},
-        ),
-        ({"objective": "secrecy"}, {"objective": 'did you mean "secrecy-rate"?'}),
-        ({"objective": ["secrecy-rate"]}, {"objective": "a list of one value"}),
-    ],
-)
-def test_secrecy(changes: dict[str, Any], faults: dict[str, str]) -> None:
-    """With the secrecy rate, eavesdroppers and a transmitter are needed, and SINRs have no meaning."""
-    data = {key: value for key, value in (SECRECY | changes).items() if value is not None}
-    messages = faults_of(data)
-    assert messages.keys() == faults.keys()
-    for path, words in faults.items():
-        assert words in messages[path]
+AT = {"position_m": [0.0, 0.0, 0.0]}
+THERE = {"position_m": [17.0, 15.0, 4.0]}
+SECRECY = small(objective="secrecy-rate", transmitter={"power_w": 1.0}, nodes=[AT], eavesdroppers=[THERE])
+SECRECY_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
+    ({"eavesdroppers": None}, {"eavesdroppers": "headed [[eavesdroppers]]; add it"}),
+    ({"transmitter": None}, {"transmitter": "missing"}),
+    ({"eavesdroppers": None, "eavesdropers": [THERE]}, {"eavesdropers": 'did you mean "eavesdroppers"?'}),
+    ({"nodes": [AT | {"weight": 2}]}, {"nodes[0].weight": "has no meaning with"}),
+    ({"nodes": [AT | {"min_sinr_db": 2}]}, {"nodes[0].min_sinr_db": 'write objective = "min-sinr"'}),
+    ({"nodes": [AT | {"jamming_w": 1, "jamming_dbm": 1}]}, {"nodes[0]": "both jamming_w and"}),
+    ({"eavesdroppers": [THERE | {"power_w": 1}]}, {"eavesdroppers[0].power_w": "unknown key"}),
+    ({"eavesdroppers": [THERE | {"noise_w": 1, "noise_dbm": 1}]}, {"eavesdroppers[0]": "at most one"}),
+    ({"eavesdroppers": [AT]}, {"eavesdroppers[0].position_m": "must be at different places"}),
+    ({"eavesdroppers": [THERE | {"name": "S1"}]}, {"eavesdroppers[0].name": "the name of nodes[0] already"}),
+    ({"objective": "secrecy"}, {"objective": 'did you mean "secrecy-rate"?'}),
+    ({"objective": ["secrecy-rate"]}, {"objective": "a list of one value"}),
+]
+SINR_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
+    ({"eavesdroppers": [THERE]}, {"eavesdroppers": 'remove it, or write objective = "secrecy-rate"'}),
+    ({"eavesdroppers": (Eavesdropper(**THERE),)}, {"eavesdroppers": "no meaning"}),
+    ({"transmitter": Transmitter(power_w=1)}, {"transmitter": 'write objective = "secrecy-rate"'}),
+    ({"nodes": [AT | {"power_w": 1, "noise_w": 1}]}, {"nodes[0].noise_w": "no meaning"}),
+    (
+        {"nodes": [Node(**AT, noise_dbm=1.0)]},
+        {"nodes[0]": "power_w or power_dbm", "nodes[0].noise_dbm": "no meaning"},
+    ),
+    ({"nodes": [AT | {"power_w": 1, "weight": 1, "min_sinr_db": 1}]}, {"nodes[0]": "both weight and min"}),
+    ({"nodes": [AT]}, {"nodes[0]": "needs power_w or power_dbm; add it"}),
+]
 
 
 @pytest.mark.parametrize(
-    ("changes", "faults"),
+    ("data", "faults"),
     [
-        (
-            {"eavesdroppers": SECRECY["eavesdroppers"]},
-            {"eavesdroppers": 'remove it, or write objective = "secrecy-rate"'},
-        ),
-        (
-            {"eavesdroppers": (Eavesdropper(position_m=(1, 2, 3)),), "transmitter": Transmitter(power_w=1)},
-            {"eavesdroppers": "no meaning", "transmitter": 'write objective = "secrecy-rate"'},
-        ),
-        (
-            {"nodes": [{"position_m": [0, 0, 0], "power_w": 1, "noise_w": 1, "jamming_dbm": 1}]},
-            {"nodes[0].noise_w": "no meaning", "nodes[0].jamming_dbm": "remove it"},
-        ),
-        (
-            {"nodes": [Node(position_m=(0, 0, 0), noise_dbm=1.0)]},
-            {"nodes[0]": "power_w or power_dbm", "nodes[0].noise_dbm": "no meaning"},
-        ),
-        (
-            {"nodes": [{"position_m": [0, 0, 0], "power_w": 1, "weight": 1, "min_sinr_db": 1}]},
-            {"nodes[0]": "both weight and min_sinr_db are given, at most one is allowed"},
-        ),
-        (
-            {"nodes": [{"position_m": [0, 0, 0], "power_w": 1, "min_sinr_db": float("nan")}]},
-            {"nodes[0].min_sinr_db": "got NaN, must be a ratio in dB"},
-        ),
-        ({"nodes": [{"position_m": [0, 0, 0]}]}, {"nodes[0]": "needs power_w or power_dbm; add it"}),
+        *((SECRECY | changes, faults) for changes, faults in SECRECY_CASES),
+        *((small(**changes), faults) for changes, faults in SINR_CASES),
     ],
 )
-def test_sinr(changes: dict[str, Any], faults: dict[str, str]) -> None:
-    """With the SINR, what belongs to the downlink has no place, and every node needs a power."""
-    messages = faults_of(SINR | changes)
+def test_what_an_objective_needs_and_what_has_no_meaning(
+    data: dict[str, Any], faults: dict[str, str]
+) -> None:
+    """Eavesdroppers, a transmitter and noise of nodes belong to the secrecy rate, weights to the SINR."""
+    messages = faults_of({key: value for key, value in data.items() if value is not None})
     assert messages.keys() == faults.keys()
-    for path, words in faults.items():
-        assert words in messages[path]
+    assert all(words in messages[path] for path, words in faults.items())
 
 
 def test_a_jammer_may_listen() -> None:

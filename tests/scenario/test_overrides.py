@@ -5,15 +5,7 @@ from pathlib import Path
 import pytest
 
 from nullpose.errors import ScenarioError
-from nullpose.scenario import (
-    Airframe,
-    NoFlyZone,
-    Override,
-    Scenario,
-    apply_overrides,
-    load,
-    parse_override,
-)
+from nullpose.scenario import Airframe, NoFlyZone, Override, Scenario, apply_overrides, load, parse_override
 
 PAPER = load(Path(__file__).parents[2] / "examples" / "paper.toml")
 

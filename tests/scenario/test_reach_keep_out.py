@@ -67,17 +67,3 @@ def test_agrees_with_sampling(
         assert room
     elif clearance < -spacing:
         assert not room
-
-
-@given(st.integers(0, 2**32 - 1))
-def test_hole_between_random_balls(seed: int) -> None:
-    """A position kept free by moving every ball away from it is found, and lost when a ball is put there."""
-    generator = np.random.default_rng(seed)
-    hole = generator.uniform(0.2, 0.8, size=3)
-    directions = generator.normal(size=(40, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    centres = hole + 1.01 * directions  # the hole is 0.01 from each ball, and little else of the box is free
-    assert has_room(*UNIT, centres, 1.0)
-    grid = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    if (np.linalg.norm(grid[:, None] - centres, axis=-1).min(axis=1) < 0.8).all():
-        assert not has_room(*UNIT, np.vstack([centres, hole]), 1.0)

@@ -14,10 +14,7 @@ def scene(**tables: Any) -> Scenario:
         **{
             "airspace": {"altitude_m": [8.0, 30.0]},
             "receiver": {"noise_dbm": 0.0, "reference_gain_db": 10.0},
-            "nodes": [
-                Node(position_m=(0, 0, 0), power_w=1),
-                Node(position_m=(0, 50, 0), power_w=1),
-            ],
+            "nodes": [Node(position_m=(0, 0, 0), power_w=1), Node(position_m=(0, 50, 0), power_w=1)],
         }
         | tables
     )

@@ -120,11 +120,3 @@ def test_examples_round_trip(example: Path, tmp_path: Path) -> None:
     scenario = load(example)
     (tmp_path / "copy.toml").write_text(scenario.to_toml(), encoding="utf-8")
     assert load(tmp_path / "copy.toml") == scenario
-
-
-def test_only_what_was_stated_is_written() -> None:
-    """Keys left out stay out of the dictionary; defaults that matter are stated."""
-    data = load(EXAMPLES / "paper.toml").to_dict()
-    assert data["airspace"] == {"altitude_m": [8.0, 30.0], "keep_out_m": 1.0}
-    assert data["receiver"] == {"noise_w": 1e-3, "reference_gain_db": 0.0}
-    assert data["jammers"] == [{"name": "M", "position_m": [17.0, 15.0, 4.0], "power_w": 1.0}]

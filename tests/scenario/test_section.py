@@ -31,12 +31,6 @@ def test_each_table_refuses_faults_by_itself(
         assert [fault.path for fault in caught.value.faults] == [path]
 
 
-def test_either_stated_power_is_in_watts() -> None:
-    """The transmit power is in W whichever unit was stated."""
-    assert Node(position_m=(0, 0, 0), power_w=2).transmit_power_w == 2.0
-    assert Node(position_m=(0, 0, 0), power_dbm=33).transmit_power_w == pytest.approx(1.9952623, rel=1e-7)
-
-
 def test_import_is_lean() -> None:
     """Scenarios bring in no solver, no plots and no command line; places on the Earth alone their library."""
     code = (

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.errors import ScenarioError
 from nullpose.physics import rotation_world_from_body
 from nullpose.scenario import Eavesdropper, Jammer
+from scenes import require_fault
 
 KINDS = [
     lambda **values: Jammer(name="M", position_m=(1.0, 2.0, 3.0), power_w=1.0, **values),
     lambda **values: Eavesdropper(name="E", position_m=(1.0, 2.0, 3.0), **values),
 ]
+ELLIPSOID = {"uncertainty_m": [1, 2, 3]}
 angles = st.floats(-360.0, 360.0)
 axes = st.floats(0.0, 100.0)
 
@@ -49,22 +50,10 @@ def test_an_ellipsoid_turns_as_a_body_does(
         ({"uncertainty_m": [1.0, 2.0]}, "uncertainty_m", "got a list of 2 values"),
         ({"uncertainty_m": [1.0, -2.0, 3.0]}, "uncertainty_m[1]", "got -2.0"),
         ({"uncertainty_attitude_deg": [0, 0, 0]}, "uncertainty_attitude_deg", "without three semi-axes"),
-        (
-            {"uncertainty_m": [1, 2, 3], "uncertainty_attitude_deg": [0, 400, 0]},
-            "uncertainty_attitude_deg[1]",
-            "from -360 to 360",
-        ),
-        (
-            {"uncertainty_m": [1, 2, 3], "uncertainty_attitude_deg": 30.0},
-            "uncertainty_attitude_deg",
-            "three angles in degrees [roll, pitch, yaw]",
-        ),
+        (ELLIPSOID | {"uncertainty_attitude_deg": [0, 400, 0]}, "uncertainty_attitude_deg[1]", "from -360"),
+        (ELLIPSOID | {"uncertainty_attitude_deg": 30.0}, "uncertainty_attitude_deg", "[roll, pitch, yaw]"),
     ],
 )
 def test_faults(kind: object, values: dict[str, object], path: str, words: str) -> None:
     """Each fault is reported once, at its place, for jammers and eavesdroppers alike."""
-    with pytest.raises(ScenarioError) as caught:
-        kind(**values)
-    (fault,) = caught.value.faults
-    assert fault.path == path
-    assert words in fault.message
+    require_fault(lambda: kind(**values), path, words)

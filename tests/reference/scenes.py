@@ -1,0 +1,41 @@
+"""The smallest scenario as plain data, and the faults of others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from nullpose.errors import ScenarioError
+from nullpose.scenario import Scenario
+
+NODE: dict[str, Any] = {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}
+
+
+def small(**tables: Any) -> dict[str, Any]:
+    """Return a scenario of one node with these tables too; None takes one away."""
+    data = {
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "nodes": [NODE],
+    }
+    return {key: value for key, value in (data | tables).items() if value is not None}
+
+
+def faults_of(data: dict[str, Any]) -> dict[str, str]:
+    """Return the messages, by path, with which a scenario is refused; none of a sound one."""
+    try:
+        Scenario.from_dict(data)
+    except ScenarioError as error:
+        return {fault.path: fault.message for fault in error.faults}
+    return {}
+
+
+def require_fault(make: Callable[[], object], path: str, words: str) -> None:
+    """Check that there is one fault, at this path and in these words."""
+    with pytest.raises(ScenarioError) as caught:
+        make()
+    (fault,) = caught.value.faults
+    assert fault.path == path
+    assert words in fault.message
