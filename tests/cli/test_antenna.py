@@ -51,6 +51,11 @@ def test_the_figure(run: Run, tmp_path: Path) -> None:
     assert result.stdout.endswith(f"Wrote {figure}\n")
     told = json.loads(run("antenna", HALF, "--figure", figure, "--json").stdout)
     assert told["files"] == [str(figure)]
+    pattern = tmp_path / "pattern.svg"
+    pattern.write_bytes(HALF.read_bytes())
+    refused = run("antenna", pattern, "--figure", pattern)
+    assert (refused.exit_code, pattern.read_bytes()) == (2, HALF.read_bytes())
+    assert "is the file of the pattern too" in refused.stderr
 
 
 def test_faults_are_one_message(run: Run, tmp_path: Path) -> None:
@@ -68,23 +73,12 @@ def test_faults_are_one_message(run: Run, tmp_path: Path) -> None:
 
 
 def test_a_comparison_is_a_table_and_an_answer(run: Run, paper: str) -> None:
-    """What is promised, received and possible, and the answer in a sentence at the end."""
-    result = run("antenna", "compare", paper.replace("paper", "whips"))
-    assert result.exit_code == 0
-    for words in (
-        "1 the paper's",
-        "2 stated, pose 1",
-        "3 stated",
-    ):
-        assert words in result.stdout
-    assert "24.11 dB less" in result.stdout
-
-
-def test_json_of_a_comparison(run: Run, paper: str) -> None:
-    """One object with the values, both solutions and the answer."""
-    result = run("antenna", "compare", paper.replace("paper", "whips"), "--fast", "--json")
-    assert result.exit_code == 0
-    data = json.loads(result.stdout)
+    """What is promised, received and possible, and the answer in a sentence at the end; all in JSON too."""
+    whips = paper.replace("paper", "whips")
+    shown = run("antenna", "compare", whips).stdout
+    for words in ("1 the paper's", "2 stated, pose 1", "3 stated", "24.11 dB less"):
+        assert words in shown
+    data = json.loads(run("antenna", "compare", whips, "--fast", "--json").stdout)
     values = {row["case"]: row["min_sinr"] for row in data["rows"]}
     assert {"scenario", "rows", "provenance", "answer"} <= set(data)
     assert values["received"] < values["possible"]

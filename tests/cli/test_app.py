@@ -29,7 +29,8 @@ VERBS = {
 
 
 def test_help_lists_every_verb(run: Run) -> None:
-    """The program's help names each verb and the exit codes."""
+    """The program's help names each verb and the exit codes, asked for or not."""
+    assert "Usage: nullpose" in run().output
     result = run("--help")
     assert result.exit_code == 0
     assert all(f" {verb} " in result.stdout for verb in VERBS)
@@ -70,11 +71,7 @@ def test_version(process: Process) -> None:
     """`--version` prints one line."""
     done = process("--version")
     assert (done.returncode, done.stdout, done.stderr) == (0, f"nullpose {__version__}\n", "")
-
-
-def test_no_arguments_shows_help(run: Run) -> None:
-    """Called with nothing, the program explains itself."""
-    assert "Usage: nullpose" in run().output
+    assert "--install-completion" in process("--help").stdout
 
 
 @pytest.mark.parametrize("width", ["60", "80", "200"])
@@ -85,8 +82,3 @@ def test_help_keeps_words_whole(run: Run, width: str, monkeypatch: pytest.Monkey
     for name in Scheme:
         assert any(line.split()[:1] == [name.value] for line in lines)
     assert "what [origin] states" in " ".join(run("evaluate", "--help").stdout.split())
-
-
-def test_the_shell_completes(process: Process) -> None:
-    """The shell is told how to complete verbs and options."""
-    assert "--install-completion" in process("--help").stdout

@@ -4,6 +4,7 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from matplotlib.image import imread
@@ -58,24 +59,32 @@ def test_a_case_that_does_not_apply_says_why(run: Run, tmp_path: Path, paper: st
 
 
 def test_vehicles_are_a_table_and_an_answer(run: Run, paper: str) -> None:
-    """Every vehicle has a row, and the answer says which suffices."""
-    result = run("compare", paper, "--airframes", "--set", "jammers.M.power_w=100")
+    """Every vehicle has a row, and the answer says which suffices; all in JSON too."""
+    result = run("compare", paper, "--airframes", "--fast", "--set", "jammers.M.power_w=100")
     assert result.exit_code == 0
     for words in ("level, vertical", "tilt 10, horizontal", "omnidirectional", "array of 8, digital"):
         assert words in result.stdout
     answer = "A 10 degree tilt with a horizontal dipole reaches 0.03 dB less than the omnidirectional"
     assert any(line.startswith(answer) for line in result.stdout.splitlines())
-
-
-def test_json_of_vehicles(run: Run, paper: str) -> None:
-    """One object with the vehicles, their shares and the answer."""
-    result = run("compare", paper, "--airframes", "--fast", "--json")
-    assert result.exit_code == 0
-    data = json.loads(result.stdout)
+    data = json.loads(run("compare", paper, "--airframes", "--fast", "--json").stdout)
     assert {"scenario", "rows", "left_out", "tolerance", "least_sufficient", "answer"} <= set(data)
-    assert len(data["rows"]) == 8
-    assert data["least_sufficient"] == "tilt-10"
+    assert (len(data["rows"]), data["least_sufficient"]) == (8, "tilt-10")
     assert "10 degree tilt" in data["answer"][0]
+
+
+@pytest.mark.parametrize("vehicles", [(), ("--airframes",)])
+def test_limits_reach_each_case(run: Run, paper: str, vehicles: tuple[str, ...]) -> None:
+    """The gap, the number of boxes and a search alone hold for every row."""
+
+    def rows(*options: str) -> list[dict[str, Any]]:
+        found = json.loads(run("compare", paper, *vehicles, *options, "--json").stdout)["rows"]
+        return [row for row in found if "array" not in row]
+
+    wide = rows("--gap", "0.5")
+    assert {row["status"] for row in wide} == {"certified"}
+    assert max(row["relative_gap"] for row in wide) > 1e-3
+    assert max(row["stats"]["boxes"] for row in rows("--node-limit", "1")) <= 64
+    assert {(row["status"], row["upper_bound"]) for row in rows("--fast")} == {("best-found", None)}
 
 
 def test_figure_of_vehicles(run: Run, paper: str, tmp_path: Path) -> None:

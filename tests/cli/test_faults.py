@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -19,52 +20,11 @@ from nullpose.errors import SolveError
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
 
-GOOD = """\
-[airspace]
-altitude_m = [8.0, 30.0]
-keep_out_m = 1.0
-[receiver]
-noise_w = 1e-3
-reference_gain_db = 0.0
-[[nodes]]
-name = "S1"
-position_m = [0.0, 0.0, 0.0]
-power_w = 1.0
-[[nodes]]
-name = "S2"
-position_m = [0.0, 50.0, 0.0]
-power_w = 1.0
-[[jammers]]
-name = "M"
-position_m = [17.0, 15.0, 4.0]
-power_w = 1.0
-"""
-NODES = GOOD[GOOD.index("[[nodes]]") : GOOD.index("[[jammers]]")]
-
-BAD_FILES = {
-    "broken TOML": ("altitude_m = [8.0, 30.0]", "altitude_m = [8.0, 30.0", ["line 3", "column"]),
-    "unknown key": ("altitude_m", "altitud_m", ["airspace.altitud_m", "unknown key", "altitude_m"]),
-    "NaN": ("noise_w = 1e-3", "noise_w = nan", ["receiver.noise_w", "NaN"]),
-    "both of a pair": (
-        "noise_w = 1e-3",
-        "noise_w = 1e-3\nnoise_dbm = 0.0",
-        ["receiver", "noise_w", "noise_dbm"],
-    ),
-    "no nodes": (NODES, "", ["nodes", "[[nodes]]"]),
-    "no room": (
-        "altitude_m = [8.0, 30.0]\nkeep_out_m = 1.0",
-        "altitude_m = [1.0, 2.0]\nx_m = [-1.0, 1.0]\ny_m = [-1.0, 1.0]\nkeep_out_m = 40.0",
-        ["airspace", "keep_out_m"],
-    ),
-}
-
 
 @pytest.fixture
-def good(tmp_path: Path) -> Path:
-    """A scenario file without faults."""
-    path = tmp_path / "good.toml"
-    path.write_text(GOOD, encoding="utf-8")
-    return path
+def good(paper: str, tmp_path: Path) -> Path:
+    """A scenario file without faults, in a folder of its own."""
+    return Path(shutil.copy(paper, tmp_path / "good.toml"))
 
 
 def assert_refused(result: Result | subprocess.CompletedProcess[str], *words: str) -> None:
@@ -76,23 +36,15 @@ def assert_refused(result: Result | subprocess.CompletedProcess[str], *words: st
     assert [word for word in words if word not in result.stderr] == [], result.stderr
 
 
-@pytest.mark.parametrize("kind", BAD_FILES)
-def test_bad_file(run: Run, tmp_path: Path, kind: str) -> None:
-    """Each kind of fault is told with its place and what was given."""
-    old, new, words = BAD_FILES[kind]
-    assert GOOD.count(old) == 1
-    path = tmp_path / "bad.toml"
-    path.write_text(GOOD.replace(old, new), encoding="utf-8")
-    assert_refused(run("solve", path), f"error: {path}: 1 fault", *words)
-
-
-def test_all_faults_at_once(run: Run, tmp_path: Path) -> None:
-    """A file with three faults gets three messages."""
-    path = tmp_path / "bad.toml"
-    text = GOOD.replace("[8.0, 30.0]", "[30.0, 8.0]").replace("noise_w = 1e-3", "noise_w = -1.0")
-    path.write_text(text.replace('"S2"', '"S1"'), encoding="utf-8")
-    words = ("3 faults", "airspace.altitude_m", "receiver.noise_w", "nodes[1].name")
-    assert_refused(run("compare", path), *words)
+def test_all_faults_at_once(run: Run, good: Path) -> None:
+    """Three faults are three messages, each with its place; broken TOML has a line and a column."""
+    text = good.read_text(encoding="utf-8")
+    bad = text.replace("[8.0, 30.0]", "[30.0, 8.0]").replace("noise_w = 1e-3", "noise_w = nan")
+    good.write_text(bad.replace('"S2"', '"S1"'), encoding="utf-8")
+    words = ("3 faults", "airspace.altitude_m", "receiver.noise_w: got NaN", "nodes[1].name")
+    assert_refused(run("compare", good), f"error: {good}: ", *words)
+    good.write_text(text.replace("[8.0, 30.0]", "[8.0, 30.0"), encoding="utf-8")
+    assert_refused(run("solve", good), f"error: {good}: 1 fault", "line ", "column")
 
 
 def test_unreadable_file(run: Run, tmp_path: Path) -> None:
@@ -153,15 +105,6 @@ def test_bad_limit(
     assert not out.exists()
 
 
-def test_not_exactly_one_path_to_vary(run: Run, good: Path, tmp_path: Path) -> None:
-    """A sweep needs one path without a value."""
-    arguments = ("--from", 1, "--to", 2, "--out", tmp_path / "out")
-    for settings in (["jammers.M.power_w=1"], ["jammers.M.power_w", "nodes.S1.power_w"]):
-        options = [option for setting in settings for option in ("--set", setting)]
-        assert_refused(run("sweep", good, *options, *arguments), "--set", "exactly one path")
-    assert not (tmp_path / "out").exists()
-
-
 @pytest.mark.parametrize("inside", [False, True])
 def test_output_folder_that_cannot_be_written(
     run: Run, good: Path, inside: bool, monkeypatch: pytest.MonkeyPatch
@@ -172,7 +115,7 @@ def test_output_folder_that_cannot_be_written(
     arguments = ("--from", 1, "--to", 2, "--out", out)
     assert_refused(run("sweep", good, "--set", "jammers.M.power_w", *arguments), "cannot write", str(out))
     assert_refused(run("reproduce", "--out", out), "cannot write", str(out))
-    assert good.read_text(encoding="utf-8") == GOOD
+    assert good.is_file()
 
 
 def _raising(error: BaseException) -> object:
@@ -224,20 +167,9 @@ def test_internal_fault_asks_for_a_report(run: Run, good: Path, monkeypatch: pyt
 
 def test_interrupt_of_the_real_program(good: Path, tmp_path: Path) -> None:
     """Ctrl-C in the middle of a sweep ends it with a short line and code 130."""
-    arguments = [
-        "sweep",
-        str(good),
-        "--set",
-        "jammers.M.power_w",
-        "--from",
-        "1",
-        "--to",
-        "2",
-        "--points",
-        "2000",
-    ]
+    power = ("--set", "jammers.M.power_w", "--from", "1", "--to", "2", "--points", "2000")
     program = subprocess.Popen(
-        [sys.executable, "-m", "nullpose", *arguments, "--out", str(tmp_path / "out")],
+        [sys.executable, "-m", "nullpose", "sweep", str(good), *power, "--out", str(tmp_path / "out")],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -254,7 +186,7 @@ def test_interrupt_of_the_real_program(good: Path, tmp_path: Path) -> None:
     assert "Traceback" not in stderr
 
 
-@pytest.mark.parametrize("arguments", [["schema"], ["check", "FILE"], ["check", "FILE", "--json"]])
+@pytest.mark.parametrize("arguments", [["schema"], ["check", "FILE"]])
 def test_reader_that_goes_away(good: Path, arguments: list[str]) -> None:
     """A closed pipe ends the program without a word."""
     words = [str(good) if argument == "FILE" else argument for argument in arguments]

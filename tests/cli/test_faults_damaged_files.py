@@ -26,35 +26,9 @@ CSV = b"name,x_m,y_m,z_m,power_dbm,weight\na,1.0,2.0,3.0,20,\nb,-40,20.5,0,17,2\
 PROOF = b'{"format": "nullpose-certificate", "x": '
 WORD = re.compile(rb"[\w.+-]+|\"[^\"\n]*\"")
 VALUES = (
-    b"0",
-    b"-1",
-    b"1e308",
-    b"1e-320",
-    b"1e999",
-    b"nan",
-    b"-Infinity",
-    b"9223372036854775808",
-    b"9" * 5000,
-)
-VALUES += (
-    b"true",
-    b"null",
-    b"2020-01-01",
-    b'""',
-    b'"text"',
-    b'"\\u0000"',
-    b'"' + b"x" * 20_000 + b'"',
-    b"[]",
-)
-VALUES += (
-    b"{}",
-    b"[1, 2]",
-    b'{"a": 1}',
-    b"[" * 100_000,
-    b"\x00",
-    b"\xff\xfe",
-    b'"/etc/passwd"',
-    b'"../x.csv"',
+    *(b"0", b"-1", b"1e308", b"1e-320", b"1e999", b"nan", b"-Infinity", b"9223372036854775808", b"9" * 5000),
+    *(b"true", b"null", b"2020-01-01", b'""', b'"text"', b'"\\u0000"', b'"' + b"x" * 20_000 + b'"', b"[]"),
+    *(b"{}", b"[1, 2]", b'{"a": 1}', b"[" * 100_000, b"\x00", b"\xff\xfe", b'"/etc/passwd"', b'"../x.csv"'),
 )
 
 

@@ -1,8 +1,8 @@
 """Ten traps of a first hour: each ends with a message that says what is wrong and what to do about it."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import Result
@@ -58,47 +58,29 @@ def refused(result: Result, *words: str) -> str:
     return result.stderr
 
 
-def test_a_fence_in_degrees(run: Run, tmp_path: Path) -> None:
-    """Degrees where metres are asked for give a fence of millimetres: one fault, with the key for degrees."""
-    fence = "geofence_m = [[14.499, 49.999], [14.504, 49.999], [14.504, 50.003], [14.499, 50.003]]"
-    told = refused(
-        run("check", scene(tmp_path, fence=fence)),
-        "1 fault",
-        "airspace.geofence_m: it is 0.005 m by 0.004 m, but the ground points are",
-        "this looks like degrees or another unit; write geofence_lat_lon_deg = [[latitude, longitude], ...]",
-    )
+FENCE = "geofence_m = [[14.499, 49.999], [14.504, 49.999], [14.504, 50.003], [14.499, 50.003]]"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"fence": FENCE}, ["airspace.geofence_m: it is 0.005 m by 0.004 m", "write geofence_lat_lon_deg ="]),
+        ({"origin": "alt_msl_m = 185.0"}, ["nodes[0].alt_m: ", "(and so in 2 more)", "add alt_m to [origin"]),
+        ({"swap": True}, ["nodes[0]: lat_deg and lon_deg are", "are latitude and longitude exchanged?"]),
+    ],
+    ids=["fence in degrees", "heights over another zero", "latitude and longitude exchanged"],
+)
+def test_a_scene_on_the_earth(run: Run, tmp_path: Path, changes: dict[str, Any], words: list[str]) -> None:
+    """What is wrong in every point is said once, with what is meant."""
+    told = refused(run("check", scene(tmp_path, **changes)), "1 fault", *words)
     assert len(told.splitlines()) == 2
 
 
-def test_heights_over_the_ellipsoid_and_over_the_sea(run: Run, tmp_path: Path) -> None:
-    """An altitude over what the origin does not tell is refused once; told as the same it earns a warning."""
-    path = scene(tmp_path, origin="alt_msl_m = 185.0")
-    told = refused(
-        run("check", path),
-        "nodes[0].alt_m: an altitude over the ellipsoid, but [origin] states only alt_msl_m, over the sea "
-        "(and so in 2 more)",
-        "add alt_m to [origin]",
-    )
-    assert len(told.splitlines()) == 2
+def test_heights_that_look_wrong(run: Run, tmp_path: Path) -> None:
+    """Heights that are all far above the origin earn a warning."""
     result = run("check", scene(tmp_path, origin="alt_m = 185.0"))
     assert result.exit_code == 0
-    assert (
-        "warning: nodes[0]: this and all other points in alt_m lie 46 m or more above the origin"
-        in result.stderr
-    )
-    assert "alt_msl_m for altitudes over the sea, alt_agl_m for those above the ground" in result.stderr
-
-
-def test_latitude_and_longitude_exchanged(run: Run, tmp_path: Path) -> None:
-    """Exchanged in every point, it is said once."""
-    told = refused(
-        run("check", scene(tmp_path, swap=True)),
-        "1 fault",
-        "nodes[0]: lat_deg and lon_deg are",
-        "km from the origin, must be within 100 km (and so in 2 more); is a sign lost, or are latitude and "
-        "longitude exchanged?",
-    )
-    assert len(told.splitlines()) == 2
+    assert "warning: nodes[0]: this and all other points in alt_m lie 46 m or more" in result.stderr
 
 
 @pytest.mark.parametrize("verb", ["solve", "compare"])
@@ -158,36 +140,19 @@ def test_points_in_degrees_as_metres(run: Run, paper: str) -> None:
     assert run("check", paper, *origin).stderr == ""
 
 
-def _fence(east_m: float, north_m: float) -> str:
-    """Return the setting of a rectangular fence by its sides."""
-    corners = [[2.0, 20.0], [2.0 + east_m, 20.0], [2.0 + east_m, 20.0 + north_m], [2.0, 20.0 + north_m]]
-    return f"airspace.geofence_m={corners}"
-
-
 @pytest.mark.parametrize(
-    ("settings", "why"),
+    ("sides_m", "settings", "why"),
     [
-        ((_fence(0.01, 0.005),), "it is 0.01 m by 0.005 m, but the ground points are 50 m apart"),
-        ((_fence(0.4, 0.1),), "so it must be 0.5 m or more across"),
-        (
-            ("airspace.keep_out_m=200", "airspace.altitude_m=[8, 400]", _fence(1.5, 1.5)),
-            "but keep_out_m is 200 m",
-        ),
+        ((0.01, 0.005), (), "it is 0.01 m by 0.005 m, but the ground points are 50 m apart"),
+        ((0.4, 0.1), (), "so it must be 0.5 m or more across"),
+        ((1.5, 1.5), ("airspace.keep_out_m=200", "airspace.altitude_m=[8, 400]"), "but keep_out_m is 200 m"),
     ],
 )
-def test_a_fence_in_another_unit(run: Run, paper: str, settings: tuple[str, ...], why: str) -> None:
-    """A fence a hundred times smaller than the spread of the points or the keep-out radius is refused."""
-    options = [word for setting in settings for word in ("--set", setting)]
-    refused(run("check", paper, *options), "airspace.geofence_m: ", why, "or the corners in metres")
-
-
-def test_a_study_without_its_extra(
-    run: Run, paper: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_fence_in_another_unit(
+    run: Run, paper: str, sides_m: tuple[float, float], settings: tuple[str, ...], why: str
 ) -> None:
-    """The message has the command that installs it for the interpreter that runs."""
-    monkeypatch.setattr("nullpose.study.monte_carlo.folder.find_spec", lambda name: None)
-    refused(
-        run("study", "run", paper, "--out", tmp_path / "out"),
-        "a study needs pyarrow",
-        f"{sys.executable} -m pip install 'nullpose[study]'",
-    )
+    """A fence a hundred times smaller than the spread of the points or the keep-out radius is refused."""
+    east, north = 2.0 + sides_m[0], 20.0 + sides_m[1]
+    fence = f"airspace.geofence_m=[[2.0, 20.0], [{east}, 20.0], [{east}, {north}], [2.0, {north}]]"
+    options = [word for setting in (*settings, fence) for word in ("--set", setting)]
+    refused(run("check", paper, *options), "airspace.geofence_m: ", why, "or the corners in metres")

@@ -15,7 +15,6 @@ from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.progress import GapBar
 
 Run = Callable[..., Result]
-Process = Callable[..., subprocess.CompletedProcess[str]]
 
 _LEEWAY = 2.0  # other tests run beside this one; `make bench` measures in earnest
 
@@ -27,23 +26,15 @@ def _solve_json(run: Run, *arguments: object) -> dict[str, object]:
 
 
 def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
-    """The object's keys are the contract's, in its order."""
-    answer = _solve_json(run, paper)
-    assert list(answer) == [
-        "scenario",
-        "scheme",
-        "status",
-        "reason",
-        "rigour",
-        "objective",
-        "pose",
-        "links",
-        "binding_node",
-        "stats",
-        "provenance",
-        "note",
-        "sensitivity",
-    ]
+    """The object's keys are the contract's, in its order; no number is a NaN or an infinity."""
+
+    def refuse(name: str) -> float:
+        raise AssertionError(name)
+
+    result = run("solve", paper, "--json", "--scheme", "vertical")
+    answer = json.loads(result.stdout, parse_constant=refuse)
+    keys = "scenario scheme status reason rigour objective pose links binding_node stats provenance note"
+    assert list(answer) == [*keys.split(), "sensitivity"]
     assert list(answer["objective"]) == ["name", "value", "value_db", "upper_bound", "relative_gap"]
     angles = ["roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad"]
     keys = ["position_m", *angles, "antenna_axis", "frames"]
@@ -52,29 +43,12 @@ def test_json_has_the_documented_keys(run: Run, paper: str) -> None:
     assert set(answer["stats"]) == {"wall_s", "starts", "evaluations", "boxes"}
 
 
-def test_json_of_a_real_process_is_one_object(process: Process, paper: str) -> None:
-    """Standard output holds one JSON object and nothing else."""
-    done = process("solve", paper, "--json")
-    assert done.returncode == 0
-    assert json.loads(done.stdout)["objective"]["value_db"] == pytest.approx(0.9836997, abs=1e-6)
-
-
 def test_overrides_are_solved_and_recorded(run: Run, paper: str) -> None:
     """The scenario in the answer is the one that was solved, overrides applied."""
     answer = _solve_json(run, paper, "--set", "jammers.M.power_w=10", "--set", "airspace.altitude_m=[8, 20]")
     assert answer["scenario"]["jammers"][0]["power_w"] == 10.0
     assert answer["scenario"]["airspace"]["altitude_m"] == [8.0, 20.0]
     assert answer["objective"]["value_db"] == pytest.approx(0.8333942, abs=1e-6)
-
-
-def test_numbers_that_json_lacks_are_null(run: Run, paper: str) -> None:
-    """No NaN and no infinity is ever printed."""
-
-    def refuse(name: str) -> float:
-        raise AssertionError(name)
-
-    result = run("solve", paper, "--json", "--scheme", "vertical")
-    json.loads(result.stdout, parse_constant=refuse)
 
 
 def test_the_bound_is_printed_below_the_value(run: Run, paper: str) -> None:

@@ -50,21 +50,16 @@ def test_tables_say_what_is_guaranteed(run: Run) -> None:
         assert words in result.stdout
 
 
-@pytest.mark.parametrize(
-    "option",
-    [
-        ("--scheme", "vertical"),
-        ("--null-jammer", "M"),
-        ("--certificate", "c.json"),
-    ],
-    ids=lambda option: option[0],
-)
-def test_options_without_meaning_are_refused(run: Run, option: tuple[str, str]) -> None:
-    """What --robust has none of is named, and nothing is solved."""
-    result = run("solve", ROBUST, "--robust", *option)
-    assert result.exit_code == 2
-    assert option[0] in result.stderr
-    assert "--robust" in result.stderr
+@pytest.mark.parametrize("option", ["--scheme=vertical", "--null-jammer=M", "--certificate=c.json"])
+@pytest.mark.parametrize("scene", ["robust", "array"])
+def test_options_without_meaning_are_refused(run: Run, tmp_path: Path, scene: str, option: str) -> None:
+    """What --robust or an array has none of is named, and nothing is solved."""
+    file = ROBUST.replace("robust.toml", f"{scene}.toml")
+    option = option.replace("=c", f"={tmp_path}/c")
+    result = run("solve", file, option, *(["--robust"] if scene == "robust" else []))
+    assert (result.exit_code, result.stdout) == (2, "")
+    where = "with --robust" if scene == "robust" else "for a scenario with an [array]"
+    assert f"{option.partition('=')[0]}: given {where}" in result.stderr
 
 
 def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:

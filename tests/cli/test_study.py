@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -104,14 +103,6 @@ def test_show_refuses_what_is_not_there(
     assert message in result.stderr
 
 
-def test_a_folder_without_a_study(run: Run, tmp_path: Path) -> None:
-    """It is told in one line."""
-    for verb in (("status",), ("show", "--scene", 0)):
-        result = run("study", *verb, tmp_path)
-        assert result.exit_code == 2
-        assert "no study is here" in result.stderr
-
-
 def test_a_faulty_spec_is_told_whole(run: Run, spec: Path, tmp_path: Path) -> None:
     """All faults at once by path, and nothing is begun."""
     text = spec.read_text(encoding="utf-8").replace("scenes = 4", "scenes = 0").replace('"disc"', '"disk"')
@@ -122,14 +113,3 @@ def test_a_faulty_spec_is_told_whole(run: Run, spec: Path, tmp_path: Path) -> No
     assert "  scenes: got 0" in result.stderr
     assert "  jammers.layout: got" in result.stderr
     assert not (tmp_path / "out").exists()
-
-
-def test_a_missing_extra_ends_with_code_2(
-    run: Run, spec: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Without pyarrow the verb says in one line how to install it."""
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    result = run("study", "run", spec, "--out", tmp_path / "out")
-    assert result.exit_code == 2
-    assert result.stderr.count("\n") == 1
-    assert "pip install 'nullpose[study]'" in result.stderr

@@ -1,6 +1,7 @@
 """The verb `study report`: a study's report in one command."""
 
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -65,13 +66,18 @@ def test_bad_input(run: Run, folder: Path, arguments: tuple[str, ...], message: 
     assert result.stderr.count("\n") == 1
 
 
-def test_no_study_and_no_extra(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both are told on one line."""
-    result = run("study", "report", tmp_path)
+@pytest.mark.parametrize("verb", ["report", "status", "show --scene 0"])
+def test_no_study(run: Run, tmp_path: Path, verb: str) -> None:
+    """It is told in a line."""
+    result = run("study", *verb.split(), tmp_path)
     assert result.exit_code == 2
     assert "no study is here" in result.stderr
+
+
+@pytest.mark.parametrize("verb", ["report", "run"])
+def test_a_missing_extra(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, verb: str) -> None:
+    """The line has the command that installs it for the interpreter that runs."""
     monkeypatch.setattr(folder_module, "find_spec", lambda name: None)
-    result = run("study", "report", tmp_path)
-    assert result.exit_code == 2
-    assert "-m pip install 'nullpose[study]'" in result.stderr
-    assert result.stderr.count("\n") == 1
+    result = run("study", verb, tmp_path, *(("--out", tmp_path) if verb == "run" else ()))
+    assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+    assert f"{sys.executable} -m pip install 'nullpose[study]'" in result.stderr

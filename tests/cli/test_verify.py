@@ -32,21 +32,13 @@ def spoil(path: Path, change: Callable[[dict[str, Any]], object]) -> None:
 
 
 def test_a_proof_is_told(run: Run, proof: Path) -> None:
-    """What is proved goes to standard output, with exit code 0."""
+    """What is proved goes to standard output, with exit code 0; as one object with the number of leaves."""
     result = run("verify", proof)
     assert (result.exit_code, result.stderr) == (0, "")
-    assert result.stdout.startswith(
-        "proved: in this scenario no position and no antenna axis gives every node"
-    )
+    assert result.stdout.startswith("proved: in this scenario no position and no antenna axis gives every")
     assert "final boxes checked" in result.stdout
-
-
-def test_a_proof_as_json(run: Run, proof: Path) -> None:
-    """One object says whether it is proved, in which words, and how many leaves there were."""
-    result = run("verify", proof, "--json")
-    answer = json.loads(result.stdout)
-    assert (result.exit_code, list(answer)) == (0, [*CHECKED, *SUBJECT])
-    assert answer["proved"] is True
+    answer = json.loads(run("verify", proof, "--json").stdout)
+    assert (list(answer), answer["proved"]) == ([*CHECKED, *SUBJECT], True)
     assert answer["leaves"] == len(json.loads(proof.read_text())["trees"][0]["leaves"]["test"])
 
 
