@@ -42,17 +42,18 @@ def test_what_is_allowed(position: list[float], allowed: bool) -> None:
     assert FENCED.allows(position) == allowed
 
 
-def test_allows_is_vectorised_and_agrees_with_the_clearance() -> None:
+@pytest.mark.parametrize("margin_m", [0.0, 2.0])
+def test_allows_is_vectorised_and_agrees_with_the_clearance(margin_m: float) -> None:
     """Any leading shape; allowed is where the clearance is not negative, up to a billionth of a metre."""
-    rng = np.random.default_rng(5)
+    rng, fenced = np.random.default_rng(5), FENCED.model_copy(update={"margin_m": margin_m})
     positions = rng.uniform([-60.0, -50.0, 5.0], [70.0, 90.0, 33.0], (40, 50, 3))
-    allowed, clearance = FENCED.allows(positions), FENCED.clearance_m(positions)
+    allowed, clearance = fenced.allows(positions), fenced.clearance_m(positions)
     assert allowed.shape == clearance.shape == (40, 50)
     assert allowed.dtype == bool
     np.testing.assert_array_equal(allowed, clearance >= -1e-9)
     assert 0.1 < allowed.mean() < 0.9
     step = rng.normal(0.0, 3.0, positions.shape)
-    change = np.abs(FENCED.clearance_m(positions + step) - clearance)
+    change = np.abs(fenced.clearance_m(positions + step) - clearance)
     assert (change <= np.linalg.norm(step, axis=-1) + 1e-9).all()
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+import scenes
 from nullpose import Scenario, ScenarioError
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.scenario import apply_overrides, load
@@ -53,12 +54,7 @@ ROWS = [[1.0], [0.1, 0.2, 0.3]]
 
 def faults_of(antenna: dict[str, object], **more: object) -> dict[str, str]:
     """Return the faults of the paper's scene with an antenna, by their place."""
-    data = load("examples/paper.toml").to_dict() | {"antenna": antenna} | more
-    try:
-        Scenario.from_dict(data)
-    except ScenarioError as error:
-        return {fault.path: fault.message for fault in error.faults}
-    return {}
+    return scenes.faults_of(PAPER.to_dict() | {"antenna": antenna} | more)
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nullpose.errors import ScenarioError
+import scenes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import enu_from_geodetic
+from scenes import small
 
 ORIGIN = {"lat_deg": 50.0, "lon_deg": 14.5, "alt_m": 230.0}
 HERE = {"lat_deg": 50.001, "lon_deg": 14.502, "alt_m": 232.0}
@@ -20,23 +21,14 @@ NAN = float("nan")
 
 def data(**changes: Any) -> dict[str, Any]:
     """Returns a scenario with two nodes and a jammer by latitude and longitude; None takes a key away."""
-    whole = {
-        "origin": ORIGIN,
-        "airspace": {"altitude_m": [8.0, 30.0]},
-        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-        "nodes": [{"power_w": 1.0} | HERE, {"power_w": 2.0} | THERE],
-        "jammers": [{"power_w": 3.0, "lat_deg": 50.0015, "lon_deg": 14.503, "alt_m": 230.0}],
-    }
-    return {key: value for key, value in (whole | changes).items() if value is not None}
+    whole = {"origin": ORIGIN, "nodes": [{"power_w": 1.0} | HERE, {"power_w": 2.0} | THERE]}
+    jammer = {"power_w": 3.0, "lat_deg": 50.0015, "lon_deg": 14.503, "alt_m": 230.0}
+    return small(**whole | {"jammers": [jammer]} | changes)
 
 
 def faults_of(**changes: Any) -> dict[str, str]:
     """Returns the messages of the faults, by path."""
-    with pytest.raises(ScenarioError) as caught:
-        Scenario.from_dict(data(**changes))
-    faults = {fault.path: fault.message for fault in caught.value.faults}
-    assert len(faults) == len(caught.value.faults)
-    return faults
+    return scenes.faults_of(data(**changes))
 
 
 def test_positions_follow_from_the_origin() -> None:

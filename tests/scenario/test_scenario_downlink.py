@@ -6,18 +6,13 @@ import numpy as np
 import pytest
 
 from nullpose.scenario import Eavesdropper, Jammer, Node, Scenario, Transmitter
+from scenes import NODE, small
 
 
 def scene(**tables: Any) -> Scenario:
     """Returns a scene of two nodes, with other tables in place of those here."""
-    return Scenario(
-        **{
-            "airspace": {"altitude_m": [8.0, 30.0]},
-            "receiver": {"noise_dbm": 0.0, "reference_gain_db": 10.0},
-            "nodes": [Node(position_m=(0, 0, 0), power_w=1), Node(position_m=(0, 50, 0), power_w=1)],
-        }
-        | tables
-    )
+    nodes = [NODE, NODE | {"position_m": (0, 50, 0)}]
+    return Scenario(**small(receiver={"noise_dbm": 0.0, "reference_gain_db": 10.0}, nodes=nodes) | tables)
 
 
 def test_required_sinr() -> None:

@@ -57,12 +57,8 @@ def case(old: str, new: str, path: str, *words: str) -> Case:
     return Case(old, new, path, words)
 
 
-ALTITUDE, KEEP_OUT, NOISE, GAIN = (
-    "altitude_m = [8.0, 30.0]",
-    "keep_out_m = 1.5",
-    "noise_w = 1e-3",
-    "reference_gain_db = 0.0",
-)
+ALTITUDE, KEEP_OUT = "altitude_m = [8.0, 30.0]", "keep_out_m = 1.5"
+NOISE, GAIN = "noise_w = 1e-3", "reference_gain_db = 0.0"
 POSITION, POWER, NAME = "position_m = [17.0, 15.0, 4.0]", "power_w = 3.0", 'name = "M"'
 WATTS = "a power in W from 1e-30 to 1e+30"
 POINT = "a list of three numbers [x, y, z]: metres east, north and up"
@@ -71,15 +67,11 @@ INTERVAL = "a list of two numbers in m, the lowest first"
 FIELD_CASES = [
     # powers
     case(POWER, "power_w = 0.0", "jammers[0].power_w", "got 0.0", WATTS, "never zero or negative", "_dbm"),
-    case(POWER, "power_w = -2.5", "jammers[0].power_w", "got -2.5", WATTS),
     case(POWER, "power_w = inf", "jammers[0].power_w", "got infinity", WATTS),
     case(POWER, "power_w = 1e31", "jammers[0].power_w", "got 1e+31", WATTS),
     case(POWER, f"power_w = {'9' * 400}", "jammers[0].power_w", "got an integer beyond 1e+15", WATTS),
     case(POWER, "power_w = true", "jammers[0].power_w", "the truth value true", "must be a number"),
     case(POWER, 'power_w = "3"', "jammers[0].power_w", 'the text "3"', "write it without quotes"),
-    case(POWER, 'power_w = "3 W"', "jammers[0].power_w", 'the text "3 W"', "must be a number", WATTS),
-    case(POWER, 'power_w = ""', "jammers[0].power_w", "an empty text", "must be a number"),
-    case(POWER, "power_w = []", "jammers[0].power_w", "an empty list", "must be a number"),
     case(POWER, "power_w = 2024-05-01", "jammers[0].power_w", "a date or time", "must be a number"),
     case(POWER, "power_dbm = -271", "jammers[0].power_dbm", "got -271", "-270 to 330", "in W", "_w"),
     case(POWER, "power_dbm = nan", "jammers[0].power_dbm", "got NaN", "dBm"),
@@ -91,43 +83,21 @@ FIELD_CASES = [
     case(GAIN, "", "receiver", "neither reference_gain_db nor frequency_hz", "exactly one"),
     case(GAIN, f"{GAIN}\nfrequency_hz = 1e9", "receiver", "both reference_gain_db and frequency_hz"),
     # the receiver
-    case(NOISE, "noise_w = -1e-3", "receiver.noise_w", "got -0.001", WATTS),
     case(GAIN, "reference_gain_db = 1e3", "receiver.reference_gain_db", "a gain in dB from -300 to 300"),
-    case(
-        GAIN,
-        "frequency_hz = 2.4",
-        "receiver.frequency_hz",
-        "got 2.4",
-        "from 1000 to",
-        "2.4 GHz is written 2.4e9",
-    ),
+    case(GAIN, "frequency_hz = 2.4", "receiver.frequency_hz", "got 2.4", "2.4 GHz is written 2.4e9"),
     # the airspace
-    case(
-        ALTITUDE,
-        "altitude_m = [30.0, 8.0]",
-        "airspace.altitude_m",
-        "[30.0, 8.0]",
-        "reversed",
-        "try [8.0, 30.0]",
-    ),
+    case(ALTITUDE, "altitude_m = [30.0, 8.0]", "airspace.altitude_m", "reversed", "try [8.0, 30.0]"),
     case(ALTITUDE, "altitude_m = [8, 9, 10]", "airspace.altitude_m", "a list of 3 values", INTERVAL),
     case(ALTITUDE, "altitude_m = 8", "airspace.altitude_m", "got 8", INTERVAL, "equal ends fix the value"),
     case(ALTITUDE, "altitude_m = [8, nan]", "airspace.altitude_m[1]", "got NaN", "a length in m"),
-    case(
-        ALTITUDE, "altitude_m = [8, 2e7]", "airspace.altitude_m[1]", "got 20000000.0", "from -1e+07 to 1e+07"
-    ),
+    case(ALTITUDE, "altitude_m = [8, 2e7]", "airspace.altitude_m[1]", "got 20000000.0", "to 1e+07"),
     case(ALTITUDE, "", "airspace.altitude_m", "missing", "must be given", "in metres: [low, high]"),
-    case(KEEP_OUT, "x_m = [5, -5]", "airspace.x_m", "reversed", "try [-5.0, 5.0]"),
-    case(
-        KEEP_OUT, "keep_out_m = 0", "airspace.keep_out_m", "got 0", "from 0.001", "no limit at a ground point"
-    ),
+    case(KEEP_OUT, "keep_out_m = 0", "airspace.keep_out_m", "got 0", "no limit at a ground point"),
     # positions
     case(POSITION, "position_m = [17.0, 15.0]", "jammers[0].position_m", "a list of 2 values", POINT),
     case(POSITION, 'position_m = "here"', "jammers[0].position_m", 'the text "here"', POINT),
     case(POSITION, 'position_m = [1, "2", 3]', "jammers[0].position_m[1]", 'the text "2"', "without quotes"),
-    case(
-        POSITION, "position_m = [4.5e8, 2, 3]", "jammers[0].position_m[0]", "1e+07", "metres", "local origin"
-    ),
+    case(POSITION, "position_m = [4.5e8, 2, 3]", "jammers[0].position_m[0]", "1e+07", "local origin"),
     case(POSITION, "", "jammers[0].position_m", "missing", "must be given", "[east, north, up]"),
     # names
     case(NAME, "name = 7", "jammers[0].name", "got 7", "must be text in quotes"),
@@ -148,26 +118,10 @@ FIELD_CASES = [
 CROSS_CASES = [
     case(NAME, 'name = "S1"', "jammers[0].name", 'got "S1"', "the name of nodes[0] already", "once"),
     case('name = "S2"', 'name = "S1"', "nodes[1].name", 'got "S1"', "the name of nodes[0] already"),
-    case(
-        POSITION, "position_m = [0, 50, 0]", "jammers[0].position_m", "[0.0, 50.0, 0.0]", "nodes[1] already"
-    ),
+    case(POSITION, "position_m = [0, 50, 0]", "jammers[0].position_m", "nodes[1] already"),
     case(POSITION, "position_m = [0, 50, 1e-9]", "jammers[0].position_m", "nodes[1]", "different places"),
-    case(
-        "[0.0, 50.0, 0.0]",
-        "[0, 0, 0]",
-        "nodes[1].position_m",
-        "the place of nodes[0] already",
-        "move or remove",
-    ),
-    case(
-        KEEP_OUT,
-        "keep_out_m = 100\nx_m = [0, 10]\ny_m = [0, 50]",
-        "airspace",
-        "less than keep_out_m = 100.0 m",
-        "no room",
-        "widen altitude_m, x_m or y_m",
-        "make keep_out_m or a zone smaller",
-    ),
+    case("[0.0, 50.0, 0.0]", "[0, 0, 0]", "nodes[1].position_m", "the place of nodes[0] already"),
+    case(KEEP_OUT, "keep_out_m = 100\nx_m = [0, 10]\ny_m = [0, 50]", "airspace", "no room"),
 ]
 CASES = FIELD_CASES + CROSS_CASES
 
@@ -199,27 +153,17 @@ def test_one_fault_is_one_message(one: Case, tmp_path: Path) -> None:
     assert not LIBRARY_WORDS.search(fault.message)
 
 
+HEAD = GOOD.split("[[nodes]]", maxsplit=1)[0]
+
+
 @pytest.mark.parametrize(
     ("text", "path", "words"),
     [
-        (
-            GOOD.split("[[nodes]]", maxsplit=1)[0],
-            "nodes",
-            "missing; it must be given: Tables headed [[nodes]]",
-        ),
-        (
-            "nodes = []\n" + GOOD.split("[[nodes]]", maxsplit=1)[0],
-            "nodes",
-            "must be a list of at least one table",
-        ),
-        ("nodes = 3\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes", "must be a list of at least one"),
-        ("nodes = [1]\n" + GOOD.split("[[nodes]]", maxsplit=1)[0], "nodes[0]", "must be a node"),
-        ("jammers = 3\n" + GOOD.split("[[jammers]]", maxsplit=1)[0], "jammers", "must be a list of tables"),
-        (
-            "receiver = 3\n" + GOOD.replace("[receiver]", "[airspace.x]"),
-            "receiver",
-            "a table headed [receiver]",
-        ),
+        (HEAD, "nodes", "missing; it must be given: Tables headed [[nodes]]"),
+        ("nodes = []\n" + HEAD, "nodes", "must be a list of at least one table"),
+        ("nodes = 3\n" + HEAD, "nodes", "must be a list of at least one"),
+        ("nodes = [1]\n" + HEAD, "nodes[0]", "must be a node"),
+        ("receiver = 3\n" + GOOD.replace("[receiver]", "[airspace.x]"), "receiver", "headed [receiver]"),
         (GOOD.replace("[airspace]", "[airspce]"), "airspce", 'did you mean "airspace"?'),
     ],
 )
