@@ -6,8 +6,10 @@ import csv
 import errno
 import json
 import os
+import re
 import secrets
 import stat
+from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -62,10 +64,19 @@ def parse_json(text: str, **options: Any) -> Any:
         message = f"this is not JSON: {error.msg[:1].lower()}{error.msg[1:]}"
     except (RecursionError, MemoryError):
         message = "lists or objects are nested too deeply to be read"
+    except _DoubledKeyError as error:
+        ends = [brace.end() for brace in re.finditer("}", text)]  # the decoder does not say where it is
+        before = text[: ends[bisect_left(ends, True, key=lambda end: _has_doubled_key(text[:end]))]]
+        lines = before.split("\n")
+        place, message = f"line {len(lines)}, column {len(lines[-1])}", str(error)
     except ValueError as error:  # an integer beyond what Python converts, or what an option refuses
         message = str(error)
         message = "a number has too many digits; write it as in 1e-3" if "digits" in message else message
     raise ScenarioError([Fault(place, message)])
+
+
+class _DoubledKeyError(ValueError):
+    """An object of JSON that gives a key twice."""
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -74,8 +85,20 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(table) < len(pairs):
         counts = Counter(key for key, _ in pairs)
         key = next(key for key in counts if counts[key] > 1)
-        raise ValueError(f"the key {json.dumps(key[:_LONGEST_KEY])} is given twice in one object; keep one")
+        name = json.dumps(key[:_LONGEST_KEY])
+        raise _DoubledKeyError(f"the key {name} is given twice in one object; keep one")
     return table
+
+
+def _has_doubled_key(start: str) -> bool:
+    """Check whether an object that is whole in the start of a JSON text gives a key twice."""
+    try:
+        json.loads(start, object_pairs_hook=_unique)
+    except _DoubledKeyError:
+        return True
+    except ValueError:
+        pass
+    return False
 
 
 def json_text(value: object, indent: int | None = 2) -> str:

@@ -288,7 +288,8 @@ def test_keys_given_twice_are_refused(key: str, text: str) -> None:
     """Of two values for one thing neither counts."""
     at = text.index(f'"{key}":')
     words = refusal(f'{text[:at]}"{key}": 0, {text[at:]}')
-    assert words == f'is no certificate: the key "{key}" is given twice in one object; keep one'
+    assert words.startswith("is no certificate: line ")
+    assert words.endswith(f'the key "{key}" is given twice in one object; keep one')
 
 
 @pytest.mark.parametrize(
