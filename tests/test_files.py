@@ -147,8 +147,8 @@ def test_reading_is_bounded(tmp_path: Path) -> None:
     ("text", "place", "words"),
     [
         ('{"a": 1, "a": 2}', "line 1, column 16", 'the key "a" is given twice in one object; keep one'),
-        ('[{"a": 1},\n {"b": {"a": 1,\n "a": 2}}, {"c": 1, "c": 2}]', "line 3, column 8", 'the key "a" is'),
-        ('{"a": {"b": [1, {"c": 1, "d": 2, "c": 3}]}}', "line 1, column 41", 'the key "c" is given twice'),
+        ('[{"a": 1},\n {"}": {"a": 1,\n "a": 2}}, {"c": 1, "c": 2}]', "line 3, column 8", 'the key "a" is'),
+        ('{"a": {"b": [1, {"c": 1, "d": 2, "c": 3}]}}', "line 1, column 40", 'the key "c" is given twice'),
         ('[[{"a": 1, "a": 1}]]', "line 1, column 18", 'the key "a" is given twice'),
         ("[" * 100_000, "", "nested too deeply"),
         ("[" + "9" * 10_000 + "]", "", "too many digits"),

@@ -9,10 +9,10 @@ import os
 import re
 import secrets
 import stat
-from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
@@ -23,6 +23,7 @@ MOST_BYTES = 10_000_000
 """The largest file that is read, but for certificates and the manifests of studies."""
 
 _MOST_LISTS = 1_500_000  # of a certificate, which may be large: each takes some 64 bytes of memory
+_STRING_OR_BRACE = re.compile(r'"(?:[^"\\]|\\.)*"|}')
 _LONGEST_KEY = 40  # characters of a key that a message repeats
 
 
@@ -54,20 +55,31 @@ def parse_json(text: str, **options: Any) -> Any:
     Raises:
         ScenarioError: it is no JSON, gives a key twice, or would take too much memory.
     """
-    place = ""
+    place, closed = "", 0
+
+    def table_of(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        nonlocal closed
+        closed += 1
+        table = dict(pairs)
+        if len(table) < len(pairs):
+            counts = Counter(key for key, _ in pairs)
+            key = next(key for key in counts if counts[key] > 1)
+            name = json.dumps(key[:_LONGEST_KEY])
+            raise _DoubledKeyError(f"the key {name} is given twice in one object; keep one")
+        return table
+
     try:
         if text.count("[") + text.count("{") > _MOST_LISTS:
             raise ValueError(f"it has more than {_MOST_LISTS} lists and objects")
-        return json.loads(text, object_pairs_hook=_unique, **options)
+        return json.loads(text, object_pairs_hook=table_of, **options)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         message = f"this is not JSON: {error.msg[:1].lower()}{error.msg[1:]}"
     except (RecursionError, MemoryError):
         message = "lists or objects are nested too deeply to be read"
-    except _DoubledKeyError as error:
-        ends = [brace.end() for brace in re.finditer("}", text)]  # the decoder does not say where it is
-        before = text[: ends[bisect_left(ends, True, key=lambda end: _has_doubled_key(text[:end]))]]
-        lines = before.split("\n")
+    except _DoubledKeyError as error:  # in the object that is the next to be closed
+        braces = (token.end() for token in _STRING_OR_BRACE.finditer(text) if token[0] == "}")
+        lines = text[: next(islice(braces, closed - 1, None))].split("\n")
         place, message = f"line {len(lines)}, column {len(lines[-1])}", str(error)
     except ValueError as error:  # an integer beyond what Python converts, or what an option refuses
         message = str(error)
@@ -77,28 +89,6 @@ def parse_json(text: str, **options: Any) -> Any:
 
 class _DoubledKeyError(ValueError):
     """An object of JSON that gives a key twice."""
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Build an object of JSON; refuse one that gives a key twice."""
-    table = dict(pairs)
-    if len(table) < len(pairs):
-        counts = Counter(key for key, _ in pairs)
-        key = next(key for key in counts if counts[key] > 1)
-        name = json.dumps(key[:_LONGEST_KEY])
-        raise _DoubledKeyError(f"the key {name} is given twice in one object; keep one")
-    return table
-
-
-def _has_doubled_key(start: str) -> bool:
-    """Check whether an object that is whole in the start of a JSON text gives a key twice."""
-    try:
-        json.loads(start, object_pairs_hook=_unique)
-    except _DoubledKeyError:
-        return True
-    except ValueError:
-        pass
-    return False
 
 
 def json_text(value: object, indent: int | None = 2) -> str:
