@@ -55,7 +55,7 @@ def zones_of(folder: Path, file: str, here: tuple[float, float] = HERE) -> tuple
 def write_geojson(path: Path, features: list[Feature]) -> None:
     """Write features as GeoJSON."""
     members = [
-        {"type": "Feature", "geometry": mapping(shape), "properties": properties}
+        {"type": "Feature", "geometry": shape and mapping(shape), "properties": properties}
         for shape, properties in features
     ]
     path.write_text(json.dumps({"type": "FeatureCollection", "features": members}), encoding="utf-8")

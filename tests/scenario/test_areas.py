@@ -6,10 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
+from geo_files import WRITERS, Feature, kml, placemark, write_geojson
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import Airspace, NoFlyZone, Scenario, apply_overrides, load
 from nullpose.scenario.geodesy import enu_from_geodetic
+from scenes import small
 
 ORIGIN = [50.0, 14.5, 230.0]
 FENCE = [[49.999, 14.498], [49.999, 14.506], [50.003, 14.506], [50.003, 14.498]]
@@ -64,38 +67,14 @@ def metres(corners: list[list[float]]) -> np.ndarray:
     return enu_from_geodetic([[*corner, 230.0] for corner in corners], ORIGIN)[:, :2]
 
 
-def polygon(corners: list[list[float]], **properties: Any) -> dict[str, Any]:
-    """Return a GeoJSON feature, whose ring is closed and has longitudes first."""
-    ring = [corner[::-1] for corner in [*corners, corners[0]]]
-    return {
-        "type": "Feature",
-        "properties": properties,
-        "geometry": {"type": "Polygon", "coordinates": [ring]},
-    }
+def area(corners: list[list[float]], **properties: Any) -> Feature:
+    """Return an area with its properties."""
+    return shapely.Polygon([corner[::-1] for corner in corners]), properties
 
 
-def geojson(*features: dict[str, Any]) -> str:
-    """Return a GeoJSON text."""
-    return json.dumps({"type": "FeatureCollection", "features": features})
-
-
-def kml(*placemarks: str) -> str:
-    """Return a KML text."""
-    return f'<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document><Folder>{"".join(placemarks)}</Folder></Document></kml>'
-
-
-def kml_polygon(corners: list[list[float]], more: str = "") -> str:
-    """Return a placemark with a polygon."""
-    ring = " ".join(f"{lon},{lat},0" for lat, lon in [*corners, corners[0]])
-    inner = f"<outerBoundaryIs><LinearRing><coordinates>{ring}</coordinates></LinearRing></outerBoundaryIs>"
-    return f"<Placemark><name>wood</name>{more}<Polygon>{inner}</Polygon></Placemark>"
-
-
-def kml_point(place: str, more: str = "") -> str:
-    """Return a placemark with a point and a power."""
-    data = '<ExtendedData><Data name="power_dbm"><value>20</value></Data></ExtendedData>'
-    inner = f"<Point>{more}<coordinates>{place}</coordinates></Point>"
-    return f"<Placemark><name>gauge</name>{data}{inner}</Placemark>"
+def gauge(height_m: float, more: str = "") -> str:
+    """Return KML with a point and a power."""
+    return kml(placemark(shapely.Point(14.5012, 50.0006, height_m), {"name": "gauge", "power_dbm": 20}, more))
 
 
 def test_inline_fences_and_zones(tmp_path: Path) -> None:
@@ -115,23 +94,20 @@ def test_inline_fences_and_zones(tmp_path: Path) -> None:
 
 
 def test_files_give_the_same_scene(tmp_path: Path) -> None:
-    """Inline, GeoJSON and KML state one scene."""
+    """Inline, GeoJSON, KML, KMZ and GeoPackage state one scene."""
     zones = f'[[airspace.no_fly]]\nname = "wood"\npolygon_lat_lon_deg = {ZONE}\n'
     inline = load(scene(tmp_path, f"altitude_m = [20, 80]\ngeofence_lat_lon_deg = {FENCE}", zones=zones))
-    (tmp_path / "fence.geojson").write_text(geojson(polygon(FENCE, stroke="#ff0000")), encoding="utf-8")
-    (tmp_path / "fence.kml").write_text(kml(kml_polygon(FENCE)), encoding="utf-8")
-    (tmp_path / "zones.geojson").write_text(geojson(polygon(ZONE, name="wood")), encoding="utf-8")
-    (tmp_path / "zones.kml").write_text(kml(kml_polygon(ZONE)), encoding="utf-8")
-    for ending in ("geojson", "kml"):
-        airspace = f'altitude_m = [20, 80]\ngeofence_from = "fence.{ending}"\nno_fly_from = "zones.{ending}"'
+    for ending, write in WRITERS.items():
+        write(tmp_path / f"fence{ending}", [area(FENCE, stroke="#ff0000")])
+        write(tmp_path / f"zones{ending}", [area(ZONE, name="wood")])
+        airspace = f'altitude_m = [20, 80]\ngeofence_from = "fence{ending}"\nno_fly_from = "zones{ending}"'
         assert load(scene(tmp_path, airspace)) == inline
 
 
 def test_zones_of_a_file_are_added(tmp_path: Path) -> None:
     """They come after those of the scenario file; a point with a radius is a cylinder."""
-    mast = {"type": "Point", "coordinates": MAST[::-1]}
-    feature = {"type": "Feature", "properties": {"radius_m": 20.0, "altitude_m": [0, 30]}, "geometry": mast}
-    (tmp_path / "zones.geojson").write_text(geojson(feature), encoding="utf-8")
+    mast = shapely.Point(MAST[::-1]), {"radius_m": 20.0, "altitude_m": [0, 30]}
+    write_geojson(tmp_path / "zones.geojson", [mast])
     zones = "[[airspace.no_fly]]\nx_m = [0.0, 9.0]\ny_m = [0.0, 9.0]\n"
     scenario = load(scene(tmp_path, 'altitude_m = [20, 80]\nno_fly_from = "zones.geojson"', zones=zones))
     assert [zone.shape for zone in scenario.airspace.no_fly] == ["box", "cylinder"]
@@ -143,8 +119,8 @@ def test_zones_of_a_file_are_added(tmp_path: Path) -> None:
 )
 def test_nodes_from_kml(mode: str, key: str, value: float, tmp_path: Path) -> None:
     """KML states what its altitudes are over: the sea or the ground."""
-    point = kml_point(f"14.5012,50.0006,{value}", f"<altitudeMode>{mode}</altitudeMode>")
-    (tmp_path / "nodes.kml").write_text(kml(point), encoding="utf-8")
+    text = gauge(value, f"<altitudeMode>{mode}</altitudeMode>")
+    (tmp_path / "nodes.kml").write_text(text, encoding="utf-8")
     path = scene(
         tmp_path, "altitude_m = [20, 80]", "alt_msl_m = 185.0", top='nodes_from = "nodes.kml"', nodes=""
     )
@@ -156,7 +132,7 @@ def test_nodes_from_kml(mode: str, key: str, value: float, tmp_path: Path) -> No
 
 def test_an_altitude_is_never_guessed(tmp_path: Path) -> None:
     """A KML point that is clamped to the ground states no altitude, and is refused with what would do."""
-    (tmp_path / "nodes.kml").write_text(kml(kml_point("14.5012,50.0006,0")), encoding="utf-8")
+    (tmp_path / "nodes.kml").write_text(gauge(0.0), encoding="utf-8")
     path = scene(tmp_path, "altitude_m = [20, 80]", top='nodes_from = "nodes.kml"', nodes="")
     (fault,) = faults_of(path)
     assert fault.path == 'nodes.kml: Placemark "gauge".geometry.coordinates'
@@ -194,20 +170,21 @@ def test_metres_take_the_place_of_degrees(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "path", "words"),
+    ("features", "path", "words"),
     [
-        ("{}", "type", 'must be "FeatureCollection"'),
-        (geojson(), "features", "must be a list of one feature or more"),
-        (geojson(polygon(FENCE), polygon(ZONE)), "", "it has 2 areas, must be one polygon, the fence"),
-        (geojson({"type": "Feature", "geometry": None}), "", "it has 0 areas"),
-        (geojson(polygon([c[::-1] for c in FENCE])), "features[0]", "are latitude and longitude exchanged?"),
-        (geojson(polygon([[lat, 91.0] for lat, _ in FENCE])), "", "it has 0 areas"),
-        (geojson(polygon([FENCE[0], FENCE[2], FENCE[1], FENCE[3]])), "features[0]", "crosses itself"),
+        ([], "features", "must be a list of one feature or more"),
+        ([area(FENCE), area(ZONE)], "", "it has 2 areas, must be one polygon, the fence"),
+        ([(None, {})], "", "it has 0 areas"),
+        ([area([corner[::-1] for corner in FENCE])], "features[0]", "are latitude and longitude exchanged?"),
+        ([area([[lat, 91.0] for lat, _ in FENCE])], "", "it has 0 areas"),
+        ([area([FENCE[0], FENCE[2], FENCE[1], FENCE[3]])], "features[0]", "crosses itself"),
     ],
 )
-def test_faults_of_a_fence_name_its_file(content: str, path: str, words: str, tmp_path: Path) -> None:
+def test_faults_of_a_fence_name_its_file(
+    features: list[Feature], path: str, words: str, tmp_path: Path
+) -> None:
     """What is wrong with a file of areas is told at its place in it, or at the fence as a whole."""
-    (tmp_path / "fence.geojson").write_text(content, encoding="utf-8")
+    write_geojson(tmp_path / "fence.geojson", features)
     faults = faults_of(scene(tmp_path, 'altitude_m = [20, 80]\ngeofence_from = "fence.geojson"'))
     assert any(words in fault.message for fault in faults)
     assert path in faults[0].path
@@ -251,13 +228,8 @@ def test_degrees_need_an_origin() -> None:
         Airspace(altitude_m=(8, 30), geofence_lat_lon_deg=FENCE)
     with pytest.raises(ScenarioError, match=r"centre_lat_lon_deg: needs the \[origin\]"):
         NoFlyZone(centre_lat_lon_deg=MAST, radius_m=5.0)
-    data = {
-        "airspace": {"altitude_msl_m": [200, 300]},
-        "receiver": {"noise_w": 1.0, "reference_gain_db": 0.0},
-        "nodes": [{"position_m": [0, 0, 0], "power_w": 1.0}],
-    }
     with pytest.raises(ScenarioError, match=r"origin: missing, but airspace is stated by altitude_msl_m"):
-        Scenario.from_dict(data)
+        Scenario.from_dict(small(airspace={"altitude_msl_m": [200, 300]}))
 
 
 def test_disagreeing_metres_are_refused(tmp_path: Path) -> None:
