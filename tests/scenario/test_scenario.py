@@ -7,6 +7,7 @@ import pytest
 
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
+from scenes import NODE, small
 
 
 def paper_scenario() -> Scenario:
@@ -15,10 +16,7 @@ def paper_scenario() -> Scenario:
         name="paper",
         airspace=Airspace(altitude_m=(8.0, 30.0)),
         receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
-        nodes=(
-            Node(name="S1", position_m=(0.0, 0.0, 0.0), power_w=1.0),
-            Node(name="S2", position_m=(0.0, 50.0, 0.0), power_dbm=30.0),
-        ),
+        nodes=(Node(position_m=(0, 0, 0), power_w=1), Node(position_m=(0, 50, 0), power_dbm=30)),
         jammers=(Jammer(name="M", position_m=(17.0, 15.0, 4.0), power_w=10.0),),
     )
 
@@ -48,19 +46,16 @@ def test_arrays_are_cached_and_read_only(array: str) -> None:
 
 def test_plain_values_and_numpy_are_accepted() -> None:
     """Tables may be dictionaries, lists tuples or arrays, numbers numpy's; the result is equal."""
+    nodes = (
+        {"name": "S1", "position_m": np.zeros(3), "power_w": 1},
+        {"position_m": [0, np.int32(50), np.float64(0.0)], "power_dbm": np.float32(30.0)},
+    )
     loose = Scenario.from_dict(
         {
             "name": "paper",
             "airspace": {"altitude_m": np.array([8, 30])},
             "receiver": {"noise_w": np.float64(1e-3), "reference_gain_db": np.int64(0)},
-            "nodes": (
-                {"name": "S1", "position_m": np.zeros(3), "power_w": 1},
-                {
-                    "name": "S2",
-                    "position_m": [0, np.int32(50), np.float64(0.0)],
-                    "power_dbm": np.float32(30.0),
-                },
-            ),
+            "nodes": nodes,
             "jammers": [Jammer(name="M", position_m=np.array([17.0, 15.0, 4.0]), power_w=10)],
         }
     )
@@ -72,17 +67,10 @@ def test_plain_values_and_numpy_are_accepted() -> None:
 
 def test_names_left_out_follow_the_place() -> None:
     """Unnamed nodes are S1, S2 and so on by their place in the list, unnamed jammers M1, M2."""
-    node = {"power_w": 1.0}
-    scenario = Scenario(
-        airspace=Airspace(altitude_m=(8.0, 30.0)),
-        receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
-        nodes=[
-            node | {"position_m": (0.0, 0.0, 0.0)},
-            node | {"position_m": (1.0, 0.0, 0.0), "name": "gate"},
-            Node(position_m=(2.0, 0.0, 0.0), power_w=1.0),
-        ],
-        jammers=[Jammer(position_m=(3.0, 0.0, 0.0), power_w=1.0)],
-    )
+    gate = NODE | {"position_m": (1.0, 0.0, 0.0), "name": "gate"}
+    nodes = [NODE, gate, Node(position_m=(2.0, 0.0, 0.0), power_w=1.0)]
+    jammers = [Jammer(position_m=(3.0, 0.0, 0.0), power_w=1.0)]
+    scenario = Scenario(**small(nodes=nodes, jammers=jammers))
     assert scenario.node_names == ("S1", "gate", "S3")
     assert scenario.jammer_names == ("M1",)
     assert scenario.name == ""
