@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from hypothesis import given, strategies as st
 
-from nullpose.physics import Reception, objective_value, received_power_w, secrecy_rate, sinr, values_of_many
+from nullpose.physics import Reception, objective_value, received_power_w, secrecy_rate, sinr
 from nullpose.physics.reception import node_values
 from nullpose.scenario import Scenario, apply_overrides
 
@@ -41,20 +41,3 @@ def test_received_power(paper: Scenario) -> None:
     assert received_power_w(np.zeros(3), *upright, [[10.0, 0.0, 0.0]], [2.0], 1e-4) == 1e-4 * 2.0 / 100.0
     received_w = Reception(paper, [10.0, 0.0, 0.0], *upright).received_w
     assert (received_w.shape, received_w[0]) == ((3,), 0.01)
-
-
-@given(seed=SEEDS, nodes=st.integers(1, 12), jammers=st.integers(0, 4))
-def test_many_scenes_at_once(
-    seed: int, nodes: int, jammers: int, random_scene: Callable, random_poses: Callable
-) -> None:
-    """Each has the margins that it has alone, whether all antennas are the same or not."""
-    rng = np.random.default_rng(seed)
-    scenes = [
-        apply_overrides(random_scene(rng, nodes, jammers), [f"nodes.S1.weight={rng.uniform(0.2, 5.0)}"])
-        for _ in range(4)
-    ]
-    pose = random_poses(rng, 4)
-    for leak in ("", "antenna.null_depth_db=20"):
-        several = scenes if not leak else [*scenes[:-1], apply_overrides(scenes[-1], [leak])]
-        alone = [node_values(Reception(*each)) for each in zip(several, *pose, strict=True)]
-        np.testing.assert_allclose(values_of_many(several, *pose), alone, rtol=1e-14)

@@ -16,7 +16,6 @@ from nullpose.physics import (
     element_positions,
     evaluate,
     ratios_under,
-    values_of_many,
     zero_interference_sinr,
 )
 from nullpose.problem.build import build_family
@@ -66,7 +65,6 @@ ELEMENTS = element_positions(3, "linear", 0.5)
 
 PATHS: dict[str, Callable[[Scenario], Any]] = {
     "pose": lambda scene: [link.sinr for link in evaluate(scene, Pose(POSITION_M, 0.3, -0.2, 1.0))],
-    "many poses": lambda scene: values_of_many([scene, scene], [POSITION_M] * 2, [AXIS] * 2),
     "zero interference": lambda scene: zero_interference_sinr(scene, POSITION_M),
     "robust": lambda scene: nullpose.guarantee(scene, POSITION_M, AXIS).lower,
     "solve": lambda scene: nullpose.solve(scene, gap=1e-4).objective.upper_bound,

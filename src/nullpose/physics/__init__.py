@@ -36,7 +36,6 @@ from nullpose.physics.reception import (
     node_values,
     objective_value,
     ratios_under,
-    values_of_many,
 )
 from nullpose.physics.rotation import (
     antenna_axis,
@@ -92,7 +91,6 @@ __all__ = [
     "sinr",
     "steering_vectors",
     "to_db",
-    "values_of_many",
     "zero_interference_axis",
     "zero_interference_sinr",
 ]

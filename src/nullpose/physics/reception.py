@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.objectives import USUAL
 from nullpose.physics.error_case import ErrorCase
 from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate_of
-from nullpose.physics.sinr import received_from_sources_w, received_power_w, sinr
+from nullpose.physics.sinr import received_from_sources_w, sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
@@ -111,34 +109,3 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
     """
     reception, ratios_at = Reception(scenario, position_m, axis, case), scenario.objective_record.ratios_at
     return node_values(reception)[..., None] if ratios_at is None else ratios_at(reception)
-
-
-def values_of_many(scenarios: Sequence[Scenario], position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
-    """Evaluate the maximised quantity of every node in many scenes, a pose in each.
-
-    The same numbers as those of :func:`node_values`, scene by scene; together where the objective is the
-    smallest margin and all antennas are the same.
-
-    Args:
-        scenarios: with as many nodes and as many jammers each; their antennas may differ.
-        position_m: the drone's position in each scene, shape ``(s, 3)``, metres.
-        axis: unit antenna axis in each, shape ``(s, 3)``.
-
-    Returns:
-        Array of shape ``(s, n_nodes)``: power ratios, or bits/s/Hz.
-    """
-    antenna = scenarios[0].antenna_record
-    if any(
-        scene.objective != USUAL or scene.antenna_record != antenna or scene.source_antennas
-        for scene in scenarios
-    ):
-        poses = zip(scenarios, np.asarray(position_m), np.asarray(axis), strict=True)
-        return np.array([node_values(Reception(*pose)) for pose in poses])
-    g0 = np.array([[scene.reference_gain] for scene in scenarios])
-    noise_w = np.array([[scene.receiver.noise_power_w] for scene in scenarios])
-    required = np.array([scene.node_required_sinr for scene in scenarios])
-    source_m = np.array([scene.source_positions_m for scene in scenarios])
-    source_w = np.array([scene.source_powers_w for scene in scenarios])
-    received_w, nodes = received_power_w(position_m, axis, source_m, source_w, g0, antenna), required.shape[1]
-    interference_w = np.sum(received_w[:, nodes:], axis=-1, keepdims=True)
-    return np.asarray(received_w[:, :nodes] / (interference_w + noise_w) / required)

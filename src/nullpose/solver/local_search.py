@@ -18,6 +18,7 @@ from nullpose.problem.family import Family
 from nullpose.solver.multistart import BORDER_M, landmarks, multistart
 
 _STEPS = 200
+_SAME = 1e-10  # a climb that gains no more has ended
 _PRECISION = 1e-13
 _FARTHEST_RAD = 1.5  # that a climb turns at most
 _LEAST = -1e3  # logarithm that counts for a ratio of zero
@@ -94,6 +95,10 @@ class LocalSearch(ABC):
                 values = self.judged(states)
             best = np.argsort(-values)[: min(climbed, np.count_nonzero(values > -math.inf))]
             ends += [self.climb(states[k]) for k in best]
+        before = -math.inf
+        while self.best > before + _SAME:  # along a curved ridge the steps of one climb may not suffice
+            before = self.best
+            ends.append(self.climb(self.state))
         return max(ends)
 
     def take(self, state: FloatArray) -> float:

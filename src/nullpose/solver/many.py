@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from nullpose.errors import SolveError, UsageError
 from nullpose.notebook import html_table, imported
-from nullpose.objectives import FloatArray, IntArray
-from nullpose.physics import antenna_axis, attitude_from_axis, attitude_within_tilt, to_db, values_of_many
+from nullpose.objectives import FloatArray, IntArray, Quantity
+from nullpose.physics import Pose, evaluate, to_db
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -27,8 +27,6 @@ from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
 NOWHERE = "no position was found at which every node is received"
 """The reason of a scene without a pose."""
-
-_BLOCK = 64  # scenes between two reports
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -169,19 +167,18 @@ def solve_many(
     if airframes is not None and not len(airframes):
         raise UsageError("airframes: given none; allowed: one or more")
     results = ManySolutions.blank(len(scenarios), 1 if airframes is None else len(airframes))
-    for first in range(0, len(scenarios), _BLOCK):
-        block = scenarios[first : first + _BLOCK]
-        vehicles = [[scenario.airframe] if airframes is None else list(airframes) for scenario in block]
-        outcomes = [_by_vehicle(*each, limits) for each in zip(block, vehicles, strict=True)]
-        for column in range(results.value.shape[1]):
-            alike = defaultdict(list)  # what is evaluated together has so many nodes and jammers
-            for row, scenario in enumerate(block):
-                kind = (vehicles[row][column], len(scenario.nodes), len(scenario.jammers))
-                alike[kind].append((first + row, scenario, outcomes[row][column]))
-            for (airframe, *_), answers in alike.items():
-                _fill(results, column, airframe, answers, limits)
+    flown = [scenarios[0].model_copy(update={"airframe": each}) for each in airframes or ()]
+    for row, scenario in enumerate(scenarios):
+        vehicles, of_scene = flown or [scenario], limits.of(scenario)  # of which the airframe counts
+        outcomes = _by_vehicle(scenario, [each.airframe for each in vehicles], of_scene)
+        for column, (vehicle, outcome) in enumerate(zip(vehicles, outcomes, strict=True)):
+            if outcome is None:
+                results.reason[row, column] = NOWHERE
+                continue
+            pose = Pose.of_airframe(vehicle, outcome.incumbent.position_m, outcome.incumbent.axis)
+            _fill(results, (row, column), scenario, pose, outcome, of_scene.target)
         if on_progress is not None:
-            on_progress(first + len(block), len(scenarios))
+            on_progress(row + 1, len(scenarios))
     return results
 
 
@@ -198,17 +195,15 @@ def _check(scenarios: Sequence[Scenario]) -> None:
 
 
 def _by_vehicle(
-    scenario: Scenario, vehicles: Sequence[Airframe | None], limits: SolveOptions
+    scenario: Scenario, vehicles: Sequence[Airframe | None], options: SolveOptions
 ) -> list[Outcome | None]:
     """Solve for each vehicle, that with most freedom first; None where no pose was found."""
-    family, options = build_family(scenario), limits.of(scenario)
+    family = build_family(scenario)
     bands = [(0.0, 1.0) if vehicle is None else vehicle.axis_band for vehicle in vehicles]
     solved: dict[tuple[float, float], Outcome | None] = {}
     for band in sorted(dict.fromkeys(bands), key=lambda band: band[0] - band[1]):
-        wider = [outcome for (low, high), outcome in solved.items() if low <= band[0] and band[1] <= high]
-        solved[band] = _solve_band(
-            family, band, [outcome for outcome in wider if outcome is not None], options
-        )
+        wider = [each for (low, high), each in solved.items() if each and low <= band[0] and band[1] <= high]
+        solved[band] = _solve_band(family, band, wider, options)
     return [solved[band] for band in bands]
 
 
@@ -235,46 +230,19 @@ def _upright(axis: FloatArray) -> float:
 
 def _fill(
     results: ManySolutions,
-    column: int,
-    airframe: Airframe | None,
-    answers: list[tuple[int, Scenario, Outcome | None]],
-    limits: SolveOptions,
+    at: tuple[int, int],
+    scenario: Scenario,
+    pose: Pose,
+    outcome: Outcome,
+    target: float,
 ) -> None:
-    """Put one airframe's answers into the results, their values evaluated at the poses."""
-    results.reason[[row for row, _, outcome in answers if outcome is None], column] = NOWHERE
-    placed = [(row, scenario, outcome) for row, scenario, outcome in answers if outcome is not None]
-    if not placed:
-        return
-    rows = np.array([row for row, _, _ in placed])
-    outcomes = [outcome for _, _, outcome in placed]
-    position_m = np.array([each.incumbent.position_m for each in outcomes])
-    axes = np.array([each.incumbent.axis for each in outcomes])
-    mount_rad = 0.0 if airframe is None else airframe.mount_rad
-    if airframe is None:
-        roll, pitch = attitude_from_axis(axes)
-        yaw = np.zeros_like(roll)
-    else:
-        roll, pitch, yaw = attitude_within_tilt(axes, airframe.tilt_max_rad, mount_rad)
-    axis = antenna_axis(roll, pitch, yaw, mount_rad)
-    of_nodes = values_of_many([scenario for _, scenario, _ in placed], position_m, axis)
-    value = np.min(of_nodes, axis=1)
-    ends = []
-    for least, (_, scenario, outcome) in zip(value.tolist(), placed, strict=True):
-        objective = objective_of(scenario, least, outcome.upper_bound)
-        bound = math.inf if objective.upper_bound is None else objective.upper_bound
-        ends.append((bound, *status_of(objective, limits.of(scenario).target, outcome.reason)))
-    bounds, statuses, reasons = zip(*ends, strict=True)
-    found: dict[str, ArrayLike] = {
-        "value": value,
-        "upper_bound": bounds,
-        "status": statuses,
-        "reason": reasons,
-        "position_m": position_m,
-        "roll_rad": roll,
-        "pitch_rad": pitch,
-        "yaw_rad": yaw,
-        "binding_node": np.argmin(of_nodes, axis=1),
-        "boxes": [each.nodes for each in outcomes],
-    }
-    for name, values in found.items():
-        getattr(results, name)[rows, column] = values
+    """Put one answer into the results, its value evaluated at the pose."""
+    of_nodes = [Quantity.of(scenario).at(link) for link in evaluate(scenario, pose)]
+    objective = objective_of(scenario, min(of_nodes), outcome.upper_bound)
+    results.status[at], results.reason[at] = status_of(objective, target, outcome.reason)
+    results.value[at], results.binding_node[at] = objective.value, int(np.argmin(of_nodes))
+    if objective.upper_bound is not None:
+        results.upper_bound[at] = objective.upper_bound
+    results.position_m[at], results.boxes[at] = pose.position_m, outcome.nodes
+    for name in ("roll_rad", "pitch_rad", "yaw_rad"):
+        getattr(results, name)[at] = getattr(pose, name)

@@ -18,7 +18,7 @@ from nullpose.problem.family import Family
 from nullpose.solver.local_search import LocalSearch
 from nullpose.solver.multistart import NOT_RECEIVED
 
-_DRAWN, _CLIMBED = 200, 4  # positions of the search, each time
+_DRAWN, _CLIMBED = 1000, 3  # positions of the search, each time
 _RESTARTS = 6
 _SIZE = 0.05  # of the first simplex, as a share of the box
 
