@@ -1,7 +1,15 @@
-"""All the cases of one scenario, with a reason for each that is missing."""
+"""Schemes and antennas of one scenario compared."""
 
-from nullpose import Scenario
-from nullpose.study import compare_schemes
+import io
+from pathlib import Path
+
+from rich.console import Console
+
+from nullpose import Scenario, load
+from nullpose.report.comparison import antennas_answer as answer, antennas_view
+from nullpose.study import compare_antennas, compare_schemes
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def test_the_optimum_is_the_best(field: Scenario) -> None:
@@ -19,8 +27,12 @@ def test_what_does_not_apply_has_its_reason(paper: Scenario) -> None:
     assert len(comparison.to_dict()["rows"]) == 3
 
 
-def test_progress_counts_the_cases(paper: Scenario) -> None:
-    """Each case is one step."""
-    ticks: list[tuple[int, int]] = []
-    compare_schemes(paper, on_progress=lambda *tick: ticks.append(tick))
-    assert ticks == [(1, 4), (2, 4), (3, 4), (4, 4)]
+def test_every_number_is_there() -> None:
+    """Promised, received, the same by cause, possible with its bound; the answer has the same numbers."""
+    found = compare_antennas(load(EXAMPLES / "whips.toml"), certify=False)
+    file = io.StringIO()
+    Console(width=100, file=file).print(antennas_view(found))
+    for number in ("0.9837", "-23.1287", "0.9749", "-24.5472", "-1.9496"):
+        assert number in file.getvalue()
+    assert "24.11 dB less" in answer(found)
+    assert "21.18 dB more than that" in answer(found)

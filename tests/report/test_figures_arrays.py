@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose import apply_overrides, load
+from nullpose import load
 from nullpose.physics.array import placed_elements
 from nullpose.report.figures.pattern import beam_surface_m
 from nullpose.report.figures.poses import draw_array
@@ -38,14 +38,6 @@ def test_elements_stand_as_they_are_laid_out(solution: Result) -> None:
     factor = np.linalg.norm(drawn) / np.linalg.norm(real)
     assert drawn == pytest.approx(factor * real, abs=1e-9)
     assert len(drawn) == 4
-
-
-def test_a_circle_is_drawn_as_one() -> None:
-    """Elements of a circular array are as far from the vehicle as each other."""
-    circle = apply_overrides(load(EXAMPLE), ["array.elements=5", "array.layout=circular"])
-    found = solve(circle, certify=False)
-    distances = np.linalg.norm(_drawn_elements(found), axis=1)
-    assert distances == pytest.approx([distances[0]] * 5)
 
 
 def test_the_beam_has_its_null_on_the_jammer(solution: Result) -> None:

@@ -14,7 +14,7 @@ import pytest
 from nullpose import Link, Pose, Result, evaluate, solve
 from nullpose.errors import UsageError
 from nullpose.report.geojson import require_origin, solution_geojson, write_geojson
-from nullpose.scenario import Scenario, load
+from nullpose.scenario import Scenario
 from nullpose.scenario.geodesy import enu_from_geodetic
 
 ORIGIN = {"lat_deg": 50.0, "lon_deg": 14.5, "alt_m": 230.0}
@@ -132,20 +132,3 @@ def test_a_written_file_is_the_collection(solution: Result, tmp_path: Path) -> N
     values = [each["properties"].get("sinr_db") for each in collection["features"]]
     assert values[1:3] == [None, solution.links[1].sinr_db]
     assert collection["features"][3:] == json.loads(json.dumps(solution_geojson(solution)))["features"][3:]
-
-
-def test_its_nodes_can_be_read_as_nodes(solution: Result, tmp_path: Path) -> None:
-    """The places of the nodes, given a power, are nodes of a scenario again, at the same positions."""
-    nodes = [
-        {**each, "properties": {"name": each["properties"]["name"], "power_w": 1.0}}
-        for each in features(solution, "node")
-    ]
-    collection = json.dumps({"type": "FeatureCollection", "features": nodes})
-    (tmp_path / "nodes.geojson").write_text(collection, encoding="utf-8")
-    (tmp_path / "scene.toml").write_text(
-        'nodes_from = "nodes.geojson"\n[airspace]\naltitude_m = [8, 30]\n[receiver]\nnoise_w = 1e-3\n'
-        "reference_gain_db = 0.0\n[origin]\nlat_deg = 50.0\nlon_deg = 14.5\nalt_m = 230.0\n",
-        encoding="utf-8",
-    )
-    again = load(tmp_path / "scene.toml")
-    np.testing.assert_allclose(again.node_positions_m, solution.scenario.node_positions_m, rtol=0, atol=1e-3)

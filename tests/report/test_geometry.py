@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from nullpose import Pose
-from nullpose.report.geometry import azimuth_rad, distance_m, null_angle_rad, tilt_rad
+from nullpose.report.geometry import azimuth_rad, null_angle_rad, tilt_rad
 
 UNIT = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: math.hypot(*v) > 0.1)
 
@@ -49,8 +49,3 @@ def test_tilt_and_azimuth_of_the_upper_end(
     pose = Pose.from_axis(np.zeros(3), axis)
     assert math.degrees(tilt_rad(pose)) == pytest.approx(tilt_deg, abs=1e-3)
     assert math.degrees(azimuth_rad(pose)) == pytest.approx(azimuth_deg, abs=1e-9)
-
-
-def test_distance() -> None:
-    """The distance is Euclid's."""
-    assert distance_m(Pose(np.array([3.0, 4.0, 12.0]), 0.0, 0.0), [0.0, 0.0, 0.0]) == 13.0

@@ -31,9 +31,6 @@ def test_an_isotropic_table_without_frequency() -> None:
     assert "x.csv (csv)" in text.splitlines()[0]
     assert "deepest null      none" in text
     assert "polarisation      not known" in text
-    assert "degree used       0; the grid resolves 11" in text
-    assert "MHz" not in text
-    assert "fine enough" not in text
     assert text.rstrip().endswith("A note.")
     coarse = dataclasses.replace(summary_of(table), null_db=12.34, null_deg=(30.0, 45.0))
     assert "12.3 dB below the peak, at theta 30, phi 45" in told(coarse)

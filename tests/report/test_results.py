@@ -3,16 +3,22 @@
 import io
 import math
 import re
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from rich.console import Console, RenderableType
 
-from nullpose import Result, Scenario, solve
+from nullpose import Pose, Result, Scenario, apply_overrides, load, solve
 from nullpose.report.comparison import comparison_view
 from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import bound_words
-from nullpose.report.results import result_view
+from nullpose.report.results import frame_rows, result_view
+from nullpose.report.words import error_words
+from nullpose.scenario import Origin
 from nullpose.study import compare_schemes
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def text_of(view: RenderableType, width: int = 200) -> str:
@@ -61,7 +67,7 @@ def test_a_comparison_shows_bounds_and_who_is_certified(paper: Scenario, field: 
 
     def shown(scenario: Scenario, place: int, **options: object) -> tuple[list[str], str]:
         text = text_of(comparison_view(compare_schemes(scenario, **options)))
-        return [line.split()[place] for line in text.splitlines()[4:8]], text
+        return [line.split()[place] for line in text.splitlines()[6:10]], text
 
     values, text = shown(paper, -3)
     assert values == ["0.9838", "0.8124", "-0.6998", "-2.1602"]
@@ -69,7 +75,7 @@ def test_a_comparison_shows_bounds_and_who_is_certified(paper: Scenario, field: 
     statuses, text = shown(field, -1)
     assert statuses == ["certified", "certified", "bounded", "certified"]
     assert "bounded: the upper bound is valid, but the requested gap was not reached" in text
-    assert "Maximum gain: the bound is that of the optimum" in text
+    assert "the bound is that of the optimum" in text
     bounds, text = shown(paper, -3, certify=False)
     assert bounds == ["-"] * 4
     assert "not proved" in text
@@ -93,3 +99,51 @@ def test_names_that_look_like_markup(field: Scenario) -> None:
     text = text_of(comparison_view(compare_schemes(scenario)))
     assert "[red]gate" in text
     assert "field [1]" in text
+
+
+@pytest.fixture(scope="module")
+def on_earth(paper: Scenario) -> Result:
+    """A pose whose numbers are round, on the Earth."""
+    scenario = paper.model_copy(update={"origin": Origin(lat_deg=0.0, lon_deg=0.0, alt_m=0.0)})
+    found = solve(paper, certify=False)
+    return replace(found, scenario=scenario, pose=Pose((0.0, 0.0, 20.0), 0.0, math.pi / 2.0))
+
+
+def test_the_lines_of_a_round_pose(on_earth: Result, paper: Scenario) -> None:
+    """Straight above the origin, pitched by a quarter turn: all is known; nothing without an origin."""
+    assert frame_rows(on_earth.scenario, on_earth.pose) == [
+        ("on the Earth", "lat 0.00000000 deg, lon 0.00000000 deg, alt 20.000 m over the WGS-84 ellipsoid"),
+        ("NED, body FRD", "north 0.0000 m, east 0.0000 m, down -20.0000 m"),
+        ("", "roll 0.000 deg, pitch -90.000 deg, yaw 90.000 deg"),
+        ("quaternion wxyz", "(0.707107, 0.000000, 0.707107, 0.000000) in ENU, body FLU"),
+        ("", "(0.500000, 0.500000, -0.500000, 0.500000) in NED, body FRD"),
+    ]
+    assert frame_rows(paper, on_earth.pose) == []
+
+
+def robust_text(scenario: Scenario) -> str:
+    """Returns what is printed of a robust solution that nothing is proved of."""
+    return text_of(result_view(solve(scenario, robust=True, certify=False)))
+
+
+def test_errors_are_listed() -> None:
+    """Each error that is stated is named once, with its unit."""
+    assert error_words(load(EXAMPLES / "robust.toml")) == "axis 2 deg, position 0.5 m, M up to 3 m"
+    assert error_words(load(EXAMPLES / "paper.toml")) == ""
+
+
+def test_without_a_proof_no_bound_is_claimed() -> None:
+    """The table says that other poses are not bounded."""
+    scenario = apply_overrides(load(EXAMPLES / "robust.toml"), ["receiver.position_error_m=0"])
+    text = robust_text(scenario)
+    assert "no upper bound on the guaranteed value" in text
+    assert "relative gap" not in text
+
+
+def test_rates_keep_their_unit() -> None:
+    """A secrecy rate is never told in dB."""
+    scenario = apply_overrides(load(EXAMPLES / "eavesdropper.toml"), ["receiver.attitude_error_deg=1"])
+    text = robust_text(scenario)
+    assert "guaranteed: smallest secrecy rate" in text
+    assert "bits/s/Hz" in text
+    assert " dB" not in text

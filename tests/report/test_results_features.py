@@ -91,15 +91,6 @@ def test_a_downlink_is_summarised_as_one() -> None:
     assert "power (dBm)" not in text
 
 
-def test_a_requirement_beyond_reach_is_told(paper: Scenario) -> None:
-    """Straight above a node 11.94 dB are the most; who requires more is named before anything is solved."""
-    data = paper.to_dict()
-    data["nodes"][0]["min_sinr_db"] = 12.0
-    text = text_of(scenario_view(Scenario.from_dict(data)))
-    assert "Node S1 requires more" in text
-    assert "Node S2 requires more" not in text
-
-
 def test_a_sweep_of_rates_is_one_of_rates(tmp_path: Path) -> None:
     """Title, cells and file are in bits/s/Hz."""
     table = sweep(example("eavesdropper"), "eavesdroppers.E.position_m[0]", [17.0, 60.0])
