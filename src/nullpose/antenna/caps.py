@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -52,25 +53,12 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
     """
     used = np.any(harmonics.cosine != 0.0, axis=0) | np.any(harmonics.sine != 0.0, axis=0)
     finest = _finest(harmonics)
-    rows = len(finest)
-    blocks, offset = [], []
-    filled = 0
-    while len(finest) > 0:
-        line, offsets = finest, []
-        while True:
-            offsets.append(filled)
-            filled += line.shape[0] * line.shape[1]
-            blocks.append(line.reshape(-1, 5))
-            if line.shape[1] == 1:
-                break
-            line = np.maximum(line[:, ::2], line[:, 1::2])
-        offset.append(offsets)
-        if len(finest) == 1:
-            break
-        finest = np.maximum(finest[::2], finest[1::2])
+    levels = [[cells.reshape(-1, 5) for cells in _joined(rows, 1)] for rows in _joined(finest, 0)]
+    sizes = [len(cells) for level in levels for cells in level]
+    offset = np.reshape(np.cumsum([0, *sizes[:-1]]), (len(levels), -1))
     start, a, b = recurrence(harmonics.degree)
     orders = int(np.max(np.nonzero(used)[0], initial=0)) + 1
-    table = np.ascontiguousarray(np.concatenate(blocks))
+    table = np.ascontiguousarray(np.concatenate([cells for level in levels for cells in level]))
     return PatternArrays(
         np.ascontiguousarray(harmonics.cosine),
         np.ascontiguousarray(harmonics.sine),
@@ -79,9 +67,17 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
         b,
         orders,
         table,
-        np.array(offset, dtype=np.int64),
-        rows,
+        offset.astype(np.int64),
+        len(finest),
     )
+
+
+def _joined(cells: FloatArray, axis: int) -> Iterator[FloatArray]:
+    """Yield cells, then the largest numbers of pairs along an axis, of pairs of those, and so on to one."""
+    yield cells
+    while (count := cells.shape[axis]) > 1:
+        cells = np.maximum(*(cells.take(range(first, count, 2), axis) for first in (0, 1)))
+        yield cells
 
 
 def _finest(harmonics: Harmonics) -> FloatArray:

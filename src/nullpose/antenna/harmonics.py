@@ -86,15 +86,6 @@ class Harmonics:
         """Return the terms as plain numbers: for each degree the cosine terms, then the sine terms."""
         return [[*self.cosine[n, : n + 1], *self.sine[n, 1 : n + 1]] for n in range(self.degree + 1)]
 
-    def truncated(self, degree: int) -> Harmonics:
-        """Return the terms up to a degree.
-
-        Args:
-            degree: at least 0.
-        """
-        keep = slice(degree + 1)
-        return Harmonics(self.cosine[keep, keep].copy(), self.sine[keep, keep].copy())
-
 
 def recurrence(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the numbers that make the Legendre functions from each other.

@@ -191,6 +191,6 @@ def _shortened(harmonics: Harmonics, least: float, peak: float) -> Harmonics:
         terms[np.abs(terms) < _TINY * peak] = 0.0  # a symmetry of the antenna is then one of the terms
     left_out = np.sqrt(np.cumsum(harmonics.spectrum[::-1])[::-1])
     degree = int(np.argmax(np.append(left_out[1:], 0.0) <= _LEFT_OUT * peak))
-    kept = harmonics.truncated(degree)
+    kept = Harmonics(*(terms[: degree + 1, : degree + 1] for terms in (harmonics.cosine, harmonics.sine)))
     kept.cosine[0, 0] += max(0.0, least - deepest_null(kept)[0])
     return kept

@@ -149,12 +149,12 @@ class Airspace(Section):
     @cached_property
     def lower_m(self) -> NDArray[np.float64]:
         """The box's lower corner, (3,), in m; minus infinity where unbounded."""
-        return read_only([low for low, _ in self._ranges()], (3,))
+        return read_only([-math.inf if ends is None else ends[0] for ends in self._ranges_m], (3,))
 
     @cached_property
     def upper_m(self) -> NDArray[np.float64]:
         """The box's upper corner, (3,), in m; infinity where unbounded."""
-        return read_only([high for _, high in self._ranges()], (3,))
+        return read_only([math.inf if ends is None else ends[1] for ends in self._ranges_m], (3,))
 
     @cached_property
     def geofence_outline_m(self) -> NDArray[np.float64]:
@@ -229,6 +229,6 @@ class Airspace(Section):
         for zone in self.inner.no_fly:
             yield f"inside the no-fly zone {zone.name}{counted}", -zone.depth_m(position, self.altitude_m)
 
-    def _ranges(self) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
-        unbounded = (-math.inf, math.inf)
-        return self.x_m or unbounded, self.y_m or unbounded, self.altitude_m
+    @property
+    def _ranges_m(self) -> tuple[tuple[float, float] | None, ...]:
+        return self.x_m, self.y_m, self.altitude_m

@@ -65,26 +65,30 @@ def scenario_faults(scenario: Scenario, raw: Raw) -> Iterator[tuple[Place, str]]
         yield from airspace_faults(airspace, positioned, receiver.position_error_m if receiver else 0.0)
 
 
-def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
-    """Yield what does not go with an array, and dipoles that do not go with the drone's antenna."""
+def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> list[tuple[Place, str]]:
+    """List what does not go with an array, and dipoles that do not go with the drone's antenna."""
     has_array, antenna = scenario.array is not None, scenario.antenna_record
-    if has_array and scenario.airframe is not None and scenario.axis_band != (1.0, 1.0):
-        yield (
-            ("array",),
-            "an array is of upright dipoles on a horizontal vehicle, but [airframe] tilts it or mounts the "
-            "dipole at an angle; remove either table",
-        )
-    if has_array and antenna != SHORT_DIPOLE:
-        yield ("antenna",), "the elements of an array are short dipoles; remove this table or [array]"
+    is_tilted = scenario.airframe is not None and scenario.axis_band != (1.0, 1.0)
+    apart = (
+        "an array is of upright dipoles on a horizontal vehicle, but [airframe] tilts it or mounts the "
+        "dipole at an angle; remove either table"
+    )
+    other = "the elements of an array are short dipoles; remove this table or [array]"
+    deaf = "an array hears isotropic antennas only; remove this key or [array]"
+    unlike = (
+        "a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that of "
+        f'antenna.kind = "{antenna.name}" is not; write "circular" or "isotropic"'
+    )
+    faults: list[tuple[bool, Place, str]] = [
+        (has_array and is_tilted, ("array",), apart),
+        (has_array and antenna != SHORT_DIPOLE, ("antenna",), other),
+    ]
     for place, point in points.items():
-        if has_array and point.antenna not in (None, "isotropic"):
-            yield (*place, "antenna"), "an array hears isotropic antennas only; remove this key or [array]"
-        if point.antenna == "dipole" and not antenna.has_polarisation:
-            yield (
-                (*place, "antenna"),
-                f"a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that "
-                f'of antenna.kind = "{antenna.name}" is not; write "circular" or "isotropic"',
-            )
+        faults += [
+            (has_array and point.antenna not in (None, "isotropic"), (*place, "antenna"), deaf),
+            (point.antenna == "dipole" and not antenna.has_polarisation, (*place, "antenna"), unlike),
+        ]
+    return [(place, message) for is_wrong, place, message in faults if is_wrong]
 
 
 def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:

@@ -16,8 +16,7 @@ from nullpose.scenario.faults import Place
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m, offset_outlines_m
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import (
-    EARTHLY_CORNERS,
-    EARTHLY_RANGES,
+    EARTHLY,
     Label,
     LatLon,
     PlanePoint,
@@ -32,7 +31,7 @@ ALTITUDES = Ways((("altitude_m",), ("altitude_msl_m",), ("altitude_ellipsoid_m",
 
 def unplaced(table: Section, raw: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
     """Yield the keys of an airspace or a zone that mean nothing without the origin of a scenario."""
-    for key, metric in (EARTHLY_CORNERS | dict.fromkeys(EARTHLY_RANGES, "altitude_m")).items():
+    for key, metric in EARTHLY.items():
         if getattr(table, key, None) is not None and raw.get(metric) is None:
             yield (
                 (key,),

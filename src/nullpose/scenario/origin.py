@@ -20,6 +20,7 @@ from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
+    EARTHLY,
     EARTHLY_CORNERS,
     EARTHLY_RANGES,
     Altitude,
@@ -34,8 +35,6 @@ FARTHEST_M = 1e5
 
 POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
 """The keys of a scenario's points."""
-EARTHLY_KEYS = ("lat_deg", "lon_deg", *ALTITUDE_KEYS, *EARTHLY_CORNERS, *EARTHLY_RANGES)
-"""The keys whose meaning in metres follows from the origin."""
 _PLACEHOLDERS: RawTable = {  # of what cannot be told; such a scenario is refused for that
     "position_m": [0.0, 0.0, 0.0],
     "centre_m": [0.0, 0.0],
@@ -166,8 +165,8 @@ def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
     """Return a raw table with the metres that follow from what it states on the Earth."""
     if not isinstance(raw, Mapping):
         return raw
-    earthly = {key: raw[key] for key in EARTHLY_KEYS if raw.get(key) is not None}
-    wanted = [key for key in map(metric_key, earthly) if raw.get(key) is None]
+    earthly = {key: raw[key] for key in EARTHLY if raw.get(key) is not None}
+    wanted = [EARTHLY[key] for key in earthly if raw.get(EARTHLY[key]) is None]
     if not wanted:
         return raw
     found = {} if origin is None else in_metres(kind._sound_part(earthly), origin)
@@ -179,11 +178,6 @@ def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
     return {**raw} | {key: near.get(key, _PLACEHOLDERS[key]) for key in wanted}
 
 
-def metric_key(key: str) -> str:
-    """Return the key in metres that follows from one of ``EARTHLY_KEYS``."""
-    return EARTHLY_CORNERS.get(key, "altitude_m" if key in EARTHLY_RANGES else "position_m")
-
-
 def in_metres(table: Any, origin: Origin) -> dict[str, Floats]:
     """Return the metres that follow from what a table states on the Earth, by key.
 
@@ -192,13 +186,11 @@ def in_metres(table: Any, origin: Origin) -> dict[str, Floats]:
         origin: where the metres count from.
     """
     *_, base_m = origin.geodetic
-    found: RawTable = {}
-
-    def enu_m(places: Any, height_m: float) -> Floats:
-        flat = np.asarray(places, dtype=np.float64)
-        heights_m = np.full((*flat.shape[:-1], 1), height_m)
-        return enu_from_geodetic(np.concatenate([flat, heights_m], axis=-1), origin.geodetic)
-
+    found: RawTable = {
+        metric: enu_from_geodetic(np.insert(corners, 2, base_m, axis=-1), origin.geodetic)[..., :2]
+        for key, metric in EARTHLY_CORNERS.items()
+        if (corners := getattr(table, key, None)) is not None
+    }
     heights_m = [
         value + (base_m - own_m)
         for key in ALTITUDE_KEYS
@@ -207,10 +199,7 @@ def in_metres(table: Any, origin: Origin) -> dict[str, Floats]:
     ]
     place = [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]
     if heights_m and None not in place:
-        found["position_m"] = enu_m(place, heights_m[0])
-    for key, metric in EARTHLY_CORNERS.items():
-        if (corners := getattr(table, key, None)) is not None:
-            found[metric] = enu_m(corners, base_m)[..., :2]
+        found["position_m"] = enu_from_geodetic([*place, heights_m[0]], origin.geodetic)
     for key, of_origin in EARTHLY_RANGES.items():
         ends_m, zero_m = getattr(table, key, None), getattr(origin, of_origin)
         if ends_m is not None and zero_m is not None:

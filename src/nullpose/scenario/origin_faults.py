@@ -10,15 +10,13 @@ import numpy as np
 from nullpose.scenario.faults import EXCHANGED, Place, Raw, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.origin import (
-    EARTHLY_KEYS,
     FARTHEST_M,
     POINT_LISTS,
     Origin,
     in_metres,
-    metric_key,
     size_m,
 )
-from nullpose.scenario.units import ALTITUDE_KEYS, EARTHLY_CORNERS, EARTHLY_RANGES
+from nullpose.scenario.units import ALTITUDE_KEYS, EARTHLY, EARTHLY_CORNERS, EARTHLY_RANGES
 
 _SAME_PLACE_M = 1e-3  # metres and degrees of one thing may be given together if they agree within this
 _OVER = {"alt_m": "over the ellipsoid", "alt_msl_m": "over the sea"}
@@ -37,7 +35,7 @@ def origin_faults(
     earthly = {
         place: keys
         for place, table in tables.items()
-        if (keys := [key for key in EARTHLY_KEYS if getattr(table, key, None) is not None])
+        if (keys := [key for key in EARTHLY if getattr(table, key, None) is not None])
     }
     yield from _mixed({place: table for place, table in tables.items() if place[0] in POINT_LISTS}, raw)
     if origin is None:
@@ -112,7 +110,7 @@ def _apart(
             both = value if getattr(tables[place], key) is None else np.array(getattr(tables[place], key))
             apart = both - value if both.shape == value.shape else np.array(np.inf)
             if (apart_m := size_m(apart[:, None] if key == "altitude_m" else apart)) > _SAME_PLACE_M:
-                how = _words([each for each in earthly[place] if metric_key(each) == key])
+                how = _words([each for each in earthly[place] if EARTHLY[each] == key])
                 yield (
                     place,
                     f"{key} and {how} are {apart_m:.3g} m apart, must be one place; remove either",
@@ -129,7 +127,7 @@ def _mixed(points: Mapping[Place, GroundPoint], raw: Raw) -> Iterator[tuple[Plac
         table = raw[str(place[0])][place[1]]
         has_metres = not isinstance(table, Mapping) or table.get("position_m") is not None
         if has_metres != _is_earthly(point):
-            keys = [key for key in EARTHLY_KEYS if getattr(point, key, None) is not None]
+            keys = [key for key in EARTHLY if getattr(point, key, None) is not None]
             firsts.setdefault(has_metres, ("position_m" if has_metres else _words(keys), place))
     if len(firsts) == 2:
         (first_words, first), (words, place) = firsts.values()

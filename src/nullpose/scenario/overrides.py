@@ -12,9 +12,10 @@ from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.faults import Raw, RawTable, path_of, refusal, require
-from nullpose.scenario.origin import EARTHLY_KEYS, POINT_LISTS, metric_key
+from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
+from nullpose.scenario.units import EARTHLY
 from nullpose.scenario.wording import described, listed, nearest, plain
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
@@ -140,9 +141,9 @@ def _apply(override: Override, data: RawTable) -> None:
         airspace = data.get("airspace", {})
         points = (point for kind in POINT_LISTS for point in data.get(kind, ()))
         for table in (*points, airspace, *airspace.get("no_fly", ())):
-            for key in EARTHLY_KEYS if isinstance(table, dict) else ():
+            for key, metric in EARTHLY.items() if isinstance(table, dict) else ():
                 if key in table:
-                    table.pop(metric_key(key), None)
+                    table.pop(metric, None)
 
 
 def _value(path: str, text: str) -> object:

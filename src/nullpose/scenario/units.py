@@ -26,6 +26,13 @@ EARTHLY_CORNERS = {
 EARTHLY_RANGES = {"altitude_msl_m": "alt_msl_m", "altitude_ellipsoid_m": "alt_m"}
 """The keys that state a range of absolute altitudes, and the origin's altitude over the same."""
 
+EARTHLY = {
+    **dict.fromkeys(("lat_deg", "lon_deg", *ALTITUDE_KEYS), "position_m"),
+    **EARTHLY_CORNERS,
+    **dict.fromkeys(EARTHLY_RANGES, "altitude_m"),
+}
+"""The keys that state something on the Earth, and those in metres that follow from the origin."""
+
 SPEED_OF_LIGHT_M_PER_S = 299_792_458.0
 """Speed of light in vacuum, exact by definition of the metre [m/s]."""
 
