@@ -1,17 +1,16 @@
 """The card that stays on the page."""
 
 import re
-from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from nullpose import solve
+from nullpose import load, solve
 from nullpose.report.numbers import MINUS
-from nullpose.scenario import Scenario
 from nullpose.solver import Result
-from nullpose.studio.answer import Notice, Progress, answer_of
+from nullpose.studio.answer import Notice, Progress, answer_of, signed
 from nullpose.studio.card import Bar, card_html, gap_words, proof
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.field_map import MAPS, FieldMap
@@ -19,9 +18,11 @@ from nullpose.studio.readout import readout_html
 from nullpose.studio.state import State
 from nullpose.study.value_map import Field
 
+_PAPER = load(Path(__file__).parents[2] / "examples" / "paper.toml")
+
 
 @pytest.fixture(scope="module")
-def result() -> Iterator[Result]:
+def result() -> Result:
     """The proved result of the paper's scene."""
     return solve(_PAPER)
 
@@ -44,13 +45,10 @@ def _mapped(state: State, lowest: float, highest: float, map_name: str = MAPS[0]
 
 def test_it_says_what_the_panel_says(proved: State) -> None:
     """The same value with its unit, bound, status and rigour."""
-    answer = proved.current(OPTIMUM)
+    answer, html = proved.current(OPTIMUM), card_html(proved)
     assert answer is not None
-    html, bound = card_html(proved), answer.result.objective.upper_bound
-    assert bound is not None
-    value = f"{answer.shown_value:z.4f}".replace("-", MINUS)
-    assert f">{value} dB<" in html
-    assert f"upper bound {answer.result.objective.quantity.in_unit(bound):z.4f} dB" in html
+    assert f">{signed(answer.shown_value, 4)} dB<" in html
+    assert f"{answer.bound_text} dB" in html
     assert "certified to 1e-6, verifiable" in html
     for name in ("data-value", "data-version"):
         (on_card,) = set(re.findall(f'{name}="([^"]+)"', html))
@@ -66,11 +64,13 @@ def test_numbers_of_an_older_scene_are_grey(proved: State) -> None:
 
 
 def test_while_the_solver_is_compiled_it_says_so() -> None:
-    """There is no number then."""
-    compiling = Notice(version=1, case=None, words="compiling the solver")
-    html = card_html(State(scenario=_PAPER).with_event(compiling))
-    assert "compiling the solver" in html
-    assert "data-value" not in html
+    """There is no number then, in the card and in the panel."""
+    state = State(scenario=_PAPER)
+    compiling = state.with_event(Notice(version=1, case=None, words="compiling the solver"))
+    for write in (card_html, readout_html):
+        for shown, words in ((state, "solving"), (compiling, "compiling the solver")):
+            assert words in write(shown)
+            assert "data-value" not in write(shown)
 
 
 def test_two_cases_are_both_there(proved: State) -> None:
@@ -127,16 +127,3 @@ def test_the_bar_follows_the_proof_of_the_present_scene(result: Result) -> None:
 def test_gaps_are_in_per_cent_or_small_numbers(gap: float, words: str) -> None:
     """Small ones as the status has them."""
     assert gap_words(gap) == words
-
-
-_PAPER = Scenario.from_dict(
-    {
-        "airspace": {"altitude_m": [8.0, 30.0]},
-        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-        "nodes": [
-            {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0},
-            {"position_m": [0.0, 50.0, 0.0], "power_w": 1.0},
-        ],
-        "jammers": [{"position_m": [17.0, 15.0, 4.0], "power_w": 1.0}],
-    }
-)

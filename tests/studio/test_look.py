@@ -1,7 +1,6 @@
 """Colours of light and dark pages, by the contrast that WCAG asks for; scales."""
 
 import re
-from collections.abc import Iterable
 
 import numpy as np
 import pytest
@@ -39,33 +38,15 @@ def _pair(colour: str) -> list[str]:
 
 @LOOKS
 def test_what_is_drawn_stands_out(look: Look) -> None:
-    """Points, drones, airspace and zones have a contrast of 3 to 1 against the background."""
+    """Points, drones, airspace, zones, curves and ring have a contrast of 3 to 1, and letters 4.5."""
     drawn = [*look.kinds.values(), *look.slots, *look.hulls, look.airspace, look.zone, look.wire, look.drop]
-    for colour in drawn:
-        assert _contrast(css(colour), SCENES[look.dark]) >= 3.0, colour
-
-
-@LOOKS
-def test_kinds_differ_in_colour(look: Look) -> None:
-    """Nodes, jammers and eavesdroppers have three colours."""
+    for colour in map(css, drawn):
+        assert _contrast(colour, SCENES[look.dark]) >= 3.0, colour
     assert len(set(look.kinds.values())) == 3
-
-
-@LOOKS
-def test_the_panels_words_are_read(look: Look) -> None:
-    """What is written in the panel has a contrast of 4.5 to 1 against it."""
-    texts: Iterable[str] = [tone.colour for tone in readout.TONES]
-    written = [_pair(text)[look.dark] for text in texts]
-    for colour in [*written, *map(css, look.slots)]:
+    for colour in (plot.RING, *(lit(curve.colour) for curve in CURVES.values())):
+        assert _contrast(_pair(colour)[look.dark], PANELS[look.dark]) >= 3.0, colour
+    for colour in (*map(css, look.slots), *(_pair(tone.colour)[look.dark] for tone in readout.TONES)):
         assert _contrast(colour, PANELS[look.dark]) >= 4.5, colour
-
-
-@pytest.mark.parametrize("curve", CURVES)
-@LOOKS
-def test_the_plots_curves_stand_out(look: Look, curve: str) -> None:
-    """Every curve and the ring have a contrast of 3 to 1 against the panel."""
-    for colour in (lit(CURVES[curve].colour), plot.RING):
-        assert _contrast(_pair(colour)[look.dark], PANELS[look.dark]) >= 3.0
 
 
 def test_brightness_grows_along_the_scale() -> None:
@@ -77,24 +58,14 @@ def test_brightness_grows_along_the_scale() -> None:
 
 
 @seed(0)
-@given(values=st.lists(st.floats(-80.0, 80.0), min_size=1, max_size=30))
-def test_a_scale_spans_a_readable_range(values: list[float]) -> None:
-    """Its ends are whole numbers 6 to 30 apart, with the largest value inside."""
-    low, high = scale_range([*values, np.nan, -np.inf])
-    assert low == round(low)
-    assert high == round(high)
-    assert 6.0 <= high - low <= 30.0
-    assert low <= max(values) <= high
-
-
-@seed(0)
-@given(values=st.lists(st.floats(-1.0, 12.0), min_size=1, max_size=30))
-def test_a_scale_of_rates_shows_small_differences(values: list[float]) -> None:
-    """Its ends are tenths of a bit/s/Hz about the largest value, and no further apart than they must be."""
-    low, high = scale_range(values, is_rate=True)
-    assert 0.5 - 1e-9 <= high - low <= max(0.5, max(values) - min(values) + 0.2) + 1e-9
+@given(values=st.lists(st.floats(-80.0, 80.0), min_size=1, max_size=30), is_rate=st.booleans())
+def test_a_scale_spans_a_readable_range(values: list[float], is_rate: bool) -> None:
+    """Whole decibels 6 to 30 apart, or tenths of a bit/s/Hz half or more apart, with the largest inside."""
+    per_unit, least, most = (10.0, 0.5, 30.0) if is_rate else (1.0, 6.0, 30.0)
+    low, high = scale_range([*values, np.nan, -np.inf], is_rate=is_rate)
+    assert [per_unit * low, per_unit * high] == pytest.approx(np.round([per_unit * low, per_unit * high]))
+    assert least - 1e-9 <= high - low <= min(most, max(least, np.ptp(values) + 2.0 / per_unit)) + 1e-9
     assert low - 1e-9 <= max(values) <= high + 1e-9
-    assert [10.0 * low, 10.0 * high] == pytest.approx([round(10.0 * low), round(10.0 * high)], abs=1e-9)
 
 
 def test_nothing_finite_has_a_scale_too() -> None:

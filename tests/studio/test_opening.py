@@ -2,18 +2,24 @@
 
 import socket
 import sys
+from collections.abc import Callable
 
 import pytest
 
+import nullpose
 from nullpose.errors import UsageError
+from nullpose.studio.case import new_scenario
 from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 
 
-def test_without_the_extra_one_line_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("act", [require_viser, lambda: nullpose.show(new_scenario())])
+def test_without_the_extra_one_line_says_what_to_do(
+    act: Callable[[], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Where viser is missing, the message is one line with the command that installs it."""
     monkeypatch.setitem(sys.modules, "viser", None)
     with pytest.raises(UsageError, match=r"-m pip install 'nullpose\[studio\]'") as raised:
-        require_viser()
+        act()
     assert "\n" not in str(raised.value)
 
 

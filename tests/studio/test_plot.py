@@ -19,27 +19,18 @@ def _drawn(text: str) -> ElementTree.Element:
 
 
 def test_every_scheme_has_a_line_of_its_own_look(paper: Scenario) -> None:
-    """Four curves, told apart by colour and by dashes, and a ring at the present power."""
+    """Four curves, told apart by colour and by dashes; a ring at the present power meets the optimum's."""
     curve = list(power_curves(State(scenario=paper, version=2)))[-1]
-    drawn = _drawn(power_plot_svg(curve, version=2, power_db=0.0, value=0.98, unit="dB"))
+    row = curve.table.of("optimum")[4]
+    text = power_plot_svg(curve, version=2, power_db=row.value, value=row.objective.value_db, unit="dB")
+    drawn = _drawn(text)
     lines = list(drawn.iter("polyline"))
     assert len({(line.get("stroke"), line.get("stroke-dasharray")) for line in lines}) == 4
     assert drawn.get("data-state") == "current"
-    (ring,) = drawn.iter("circle")
-    assert float(ring.get("cx", "nan")) == pytest.approx(42 + 290 * 30 / 70, abs=0.1)
-
-
-def test_the_ring_is_on_the_curve(paper: Scenario) -> None:
-    """At a power that the curve has, the ring and the optimum's line meet."""
-    curve = list(power_curves(State(scenario=paper)))[-1]
-    row = curve.table.of("optimum")[4]
-    drawn = _drawn(
-        power_plot_svg(curve, version=1, power_db=row.value, value=row.objective.value_db, unit="dB")
-    )
-    line = next(iter(drawn.iter("polyline"))).get("points", "")
-    points = np.array([pair.split(",") for pair in line.split()], dtype=float)
+    points = np.array([pair.split(",") for pair in lines[0].get("points", "").split()], dtype=float)
     (ring,) = drawn.iter("circle")
     at = np.array([ring.get("cx"), ring.get("cy")], dtype=float)
+    assert at[0] == pytest.approx(42 + 290 * (row.value + 30) / 70, abs=0.1)
     assert np.min(np.linalg.norm(points - at, axis=1)) < 0.2
 
 
@@ -62,18 +53,16 @@ def test_a_curve_is_drawn_where_its_values_are(paper: Scenario) -> None:
     assert down[2] < 180.0  # the present value is always in view
 
 
-def test_a_power_beyond_the_plot_has_no_ring(paper: Scenario) -> None:
-    """A scene whose jammers are weaker than the plot reaches has no ring at its edge."""
+@pytest.mark.parametrize(
+    ("version", "power_db", "value", "state"), [(1, -99.0, 1.0, "growing"), (2, 0.0, None, "outdated")]
+)
+def test_no_ring_is_where_nothing_holds(
+    paper: Scenario, version: int, power_db: float, value: float | None, state: str
+) -> None:
+    """Neither for jammers that are weaker than the plot reaches, nor on a curve of another version."""
     curve = next(iter(power_curves(State(scenario=paper))))
-    drawn = _drawn(power_plot_svg(curve, version=1, power_db=-99.0, value=1.0, unit="dB"))
-    assert not list(drawn.iter("circle"))
-
-
-def test_an_old_curve_is_marked(paper: Scenario) -> None:
-    """A curve of another version is drawn pale and says that it is outdated, without a ring."""
-    curve = next(iter(power_curves(State(scenario=paper))))
-    drawn = _drawn(power_plot_svg(curve, version=2, power_db=0.0, value=None, unit="dB"))
-    assert drawn.get("data-state") == "outdated"
+    drawn = _drawn(power_plot_svg(curve, version=version, power_db=power_db, value=value, unit="dB"))
+    assert drawn.get("data-state") == state
     assert not list(drawn.iter("circle"))
 
 

@@ -39,13 +39,6 @@ class _Text(HTMLParser):
         self.text += data
 
 
-def test_without_an_answer_there_are_no_numbers(paper: Scenario) -> None:
-    """Before the first answer it says that it is solving, and no value is shown."""
-    html = readout_html(State(scenario=paper))
-    assert "solving" in _Text(html).text
-    assert "data-value" not in html
-
-
 @pytest.fixture
 def unsure(paper: Scenario) -> Scenario:
     """The paper's scene with a jammer that is known up to two metres."""

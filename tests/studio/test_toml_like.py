@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 
 from nullpose import load
 from nullpose.errors import ScenarioError
-from nullpose.scenario import Jammer, Node, NoFlyZone, Scenario
+from nullpose.scenario import Airframe, Jammer, Node, NoFlyZone, Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.edits import entries_of, with_added, with_typed
 from nullpose.studio.state import State
@@ -24,33 +24,25 @@ EXAMPLES = {
 }
 ALONE = [name for name in EXAMPLES if name not in ("geodetic", "frame")]  # those that name no other file
 
-KINDS = st.sampled_from(["nodes", "jammers", "eavesdroppers"])
-PLACES = st.integers(0, 9)
 METRES = st.floats(-300.0, 300.0).map(lambda value: round(value, 3))
-POSITIONS = st.tuples(METRES, METRES, st.floats(0.0, 5.0))
 NAMES = st.text(min_size=1, max_size=12).filter(lambda name: name.isprintable() and name == name.strip())
 POWERS_W = st.one_of(st.sampled_from([0.1, 1.0, 2.0]), st.floats(1e-6, 1e3))
 
 Edit = Callable[[Scenario], Scenario]
 
 
-def _listed(kind: str, change: Callable[[list[Any]], list[Any]]) -> Edit:
-    return lambda scenario: scenario.model_copy(
-        update={kind: tuple(change(list(getattr(scenario, kind))))} if getattr(scenario, kind) else {}
-    )
+def _listed(kind: str, place: int, update: dict[str, object] | None) -> Edit:
+    """Change a point of a list, or take it out."""
 
+    def edit(scenario: Scenario) -> Scenario:
+        points = list(getattr(scenario, kind))
+        if points:
+            point = points.pop(place % len(points))
+            if update is not None:
+                points.insert(place % (len(points) + 1), point.model_copy(update=update))
+        return scenario.model_copy(update={kind: tuple(points)})
 
-def _updated(kind: str, place: int, update: dict[str, object]) -> Edit:
-    def change(points: list[Any]) -> list[Any]:
-        place_here = place % len(points)
-        points[place_here] = points[place_here].model_copy(update=update)
-        return points
-
-    return _listed(kind, change)
-
-
-def _removed(kind: str, place: int) -> Edit:
-    return _listed(kind, lambda points: [one for at, one in enumerate(points) if at != place % len(points)])
+    return edit
 
 
 def _added(kind: str, name: str, position_m: Any, power_w: float) -> Edit:
@@ -70,32 +62,26 @@ def _zoned(name: str, x_m: float, y_m: float) -> Edit:
 
 
 def _tilted(tilt_deg: float) -> Edit:
-    return lambda scenario: Scenario.from_dict(
-        scenario.to_dict() | {"airframe": {"tilt_max_deg": tilt_deg, "mount_deg": 90.0}}
-    )
+    airframe = Airframe(tilt_max_deg=tilt_deg, mount_deg=90.0)
+    return lambda scenario: scenario.model_copy(update={"airframe": airframe})
 
 
+UPDATES = st.one_of(
+    st.none(),
+    st.fixed_dictionaries({"position_m": st.tuples(METRES, METRES, st.floats(0.0, 5.0))}),
+    st.fixed_dictionaries({"name": NAMES}),
+    st.fixed_dictionaries({"power_w": POWERS_W, "power_dbm": st.none()}),
+    st.just({"antenna": "dipole", "antenna_axis": (1.0, 0.0, 0.0)}),
+)
 EDITS = st.one_of(
-    st.builds(lambda kind, at, p: _updated(kind, at, {"position_m": p}), KINDS, PLACES, POSITIONS),
-    st.builds(lambda kind, at, name: _updated(kind, at, {"name": name}), KINDS, PLACES, NAMES),
-    st.builds(
-        lambda at, power: _updated("jammers", at, {"power_w": power, "power_dbm": None}), PLACES, POWERS_W
-    ),
-    st.builds(
-        lambda at: _updated("nodes", at, {"antenna": "dipole", "antenna_axis": (1.0, 0.0, 0.0)}), PLACES
-    ),
-    st.builds(_removed, KINDS, PLACES),
-    st.builds(_added, st.sampled_from(["nodes", "jammers"]), NAMES, POSITIONS, POWERS_W),
+    st.builds(_listed, st.sampled_from(["nodes", "jammers", "eavesdroppers"]), st.integers(0, 9), UPDATES),
+    st.builds(_added, st.sampled_from(["nodes", "jammers"]), NAMES, st.just((1.5, -2.0, 0.0)), POWERS_W),
     st.builds(_zoned, NAMES, METRES, METRES),
-    st.just(_airspace(no_fly=())),
-    st.just(_airspace(geofence_m=None)),
-    st.builds(
-        lambda size_m: _airspace(geofence_m=((-size_m, -size_m), (size_m, -size_m), (0.0, size_m))),
-        st.floats(50.0, 300.0),
-    ),
-    st.builds(lambda low_m: _airspace(altitude_m=(low_m, 90.0)), st.floats(6.0, 80.0)),
+    st.sampled_from([_airspace(no_fly=()), _airspace(geofence_m=None)]),
+    st.floats(50.0, 300.0).map(lambda x: _airspace(geofence_m=((-x, -x), (x, -x), (0.0, x)))),
+    st.floats(6.0, 80.0).map(lambda low_m: _airspace(altitude_m=(low_m, 90.0))),
     st.builds(_tilted, st.floats(1.0, 180.0)),
-    st.builds(lambda db: lambda s: State(scenario=s).with_power_db(db).scenario, st.floats(-30.0, 40.0)),
+    st.floats(-30.0, 40.0).map(lambda db: lambda s: State(scenario=s).with_power_db(db).scenario),
 )
 
 
@@ -182,24 +168,30 @@ def _hand_made(*edits: Edit) -> str:
     return saved
 
 
-def test_only_what_changed_is_written_anew() -> None:
+@pytest.mark.parametrize(
+    ("edit", "before", "after"),
+    [
+        (_listed("jammers", 0, {"position_m": (17.0, 15.5, 4.0)}), "[17, 15, 4]", "[17, 15.5, 4]"),
+        (_airspace(geofence_m=((-60.0, -60.0), (60.0, -61.0), (0.0, 90.0))), "[60, -60]", "[60, -61.0]"),
+        (_listed("nodes", 0, {"power_dbm": 20.0}), "power_dbm = 30   # one", "power_dbm = 20.0   # one"),
+        (
+            _listed("nodes", 0, {"power_w": 0.3, "power_dbm": None}),
+            "power_dbm = 30   # one",
+            "power_w = 0.3   # one",
+        ),
+    ],
+)
+def test_only_what_changed_is_written_anew(edit: Edit, before: str, after: str) -> None:
     """One number of a list, in its place; a corner of a fence over several lines; a power in either unit."""
-    moved = _hand_made(_updated("jammers", 0, {"position_m": (17.0, 15.5, 4.0)}))
-    assert moved == HAND_MADE.replace("[17, 15, 4]", "[17, 15.5, 4]")
-    fence = _hand_made(_airspace(geofence_m=((-60.0, -60.0), (60.0, -61.0), (0.0, 90.0))))
-    assert fence == HAND_MADE.replace("[60, -60]", "[60, -61.0]")
-    power = _hand_made(_updated("nodes", 0, {"power_dbm": 20.0}))
-    assert power == HAND_MADE.replace("power_dbm = 30   # one", "power_dbm = 20.0   # one")
-    watts = _hand_made(_updated("nodes", 0, {"power_w": 0.3, "power_dbm": None}))
-    assert watts == HAND_MADE.replace("power_dbm = 30   # one", "power_w = 0.3   # one")
+    assert _hand_made(edit) == HAND_MADE.replace(before, after)
 
 
 def test_a_point_that_is_gone_takes_its_comments_along() -> None:
     """The comment above it and those within it, but not the one above the list, nor one that stands alone."""
-    without = _hand_made(_removed("jammers", 0))
+    without = _hand_made(_listed("jammers", 0, None))
     assert "roof" not in without
     assert without.endswith("# Jammers follow.\n\n\n# the end\n")
-    first = _hand_made(_removed("nodes", 0))
+    first = _hand_made(_listed("nodes", 0, None))
     assert "one watt" not in first
     assert "# All nodes.\n[[nodes]]\n# the second\n" in first
     assert 'name = "S2"' in first
@@ -243,10 +235,8 @@ nodes = [
 {head}"""
     scenario = scenario_from_text(text.encode(), "")
     for edit in (
-        _updated("nodes", 1, {"position_m": (8.0, 0.0, 0.0)}),
-        lambda scenario: scenario.model_copy(
-            update={"jammers": (Jammer(name="M", position_m=(1.0, 2.0, 0.0), power_w=2.0),)}
-        ),
+        _listed("nodes", 1, {"position_m": (8.0, 0.0, 0.0)}),
+        _added("jammers", "M", (1.0, 2.0, 0.0), 2.0),
     ):
         scenario = edit(scenario)
     saved = toml_like(text, scenario)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from io import BytesIO
 from textwrap import fill
 from types import SimpleNamespace
@@ -110,7 +111,7 @@ def scene_html(state: State, look: Look = LIGHT, camera: Any = None) -> bytes:
             first.up = camera.up_direction
         stage = Stage(server.scene, look)
         stage.eye_m = first.position
-        stage.render(state)
+        stage.render(replace(state, selected=None))
         page = str(server.scene.as_html(dark_mode=look.dark))
         phone = SimpleNamespace(fov=first.fov, **_PHONE_PX)
         aim(phone, state.scenario, pose)

@@ -26,7 +26,7 @@ from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.panel import Panel, by_hand
 from nullpose.studio.picking import clicked
 from nullpose.studio.readout import failure_html
-from nullpose.studio.session import Session
+from nullpose.studio.session import History, Session
 from nullpose.studio.stage import Stage
 from nullpose.studio.state import Key, State
 
@@ -57,6 +57,7 @@ class Page:
         self._aimed: tuple[int, bool] | None = None  # at which scene, and whether with its drone
         self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None  # canvas and position
         self._is_folded = False
+        self._shown: History | None = None  # in the panel
         state = State(scenario=scenario, case=cases_of(scenario)[0], text=text)
         self.session = Session(state, on_change=self._changed, on_event=lambda event: self.render())
         self.panel = Panel(client.gui, self._typed, dark=dark)
@@ -103,7 +104,7 @@ class Page:
             self._end_wait()
             if not self._is_open:
                 return
-            for part in (self._render_scene, lambda: self.panel.render(self.session.history)):
+            for part in (self._render_scene, self._render_panel):
                 try:
                     try:
                         self._send(part)
@@ -128,6 +129,12 @@ class Page:
             panel = self._client.gui.main_panel
             (panel.minimize if state.is_presented else panel.expand)()
 
+    def _render_panel(self) -> None:
+        history = self.session.history
+        if history is not self._shown:
+            self.panel.render(history)
+            self._shown = history
+
     def _changed(self) -> None:
         with self._lock:
             if self.session.state.dragged is None:
@@ -150,7 +157,9 @@ class Page:
         }
         controls |= {
             "case": lambda label: self.change(lambda state: state.with_case(case_named(label))),
-            "compared": self._compare,
+            "compared": lambda label: self.change(
+                lambda state: state.with_compared(None if label == NO_CASE else case_named(label))
+            ),
             "power": self._slid,
             "power_text": self._power_typed,
         }
@@ -164,8 +173,12 @@ class Page:
             "save": lambda: self._export("scenario.toml", exports.scenario_toml),
             "pose": lambda: self._export("pose.json", exports.pose_json),
             "figure": lambda: self._export("figure.png", exports.figure_png),
-            "picture": lambda: self._export("scene.png", self._picture),
-            "html": lambda: self._export("scene.html", self._html),
+            "picture": lambda: self._export(
+                "scene.png", lambda state: exports.scene_png(state, client, self._look)
+            ),
+            "html": lambda: self._export(
+                "scene.html", lambda state: exports.scene_html(state, self._look, client.camera)
+            ),
         }
         for name, action in controls.items():
             getattr(panel, name).on_update(by_hand(action))
@@ -203,10 +216,6 @@ class Page:
 
     def _switch(self, name: str, value: Any) -> None:
         self.change(lambda state: replace(state, **{name: value}))
-
-    def _compare(self, label: str) -> None:
-        case = None if label == NO_CASE else case_named(label)
-        self.change(lambda state: state.with_compared(case))
 
     def _slid(self, values: tuple[float]) -> None:
         now = time.monotonic()
@@ -247,15 +256,8 @@ class Page:
             is_resized = not np.array_equal(self._fit[0], canvas_px(camera))
             if is_resized and np.allclose(self._fit[1], camera.position, rtol=1e-3):
                 self.aim()
-        with self._lock:
-            self.stage.eye_m = camera.position
-            self.stage.render(self.session.state)
-
-    def _picture(self, state: State) -> bytes:
-        return exports.scene_png(state, self._client, self._look)
-
-    def _html(self, state: State) -> bytes:
-        return exports.scene_html(replace(state, selected=None), self._look, self._client.camera)
+        self.stage.eye_m = camera.position
+        self.render()
 
     def _export(self, name: str, make: Callable[[State], bytes]) -> None:
         try:

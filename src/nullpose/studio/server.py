@@ -86,11 +86,11 @@ class Studio:
             self._disconnect(client)
 
     def _disconnect(self, client: ClientHandle) -> None:
-        with self._lock:
+        with self._lock:  # so that the studio's end waits for what a page is being sent
             page = self.pages.pop(client.client_id, None)
-        if page is not None:
-            page.close()
-            self._places.release()
+            if page is not None:
+                page.close()
+                self._places.release()
 
 
 @contextmanager

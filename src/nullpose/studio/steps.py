@@ -10,7 +10,7 @@ from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solver import Result, Rigour, Scheme, Status, default_gap_of, solve
 from nullpose.solver.robust import ROBUST_GAP
-from nullpose.studio.answer import Answer, PowerCurve, answer_of
+from nullpose.studio.answer import Answer, PowerCurve, answer_of, with_errors
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.state import POWER_DB, State
 from nullpose.study import ResultRow, ResultTable
@@ -71,7 +71,9 @@ def proved_answers(state: State, case: Case, on_progress: Callable[[float, int],
     if not case.robust:
         proved = solve(scenario, case.scheme, time_limit_s=_PROOF_LIMIT_S, on_progress=on_progress)
         _proved.set()
-        yield answer_of(state.version, case, proved)
+        answer = answer_of(state.version, case, proved)
+        yield answer
+        yield with_errors(answer)
         return
     for certify in (False, True):
         guarded = solve(

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from nullpose.errors import NullposeError
 from nullpose.solver import announce_compiling
-from nullpose.studio.answer import Answer, Notice, Progress, with_errors
+from nullpose.studio.answer import Answer, Notice, Progress
 from nullpose.studio.case import Case
 from nullpose.studio.field_map import field_map, map_kernel_is_ready
 from nullpose.studio.state import Event, State
@@ -72,8 +72,7 @@ class Worker:
         with self._changed:
             self._closed = True
             self._changed.notify()
-        if threading.current_thread() is not self._thread:
-            self._thread.join(timeout_s)
+        self._thread.join(timeout_s)
         return not self._thread.is_alive()
 
     def _run(self) -> None:
@@ -100,8 +99,6 @@ class Worker:
         best: Answer | None = None
         for case in state.cases:
             proved = self._publish_all(state, case, proved_answers(state, case, self._progress(state, case)))
-            if proved is not None:
-                proved = self._publish_all(state, case, map(with_errors, [proved]))
             best = best or proved
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._publish_all(state, state.case, power_curves(state, self._go_on))

@@ -8,31 +8,23 @@ from __future__ import annotations
 import logging
 import re
 import shutil
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, sync_playwright
+from tests.studio.browser.hand import PAPER, Hand, opened
 
-from nullpose import Scenario, load
-from nullpose.studio.case import OPTIMUM
 from nullpose.studio.server import Studio, studio
-from nullpose.studio.session import Session
 from nullpose.studio.state import State
 
-PAPER = load(Path(__file__).parents[3] / "examples" / "paper.toml")
-PATIENCE_MS = 90_000
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
 
 NOT_OURS = re.compile(
     r"THREE\.Clock: This module has been deprecated|GL Driver Message|software WebGL|swiftshader",
     re.IGNORECASE,
 )
 """What viser and a Chromium without a graphics card say by themselves."""
-
-Open = Callable[[], Page]
 
 
 class Words(logging.Handler):
@@ -111,54 +103,29 @@ def running() -> Iterator[Studio]:
 
 
 @pytest.fixture
-def alone(paper: Scenario) -> Iterator[Studio]:
+def alone() -> Iterator[Studio]:
     """A studio that no other test uses."""
-    with studio(paper, port=0) as running:
+    with studio(PAPER, port=0) as running:
         yield running
 
 
 @pytest.fixture(scope="session")
-def open_page(browser: Browser, running: Studio) -> Open:
-    """Opens a page of its own and waits for its first proof."""
-
-    def opened() -> Page:
-        # a quarter of the pixels: without a graphics card it is they that take the time
-        context = browser.new_context(viewport={"width": 1280, "height": 800}, device_scale_factor=0.5)
-        page = context.new_page()
-        page.set_default_timeout(PATIENCE_MS)
-        page.goto(running.address)
-        page.wait_for_function(CERTIFIED)
-        for button in page.locator("button.mantine-Notification-closeButton").all():
-            button.click()  # the notice that there is no graphics card
-        return page
-
-    return opened
-
-
-@pytest.fixture(scope="session")
-def first_page(open_page: Open, running: Studio) -> tuple[Page, Session]:
-    """The page that most tests share, since opening one takes long, with the server's side of it."""
-    page = open_page()
-    (ours,) = running.pages.values()
-    return page, ours.session
+def shared(browser: Browser, running: Studio) -> Iterator[Hand]:
+    """The page that most tests share, since opening one takes long."""
+    with opened(browser, running) as hand:
+        yield hand
 
 
 @pytest.fixture
-def session(first_page: tuple[Page, Session]) -> Session:
-    """The server's side of the shared page, back at the paper's scene."""
-    page, session = first_page
-    session.change(lambda view: State(scenario=PAPER, case=OPTIMUM))
+def hand(shared: Hand) -> Hand:
+    """A hand on the shared page: the paper's scene with its proof, nothing selected, in the first tab."""
+    page = shared.page
     page.bring_to_front()  # one behind another draws nothing, and waits of it never end
-    page.wait_for_function(
-        f"+document.querySelector('[data-np=readout]').dataset.version == {session.state.version}"
-    )
-    page.wait_for_function(CERTIFIED)
-    return session
-
-
-@pytest.fixture
-def page(first_page: tuple[Page, Session], session: Session) -> Page:
-    """The shared page, showing the paper's scene with its proof, its first tab in front."""
-    page, _ = first_page
-    page.get_by_role("tab", name="Scene").click()
-    return page
+    page.keyboard.press("Escape")
+    shared.session.change(lambda view: State(scenario=PAPER))
+    shared.certified()
+    shared.tab("Scene")
+    page.mouse.move(400, 20)
+    shared.ours.aim()  # another test may have turned the camera
+    page.wait_for_timeout(500)
+    return shared

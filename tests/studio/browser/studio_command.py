@@ -10,48 +10,43 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
-from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import Browser
-
-PAPER = Path(__file__).parents[3] / "examples" / "paper.toml"
-CERTIFIED = "document.querySelector('[data-np=status-0]')?.innerText.includes('certified to')"
+from tests.studio.browser.hand import CERTIFIED, EXAMPLES
 
 
-def _command(*arguments: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        [sys.executable, "-u", "-m", "nullpose", "studio", str(PAPER), *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+class Command:
+    """A studio that runs as a command, at a free port unless one is given."""
 
+    def __init__(self, *options: str, port: int = 0) -> None:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.port = port or int(probe.getsockname()[1])
+        command = [sys.executable, "-u", "-m", "nullpose", "studio", str(EXAMPLES / "paper.toml")]
+        self.process = subprocess.Popen(
+            [*command, "--port", str(self.port), *options],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    def address(self) -> str:
+        """Return the address that it prints when it is open."""
+        assert self.process.stdout is not None
+        found = re.search(r"http://\S+", self.process.stdout.readline())
+        assert found is not None
+        return found[0]
 
-
-def _address(process: subprocess.Popen[str]) -> str:
-    """Returns the address that a studio prints when it is open."""
-    assert process.stdout is not None
-    found = re.search(r"http://\S+", process.stdout.readline())
-    assert found is not None
-    return found[0]
-
-
-def _ended(process: subprocess.Popen[str]) -> tuple[str, str]:
-    """Returns what a studio said after its address, and its complaints."""
-    assert process.stdout is not None
-    assert process.stderr is not None
-    process.wait(30.0)
-    with process.stdout, process.stderr:
-        return process.stdout.read(), process.stderr.read()
+    def ended(self, by: int = signal.SIGINT) -> tuple[str, str]:
+        """End it by a signal, and return what it says after its address, and its complaints."""
+        os.killpg(self.process.pid, by)
+        said = self.process.communicate(timeout=30.0)
+        assert self.process.returncode == 0
+        return said
 
 
 def _html(address: str) -> bytes:
@@ -59,28 +54,26 @@ def _html(address: str) -> bytes:
 
 
 def test_interrupt_ends_it_without_a_trace() -> None:
-    """After Ctrl-C the process and all of its group are gone, with code 0 and no complaint."""
-    port = _free_port()
-    process = _command("--port", str(port))
-    address = _address(process)
-    assert address.startswith(f"http://127.0.0.1:{port}/?token=")
+    """After Ctrl-C the process and its group are gone, with code 0; rubbish before left no complaint."""
+    command = Command()
+    address = command.address()
+    assert address.startswith(f"http://127.0.0.1:{command.port}/?token=")
+    for rubbish in (b"rubbish\r\n\r\n", b"\x16\x03\x01\x02", b"GET / HTTP/1.1\r\n\r\n"):
+        with socket.create_connection(("127.0.0.1", command.port)) as plain:
+            plain.sendall(rubbish)
+            plain.shutdown(socket.SHUT_WR)
+            plain.recv(1000)
     assert b"html" in _html(address)
-    os.killpg(process.pid, signal.SIGINT)
-    assert _ended(process) == ("stopped\n", "")
-    assert process.returncode == 0
-    try:
-        os.killpg(process.pid, 0)
-        alone = False
-    except ProcessLookupError:
-        alone = True
-    assert alone
+    assert command.ended() == ("stopped\n", "")
+    with pytest.raises(ProcessLookupError):
+        os.killpg(command.process.pid, 0)
 
 
 def test_the_printed_address_opens_in_a_browser(browser: Browser, words: Any) -> None:
     """The scene with its proof, also loaded again, from nowhere else; the bare address shows nothing."""
     words.expected = ["Forbidden"]
-    process = _command("--port", str(_free_port()))
-    address = _address(process)
+    command = Command()
+    address = command.address()
     page = browser.new_context().new_page()
     page.set_default_timeout(90_000)
     asked: list[str] = []
@@ -90,68 +83,41 @@ def test_the_printed_address_opens_in_a_browser(browser: Browser, words: Any) ->
     page.wait_for_function(CERTIFIED)
     page.reload()
     page.wait_for_function(CERTIFIED)
-    assert {urlsplit(url).netloc for url in asked if not url.startswith(("blob:", "data:"))} == {
-        urlsplit(address).netloc
-    }
+    places = {urlsplit(url).netloc for url in asked if not url.startswith(("blob:", "data:"))}
+    assert places == {urlsplit(address).netloc}
     bare = page.goto(address.partition("?")[0])
     assert bare is not None
     assert bare.status == 403
     assert "open the whole address" in page.content()
     page.context.close()
-    process.send_signal(signal.SIGINT)
-    assert _ended(process)[1] == ""
-
-
-def test_what_is_no_http_leaves_no_word_in_the_terminal() -> None:
-    """Whoever sends rubbish to the port fills no terminal with it, and the studio goes on."""
-    port = _free_port()
-    process = _command("--port", str(port))
-    address = _address(process)
-    for rubbish in (b"rubbish\r\n\r\n", b"\x16\x03\x01\x02", b"GET / HTTP/1.1\r\n\r\n"):
-        with socket.create_connection(("127.0.0.1", port)) as plain:
-            plain.sendall(rubbish)
-            plain.shutdown(socket.SHUT_WR)
-            plain.recv(1000)
-    _html(address)
-    process.send_signal(signal.SIGINT)
-    assert _ended(process) == ("stopped\n", "")
+    assert command.ended()[1] == ""
 
 
 def test_a_port_in_use_ends_with_a_message() -> None:
     """A second studio at the same port ends with code 2 and one line, and the first goes on."""
-    port = _free_port()
-    first = _command("--port", str(port))
-    address = _address(first)
-    second = _command("--port", str(port))
-    _, err = second.communicate(timeout=60.0)
-    assert second.returncode == 2
-    assert f"--port: {port} is in use" in err
+    first = Command()
+    address = first.address()
+    second = Command(port=first.port)
+    _, err = second.process.communicate(timeout=60.0)
+    assert second.process.returncode == 2
+    assert f"--port: {first.port} is in use" in err
     assert err.count("\n") == 1
     _html(address)
-    first.send_signal(signal.SIGTERM)
-    _ended(first)
-    assert first.returncode == 0
+    first.ended(signal.SIGTERM)
 
 
 def test_it_listens_to_this_machine_only_unless_told() -> None:
     """Without --host other addresses are refused; with one, it says who can come in, and with what."""
-    port = _free_port()
-    process = _command("--port", str(port))
-    _address(process)
+    command = Command()
+    command.address()
     with socket.socket() as probe:
         probe.settimeout(2.0)
-        assert probe.connect_ex(("127.0.0.2", port)) != 0
-    process.send_signal(signal.SIGINT)
-    assert "another machine" not in _ended(process)[0]
-    process = _command("--port", str(port), "--host", "0.0.0.0")
-    address = _address(process)
-    elsewhere = address.replace("localhost", "127.0.0.2")
+        assert probe.connect_ex(("127.0.0.2", command.port)) != 0
+    assert "another machine" not in command.ended()[0]
+    command = Command("--host", "0.0.0.0")
+    elsewhere = command.address().replace("localhost", "127.0.0.2")
     assert b"html" in _html(elsewhere)
     with pytest.raises(urllib.error.HTTPError, match="403") as refused:
         _html(elsewhere.partition("?")[0])
     refused.value.close()
-    process.send_signal(signal.SIGINT)
-    assert (
-        "whoever has this address with its token can open the studio from another machine"
-        in (_ended(process)[0])
-    )
+    assert "whoever has this address with its token can open the studio" in command.ended()[0]

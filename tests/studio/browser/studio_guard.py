@@ -27,18 +27,13 @@ from nullpose.studio.opening import LOOPBACK, open_server
 from nullpose.studio.server import MOST_PAGES, studio
 
 PROTOCOL: Any = f"viser-v{viser.__version__}"
-PLACES = {"loopback": LOOPBACK, "everywhere": "0.0.0.0"}
 OTHER_TOKEN = "A" * 43
 
 Answer = Callable[[str, str | None, str], int]
 
 
 class Asked:
-    """A server, and what it answers to a host, an origin and a query.
-
-    Args:
-        address: of the server, with the token.
-    """
+    """A server, and what it answers to a host, an origin and a query."""
 
     def __init__(self, address: str) -> None:
         parts = urlsplit(address)
@@ -46,41 +41,28 @@ class Asked:
         self.port, self.query = parts.port, parts.query
 
     def get(self, path: str, host: str, origin: str | None = None) -> tuple[int, Any]:
-        """Returns the status and the headers of what is at a path."""
+        """Return the status and the headers of what is at a path."""
+        headers = {"Host": host} | ({} if origin is None else {"Origin": origin})
         connection = http.client.HTTPConnection(LOOPBACK, self.port, timeout=10.0)
-        connection.putrequest("GET", path, skip_host=True)
-        connection.putheader("Host", host)
-        if origin is not None:
-            connection.putheader("Origin", origin)
-        connection.endheaders()
+        connection.request("GET", path, headers=headers)
         answer = connection.getresponse()
         answer.read()
         connection.close()
         return answer.status, answer.headers
 
     def page(self, host: str, origin: str | None, query: str) -> int:
-        """Returns the status of the page."""
+        """Return the status of the page."""
         return self.get(f"/index.html?{query}", host, origin)[0]
 
     def websocket(self, host: str, origin: str | None, query: str) -> int:
-        """Returns the status of a handshake; 200 stands for one that is let in."""
-        more = {} if origin is None else {"Origin": origin}
+        """Return the status of a handshake; 200 stands for one that is let in."""
+        more: Any = {"additional_headers": {} if origin is None else {"Origin": origin}}
         with socket.create_connection((LOOPBACK, self.port)) as plain:
             try:
-                connect(
-                    f"ws://{host}/?{query}", sock=plain, additional_headers=more, subprotocols=[PROTOCOL]
-                ).close()
+                connect(f"ws://{host}/?{query}", sock=plain, subprotocols=[PROTOCOL], **more).close()
             except InvalidStatus as refused:
                 return int(refused.response.status_code)
         return 200
-
-
-@pytest.fixture(scope="module", params=PLACES)
-def asked(request: pytest.FixtureRequest) -> Iterator[Asked]:
-    """A server that listens to this machine alone, and one that listens to all."""
-    server, address = open_server(PLACES[request.param], 0)
-    yield Asked(address)
-    server.stop()
 
 
 @pytest.fixture(scope="module")
@@ -91,60 +73,68 @@ def alone() -> Iterator[Asked]:
     server.stop()
 
 
+@pytest.fixture(scope="module")
+def everywhere() -> Iterator[Asked]:
+    """A server that listens to all."""
+    server, address = open_server("0.0.0.0", 0)
+    yield Asked(address)
+    server.stop()
+
+
+@pytest.fixture(params=["alone", "everywhere"])
+def asked(request: pytest.FixtureRequest) -> Asked:
+    """Each of the two."""
+    return request.getfixturevalue(request.param)
+
+
 @pytest.fixture(params=["page", "websocket"])
 def kind(request: pytest.FixtureRequest) -> str:
     """What is asked for."""
     return str(request.param)
 
 
-@pytest.mark.parametrize("name", ["localhost", "127.0.0.1", "[::1]"])
-@pytest.mark.parametrize("with_origin", [True, False])
-def test_the_token_lets_in(asked: Asked, kind: str, name: str, with_origin: bool) -> None:
-    """With it, by every name of this machine, from the studio's page and from what is no browser."""
+def test_the_token_lets_in_and_nothing_else(asked: Asked, kind: str) -> None:
+    """By every name of this machine, from the studio's page and from what is no browser."""
     answer: Answer = getattr(asked, kind)
-    host = f"{name}:{asked.port}"
-    assert answer(host, f"http://{host}" if with_origin else None, asked.query) == 200
+    wrong = ("", "token=", f"token={OTHER_TOKEN}", "token=%FF%00", "tokens=1;token", asked.query[:-1])
+    for name in ("localhost", "127.0.0.1", "[::1]"):
+        host = f"{name}:{asked.port}"
+        for origin in (f"http://{host}", None):
+            assert answer(host, origin, asked.query) == 200
+            assert [answer(host, origin, query) for query in wrong] == len(wrong) * [403]
 
 
-@pytest.mark.parametrize("query", ["", "token=", f"token={OTHER_TOKEN}", "token=%FF%00", "tokens=1;token"])
-def test_no_token_and_a_wrong_one_are_refused(asked: Asked, kind: str, query: str) -> None:
-    """At the right address and from the right page."""
-    answer: Answer = getattr(asked, kind)
-    host = f"localhost:{asked.port}"
-    assert answer(host, f"http://{host}", query) == 403
-    assert answer(host, None, query) == 403
-    assert answer(host, None, asked.query[:-1]) == 403
-
-
-@pytest.mark.parametrize(
-    "origin",
-    ["http://evil.example", "null", "", "http://localhost", "http://localhost:1", "https://localhost:{port}"],
-)
-def test_another_pages_origin_is_refused(asked: Asked, kind: str, origin: str) -> None:
+def test_another_pages_origin_is_refused(asked: Asked, kind: str) -> None:
     """With the right token, too: also a page of this machine at another port, and one without an address."""
     answer: Answer = getattr(asked, kind)
-    assert answer(f"localhost:{asked.port}", origin.format(port=asked.port), asked.query) == 403
+    host = f"localhost:{asked.port}"
+    for origin in (
+        "http://evil.example",
+        "null",
+        "",
+        "http://localhost",
+        "http://localhost:1",
+        f"https://{host}",
+    ):
+        assert answer(host, origin, asked.query) == 403, origin
 
 
-@pytest.mark.parametrize(
-    "host", ["evil.example:{port}", "localhost", "localhost:1", "evil.localhost:{port}", "127.0.0.2:{port}"]
-)
-def test_another_host_is_refused(alone: Asked, kind: str, host: str) -> None:
+def test_another_host_is_refused(alone: Asked, kind: str) -> None:
     """A name that is made to point here afterwards is none of the studio's, whatever else is right."""
     answer: Answer = getattr(alone, kind)
-    host = host.format(port=alone.port)
-    assert answer(host, f"http://{host}", alone.query) == 403
-    assert answer(host, None, alone.query) == 403
+    for name in ("evil.example:{}", "localhost", "localhost:1", "evil.localhost:{}", "127.0.0.2:{}"):
+        host = name.format(alone.port)
+        assert [answer(host, origin, alone.query) for origin in (f"http://{host}", None)] == [403, 403], host
 
 
-def test_a_machine_with_many_names_is_asked_by_its_own_page(kind: str) -> None:
-    """Where all may come any name will do, but the page must be of the one that is asked."""
-    server, address = open_server("0.0.0.0", 0)
-    answer: Answer = getattr(Asked(address), kind)
-    query = Asked(address).query
-    assert answer("box.example:8080", "http://box.example:8080", query) == 200
-    assert answer("box.example:8080", "http://other.example:8080", query) == 403
-    server.stop()
+def test_a_machine_with_many_names_is_asked_by_its_own_page(
+    everywhere: Asked, alone: Asked, kind: str
+) -> None:
+    """Where all may come any name will do, but the page must be of the one that is asked, with its token."""
+    answer: Answer = getattr(everywhere, kind)
+    assert answer("box.example:8080", None, alone.query) == 403
+    assert answer("box.example:8080", "http://box.example:8080", everywhere.query) == 200
+    assert answer("box.example:8080", "http://other.example:8080", everywhere.query) == 403
 
 
 def test_two_hosts_or_two_origins_are_refused(alone: Asked) -> None:
@@ -160,6 +150,7 @@ def test_two_hosts_or_two_origins_are_refused(alone: Asked) -> None:
 
 def test_the_page_keeps_its_token_and_stands_in_no_frame(alone: Asked) -> None:
     """What is asked for names its address to nobody, stands in no page, and sets no cookie."""
+    assert len(alone.query) == len("token=") + 43
     host = f"localhost:{alone.port}"
     for path in ("/", "/index.html", "/alive"):
         status, headers = alone.get(f"{path}?{alone.query}&fixedDpr=0.5", host)
@@ -167,22 +158,8 @@ def test_the_page_keeps_its_token_and_stands_in_no_frame(alone: Asked) -> None:
         assert headers["Referrer-Policy"] == "no-referrer"
         assert headers["Content-Security-Policy"] == "frame-ancestors 'none'"
         assert headers["Set-Cookie"] is None
-
-
-def test_whether_a_studio_still_runs_is_told_to_its_own_page_only(alone: Asked) -> None:
-    """Another run's page is refused, as for everything else."""
-    host = f"localhost:{alone.port}"
-    for query, told in ((alone.query, 200), (f"token={OTHER_TOKEN}", 403), ("", 403)):
-        assert alone.get(f"/alive?{query}", host)[0] == told
-    assert alone.get(f"/alive?{alone.query}", host, "http://evil.example")[0] == 403
-
-
-def test_every_run_has_a_token_of_its_own(alone: Asked) -> None:
-    """So that an address is of no use when its studio has ended."""
-    server, address = open_server(LOOPBACK, 0)
-    server.stop()
-    assert urlsplit(address).query != alone.query
-    assert len(alone.query) == len("token=") + 43
+    for query, origin in ((f"token={OTHER_TOKEN}", None), ("", None), (alone.query, "http://evil.example")):
+        assert alone.get(f"/alive?{query}", host, origin)[0] == 403  # also whether the studio still runs
 
 
 def test_a_viser_that_cannot_be_guarded_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -250,8 +227,8 @@ def _packed(message: Any) -> bytes:
     return bytes(msgspec.msgpack.encode(message.as_serializable_dict([])))
 
 
-def _until(met: Callable[[], object], seconds: float = 60.0) -> None:
-    until = time.monotonic() + seconds
+def _until(met: Callable[[], object]) -> None:
+    until = time.monotonic() + 60.0
     while not met():
         assert time.monotonic() < until, "it did not happen in time"
         time.sleep(0.02)

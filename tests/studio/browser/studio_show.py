@@ -12,11 +12,10 @@ import pytest
 from benchmarks.chromium import pixels
 from matplotlib.image import imread
 from playwright.sync_api import Browser
+from tests.studio.browser.hand import EXAMPLES, PAPER
 
 import nullpose
 from nullpose.studio.camera import CARD_PX, aim
-
-PAPER = Path(__file__).parents[3] / "examples" / "paper.toml"
 
 
 def _value(browser: Browser, path: Path) -> float:
@@ -40,48 +39,38 @@ def test_elsewhere_it_opens_in_the_browser(
     """From a file of the user's own, with the value of the result; a scenario is solved for it."""
     opened: list[str] = []
     monkeypatch.setattr(webbrowser, "open", opened.append)
-    scenario = nullpose.load(PAPER)
-    path = nullpose.show(scenario)
-    assert path is not None
-    assert opened == [path.as_uri()]
-    assert stat.S_IMODE(path.stat().st_mode) == 0o600
-    assert _value(browser, path) == nullpose.solve(scenario).objective.value
+    vertical = nullpose.solve(PAPER, "vertical")
+    for found, value in (
+        (PAPER, nullpose.solve(PAPER).objective.value),
+        (vertical, vertical.objective.value),
+    ):
+        path = nullpose.show(found, dark=found is vertical)
+        assert path is not None
+        assert opened.pop() == path.as_uri()
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
+        assert _value(browser, path) == value
+        path.unlink()
     assert capfd.readouterr() == ("", "")
-    path.unlink()
-
-
-def test_a_result_is_shown_as_it_is(browser: Browser, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Another case than the best has its own pose and value; an array's result is refused."""
-    monkeypatch.setattr(webbrowser, "open", lambda address: None)
-    scenario = nullpose.load(PAPER)
-    result = nullpose.solve(scenario, "vertical")
-    path = nullpose.show(result, dark=True)
-    assert path is not None
-    assert _value(browser, path) == result.objective.value
-    path.unlink()
     with pytest.raises(nullpose.UsageError, match="array"):
-        nullpose.show(nullpose.solve(nullpose.load(PAPER.with_name("array.toml"))))
+        nullpose.show(nullpose.solve(nullpose.load(EXAMPLES / "array.toml")))
 
 
 def test_in_a_notebook_it_is_below_the_cell(browser: Browser, tmp_path: Path) -> None:
     """As one output that is saved with the notebook, and draws the scene by itself."""
     nbclient, v4 = pytest.importorskip("nbclient"), pytest.importorskip("nbformat").v4
-    code = f"import nullpose\nnullpose.show(nullpose.load({str(PAPER)!r}), height=300)"
+    code = f"import nullpose\nnullpose.show(nullpose.load({str(EXAMPLES / 'paper.toml')!r}), height=300)"
     notebook: Any = v4.new_notebook(cells=[v4.new_code_cell(code)])
     nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
     (output,) = notebook.cells[0].outputs
     path = tmp_path / "notebook.html"
     path.write_text(f"<meta charset=utf-8>{output.data['text/html']}", encoding="utf-8")
-    assert _value(browser, path) == nullpose.solve(nullpose.load(PAPER)).objective.value
+    assert _value(browser, path) == nullpose.solve(PAPER).objective.value
 
 
-@pytest.mark.parametrize("name", ["paper", "field"])
-def test_on_a_phone_the_drone_is_in_the_frame(
-    browser: Browser, monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
+def test_on_a_phone_the_drone_is_in_the_frame(browser: Browser, monkeypatch: pytest.MonkeyPatch) -> None:
     """Below the card, where the camera for a phone has it; and nothing of viser's can be opened."""
     monkeypatch.setattr(webbrowser, "open", lambda address: None)
-    result = nullpose.solve(nullpose.load(PAPER.with_name(f"{name}.toml")), certify=False)
+    result = nullpose.solve(nullpose.load(EXAMPLES / "field.toml"), certify=False)
     path = nullpose.show(result)
     assert path is not None
     page = browser.new_page(viewport={"width": 390, "height": 844}, is_mobile=True, has_touch=True)
