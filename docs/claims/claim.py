@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from claims.study import JammingStudy
-from nullpose.report.certainty import Certainty
+from nullpose.report.certainty import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +44,7 @@ class Claim:
     holds_up_to: float | None = None
     holds_from: float | None = None
     fails_from: float | None = None
-    certainty: Certainty = field(default_factory=lambda: Certainty.of(()))
+    certainty: Mapping[str, Any] = field(default_factory=lambda: counted(()))
 
     def checked(self, study: JammingStudy) -> Claim:
         """Return the claim with its verdict, and what it rests on.
@@ -54,7 +54,7 @@ class Claim:
         """
         study.used.clear()
         measured = self.measure(study)
-        return replace(self, **measured, certainty=Certainty.of(study.used.values()))
+        return replace(self, **measured, certainty=counted(study.used.values()))
 
     @property
     def verdict(self) -> str:
@@ -64,7 +64,7 @@ class Claim:
     @property
     def is_certified(self) -> bool:
         """Whether it rests on values, each of them certified."""
-        return self.certainty.certified == self.certainty.values > 0
+        return self.certainty["certified"] == self.certainty["values"] > 0
 
     @property
     def proved_words(self) -> str:

@@ -54,7 +54,7 @@ def _section(claim: Claim) -> Iterator[str]:
     yield f"*{claim.verdict.capitalize()}* ({claim.source}). {claim.finding}"
     yield (
         f"- How it was decided: {claim.method}\n"
-        f"- Proved, from {claim.certainty.certified} certified values: {claim.proved_words}\n"
+        f"- Proved, from {claim.certainty['certified']} certified values: {claim.proved_words}\n"
         f"- Not proved: {claim.unproved}"
     )
     levels = [{_words(name): _cell(value) for name, value in row.items()} for row in claim.levels]

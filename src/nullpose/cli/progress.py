@@ -100,11 +100,9 @@ class GapBar(ProgressBar):
 
     def closed(self, gap: float) -> float:
         """Compute the share of the way from the widest gap seen to the target, in orders of magnitude."""
-        if not gap > self._target:
-            return 1.0
-        if not self._widest > gap:
-            return 0.0
-        return math.log(self._widest / gap) / math.log(self._widest / self._target)
+        if self._widest > gap > self._target:
+            return math.log(self._widest / gap) / math.log(self._widest / self._target)
+        return 0.0 if gap > self._target else 1.0
 
 
 class StudyBar(ProgressBar):

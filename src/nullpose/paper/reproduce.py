@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from nullpose.files import check_outputs, write_csv
@@ -17,7 +17,7 @@ from nullpose.paper.scene import (
     paper_scenario,
 )
 from nullpose.problem.schemes import Scheme
-from nullpose.report.certainty import Certainty
+from nullpose.report.certainty import counted
 from nullpose.report.document import View, document
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import write_figure
@@ -45,7 +45,7 @@ class Reproduction:
         return {
             "scenario": self.table.rows[0].scenario.name,
             "levels_are": "P_M/P, the jamming-to-transmission power ratio",
-            "figure2": {name: asdict(Certainty.of(self.table.of(name))) for name in self.table.names},
+            "figure2": {name: counted(self.table.of(name)) for name in self.table.names},
             "provenance": dict(self.table.rows[0].provenance),
         }
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from nullpose.report.document import grouped
 from nullpose.report.numbers import capitalised, rounded_up
@@ -12,57 +12,35 @@ from nullpose.solver import Rigour, Status
 from nullpose.study import ResultRow, ResultTable
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Certainty:
-    """How many values there are of each status, and how wide the widest gap to an upper bound is.
+def counted(rows: Iterable[ResultRow]) -> dict[str, Any]:
+    """Count values by status, with the widest gap of those with a bound; None if there are none."""
+    rows = tuple(rows)
+    counts = Counter(row.status for row in rows)
+    gaps = [row.objective.relative_gap for row in rows if row.objective.relative_gap is not None]
+    return {
+        "values": len(rows),
+        "certified": counts[Status.CERTIFIED],
+        "gap_not_reached": counts[Status.GAP_NOT_REACHED],
+        "best_found": counts[Status.BEST_FOUND],
+        "largest_relative_gap": max(gaps, default=None),
+    }
 
-    Args:
-        values: how many there are.
-        certified: values with a bound within the requested gap.
-        gap_not_reached: values with a bound farther off.
-        best_found: values with no bound.
-        largest_relative_gap: of those with a bound; None if there are none.
-    """
 
-    values: int
-    certified: int
-    gap_not_reached: int
-    best_found: int
-    largest_relative_gap: float | None
+def _weakest(counts: Mapping[str, Any]) -> str:
+    """Name the status that every value has at least."""
+    return next((key for key in ("best_found", "gap_not_reached") if counts[key]), "certified")
 
-    @classmethod
-    def of(cls, rows: Iterable[ResultRow]) -> Certainty:
-        """Count the rows of a sweep, of any schemes."""
-        rows = tuple(rows)
-        counts = Counter(row.status for row in rows)
-        gaps = [row.objective.relative_gap for row in rows if row.objective.relative_gap is not None]
-        return cls(
-            values=len(rows),
-            certified=counts[Status.CERTIFIED],
-            gap_not_reached=counts[Status.GAP_NOT_REACHED],
-            best_found=counts[Status.BEST_FOUND],
-            largest_relative_gap=max(gaps, default=None),
-        )
 
-    @property
-    def weakest(self) -> Status:
-        """The status that every value has at least."""
-        if self.best_found:
-            return Status.BEST_FOUND
-        return Status.GAP_NOT_REACHED if self.gap_not_reached else Status.CERTIFIED
-
-    @property
-    def sentence(self) -> str:
-        """What is true of every value, in words, with the widest gap."""
-        gap = "none" if self.largest_relative_gap is None else rounded_up(self.largest_relative_gap)
-        if self.weakest is Status.BEST_FOUND:
-            return "best found by search, no upper bound"
-        if self.weakest is Status.CERTIFIED:
-            return f"each point is certified optimal within {gap} (relative)"
-        return (
-            "all bounds are valid, but the requested gap is not reached at "
-            f"{self.gap_not_reached} of {self.values} points; relative gap up to {gap}"
-        )
+def _sentence(counts: Mapping[str, Any]) -> str:
+    """Write what is true of every value, with the widest gap."""
+    gap = "none" if counts["largest_relative_gap"] is None else rounded_up(counts["largest_relative_gap"])
+    sentences = {
+        "best_found": "best found by search, no upper bound",
+        "certified": f"each point is certified optimal within {gap} (relative)",
+        "gap_not_reached": "all bounds are valid, but the requested gap is not reached at "
+        f"{counts['gap_not_reached']} of {counts['values']} points; relative gap up to {gap}",
+    }
+    return sentences[_weakest(counts)]
 
 
 def certainty_lines(table: ResultTable) -> list[str]:
@@ -72,12 +50,14 @@ def certainty_lines(table: ResultTable) -> list[str]:
 
 def labelled_certainty(table: ResultTable) -> list[tuple[str, str]]:
     """Pair the label of each curve of a sweep with how certain it is, curves of one status together."""
-    labelled: list[tuple[str, str]] = []
-    for status in Status:
-        names = [name for name in table.names if Certainty.of(table.of(name)).weakest is status]
-        together = Certainty.of(row for row in table.rows if row.name in names)
-        labelled += [(table.of(name)[0].label, together.sentence) for name in names]
-    return labelled
+    weakest = {name: _weakest(counted(table.of(name))) for name in table.names}
+    sentences = {
+        status: _sentence(counted(row for row in table.rows if weakest[row.name] == status))
+        for status in weakest.values()
+    }
+    order = ("certified", "gap_not_reached", "best_found")
+    names = sorted(weakest, key=lambda name: order.index(weakest[name]))
+    return [(table.of(name)[0].label, sentences[weakest[name]]) for name in names]
 
 
 def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:

@@ -100,9 +100,8 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
     if best.scenario.array is not None:
         raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
     results = tuple(_against(best, pose) for pose in poses)
-    if len(results) > 1:
-        results = tuple(replace(result, error_sizes=None) for result in results)
-    return Evaluation(best=best, results=results)
+    sizes = best.error_sizes if len(results) == 1 else None
+    return Evaluation(best=best, results=tuple(replace(result, error_sizes=sizes) for result in results))
 
 
 def evaluated(result: Result, scenario: Scenario, pose: Pose) -> Result:
@@ -133,9 +132,11 @@ def _against(best: Result, pose: Pose) -> Result:
         result = replace(result, objective=objective_of(scenario, value, ratio_bound, best.rigour))
         below = quantity.in_unit(bound) - quantity.in_unit(value)
     place = ", ".join(f"{x:z.3f}" for x in best.pose.position_m)
-    notes = [f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed]
-    notes += [] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]
-    notes += [f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m"]
+    notes = [
+        *(f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed),
+        *([] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]),
+        f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m",
+    ]
     details = GivenDetails(best=best, below_bound=below, not_allowed=not_allowed)
     return replace(result, note="\n".join(notes), details=details)
 

@@ -88,9 +88,9 @@ def _range(summary: Summary, points: Sequence[int]) -> tuple[float, float]:
         return -1.0, 1.0
     low, high = float(np.min(finite)), float(np.max(finite))
     medians = summary.frame.loc[summary.frame["point"].isin(points), "median"]
-    medians = medians[np.isfinite(medians)]
-    if not summary.quantity.is_rate and len(medians):
-        low = max(low, float(medians.min()) - _DEEPEST)
+    lowest = medians[np.isfinite(medians)].min()
+    if not summary.quantity.is_rate:
+        low = float(np.fmax(low, lowest - _DEEPEST))
     margin = 0.03 * (high - low) or 0.5
     return low - margin, high + margin
 
