@@ -8,8 +8,9 @@ from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.solver.kernels.borders import borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.domain import forbidding
 from nullpose.solver.kernels.jit import kernel
-from nullpose.solver.kernels.node import BALL, CENTRE, COLUMNS, HALF, LEVEL, NU
+from nullpose.solver.kernels.node import BALL, CENTRE, COLUMNS, HALF, LEVEL
 from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -18,7 +19,8 @@ SEEDS = st.integers(0, 2**32 - 1)
 @kernel
 def chosen_border(domain, row):
     """Returns the zone that forbids all of a box, having filled the border that is to be used in it."""
-    return choose_border(domain, row)
+    choose_border(domain, row)
+    return forbidding(domain, row[CENTRE:HALF], row[HALF:LEVEL])
 
 
 @kernel
@@ -87,8 +89,8 @@ BALLS_M = np.array([[0.0, 30.0, 8.0], [30.0, 6.0, 10.0]])
         ((30.0, 0.0, 30.0), 1.0, -1, 2),  # all of it in the cylinder
         ((-20.0, 0.0, 20.0), 1.0, 3, -1),  # a wall
         ((-30.0, 0.0, 20.0), 1.0, -1, 3),
-        ((30.0, 5.4, 10.0), 0.6, 1, -1),  # a ball and a zone, the centre outside of the zone: the ball
-        ((30.0, 4.8, 10.0), 0.6, 2, -1),  # and the centre inside of it: the zone
+        ((30.0, 5.4, 10.0), 4.0, 1, -1),  # a ball and a zone, the centre outside of the zone: the ball
+        ((30.0, 4.8, 10.0), 4.0, 2, -1),  # and the centre inside of it: the zone
     ],
 )
 def test_the_border_that_a_box_uses(centre: tuple, half: float, border: int, forbidden: int) -> None:
@@ -97,7 +99,7 @@ def test_the_border_that_a_box_uses(centre: tuple, half: float, border: int, for
     row = row_of(np.array(centre), np.full(3, half))
     assert chosen_border(domain, row) == forbidden
     if forbidden < 0:
-        assert (row[BALL], row[NU]) == (border, 0.0)
+        assert row[BALL] == border
         sides, counts = np.full((MOST_ALTERNATIVES, 2, 5), np.nan), np.zeros(MOST_ALTERNATIVES, np.int64)
         assert borders_of(domain, row, sides, counts) == (0 if border < 0 else 1)
         if 0 <= border < 2:

@@ -28,7 +28,7 @@ HAIR_M = 1e-8
 @kernel
 def alternatives_of(domain, z, row, sides, counts):
     """Returns what the kernel makes of a zone in a box: it has no Python name of its own."""
-    return zone_alternatives(domain, z, row, sides, counts)
+    return zone_alternatives(domain, z, row[CENTRE:HALF], row[HALF:LEVEL], sides, counts)
 
 
 def domain_of(airspace: Airspace) -> Domain:

@@ -9,42 +9,9 @@ import numpy as np
 
 from nullpose.solver.kernels.array_enclosure import box_bound
 from nullpose.solver.kernels.array_response import array_value
+from nullpose.solver.kernels.domain import forbidding
 from nullpose.solver.kernels.jit import heap_kernel, inner_kernel
-from nullpose.solver.kernels.vectors import dot, minus, norm, row
-
-
-@inner_kernel
-def farthest(point, centre, half):
-    """Measure how far a box goes from a point along each coordinate."""
-    away = minus(centre, point)
-    return abs(away[0]) + half[0], abs(away[1]) + half[1], abs(away[2]) + half[2]
-
-
-@inner_kernel
-def beyond_side(side, centre, half):
-    """Measure how far a box goes beyond a forbidden piece's side, squared for a cylinder; negative if not."""
-    if side[0] == 0.0:
-        normal = (side[1], side[2], side[3])
-        reach = abs(normal[0]) * half[0] + abs(normal[1]) * half[1] + abs(normal[2]) * half[2]
-        return dot(normal, centre) + reach - side[4]
-    east, north, _ = farthest((side[1], side[2], 0.0), centre, half)
-    return east * east + north * north - side[4] ** 2
-
-
-@inner_kernel
-def is_forbidden(domain, centre, half):
-    """Test if no position of a box is allowed: all of it inside one ball or one forbidden piece."""
-    for q in range(len(domain.keep_out_points_m)):
-        far = farthest(row(domain.keep_out_points_m, q), centre, half)
-        if dot(far, far) < domain.keep_out_m**2:
-            return True
-    for c in range(len(domain.piece_start) - 1):
-        inside = True
-        for s in range(domain.piece_start[c], domain.piece_start[c + 1]):
-            inside = inside and beyond_side(domain.piece_sides[s], centre, half) < 0.0
-        if inside:
-            return True
-    return False
+from nullpose.solver.kernels.vectors import minus, norm, row
 
 
 @inner_kernel
@@ -72,7 +39,7 @@ def branch_array(problem, domain, root, target, most, state):
 
     Args:
         problem: the array and its scene, each node with its own weights.
-        domain: box, keep-out balls and forbidden pieces of a family.
+        domain: box, keep-out balls and zones of a family.
         root: (2, 4) centre and half widths of the box to begin with: east, north, up, yaw.
         target: bound at which to stop.
         most: boxes at which to stop.
@@ -99,7 +66,7 @@ def branch_array(problem, domain, root, target, most, state):
             child[:] = boxes[at]
             child[0, axis] += side * half[axis]
             child[1, axis] *= 0.5
-            if not is_forbidden(domain, child[0], child[1]):
+            if forbidding(domain, child[0], child[1]) < 0:
                 bound = min(-negative, box_bound(problem, child[0], child[1]))
                 if bound > target:
                     heapq.heappush(heap, (-bound, filled))

@@ -23,7 +23,7 @@ import numpy as np
 from nullpose.objectives import FloatArray
 from nullpose.solver.kernels.array_response import channels_at, node_power, nulls_towards
 from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
-from nullpose.solver.kernels.vectors import along, dot, minus, over, row
+from nullpose.solver.kernels.vectors import along, dot, minus, over, row, square_range
 
 _BEND = 2.0 / math.sqrt(3.0)  # a direction's second derivative along a line is at most this over r^2
 _CYCLE = 2.0 * math.pi
@@ -40,17 +40,6 @@ class Spans(NamedTuple):
     distance_m: FloatArray  # the least
 
 
-@inner_kernel
-def reach(point, centre, half, axes):
-    """Measure the least and the greatest distance from a point to a box, along the first axes only."""
-    least, most = 0.0, 0.0
-    for i in range(axes):
-        away = abs(point[i] - centre[i])
-        least += max(away - half[i], 0.0) ** 2
-        most += (away + half[i]) ** 2
-    return math.sqrt(least), math.sqrt(most)
-
-
 @inner_heap_kernel
 def spans_over(problem, channels, centre, half):
     """Bound how amplitudes change over a box.
@@ -63,15 +52,16 @@ def spans_over(problem, channels, centre, half):
     spans = Spans(np.abs(channels.values[:, 0]), np.zeros(m), table[0], table[1], table[2])
     for i in range(m):
         strength = problem.strengths_m2[i]
-        least, _ = reach(problem.points_m[i], centre, half, 3)
-        least_flat, most_flat = reach(problem.points_m[i], centre, half, 2)
+        least2, _ = square_range(problem.points_m[i], centre, half, 3)
+        least_flat2, most_flat2 = square_range(problem.points_m[i], centre, half, 2)
+        least, least_flat = math.sqrt(least2), math.sqrt(least_flat2)
         for axis in range(3):
             spans.linear[i] += abs(channels.leans[i, axis]) * spans.amplitude[i] * half[axis]
         if least_flat > 0.0:
             bend = math.sqrt(strength) * (1.0 / least_flat + 10.0 / least) / least**2
             spans.further[i] = 0.5 * bend * dot(half, half)
         if least > 0.0:
-            spans.power[i] = strength / least**2 * min(1.0, (most_flat / least) ** 2)
+            spans.power[i] = strength / least2 * min(1.0, most_flat2 / least2)
         spans.distance_m[i] = least
     return spans
 

@@ -13,6 +13,7 @@ import math
 
 from nullpose.solver.kernels.constants import DIRECTION_BEND
 from nullpose.solver.kernels.jit import inner_kernel
+from nullpose.solver.kernels.scratch import scratch
 from nullpose.solver.kernels.vectors import (
     along,
     combination,
@@ -190,15 +191,11 @@ def direction_rate(cell, frame, a, turning, away):
         return whole
     length = norm(a)
     b = over(a, length)
-    first, total = int(cell[CHART]), 0.0
-    sides = (cell[HALF + first % 3], cell[HALF + (first + 1) % 3], cell[HALF + (first + 2) % 3])
-    s0 = scaled(sides[0], minus(cross(row(frame, 3), b), over(row(frame, 0), length)))
-    s1 = scaled(sides[1], minus(cross(row(frame, 4), b), over(row(frame, 1), length)))
-    s2 = scaled(sides[2], minus(cross(row(frame, 5), b), over(row(frame, 2), length)))
-    s3 = scaled(cell[HALF + 3], cross(row(frame, 6), b))
-    s4 = scaled(cell[HALF + 4], cross(row(frame, 7), b))
-    s5 = scaled(cell[HALF + 5], cross(row(frame, 8), b))
-    steps = (s0, s1, s2, s3, s4, s5)
+    sides, steps, total = cyclic(cell[HALF : HALF + 3], int(cell[CHART])), scratch(6, 3), 0.0
+    for i in range(3):
+        way = minus(cross(row(frame, 3 + i), b), over(row(frame, i), length))
+        store(scaled(sides[i], way), steps[i])
+        store(scaled(cell[HALF + 3 + i], cross(row(frame, 6 + i), b)), steps[3 + i])
     for i in range(6):
         along_i = dot(steps[i], b)
         for j in range(i, 6):

@@ -9,41 +9,31 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.solver.kernels.jit import inner_kernel
-from nullpose.solver.kernels.node import BALL, CENTRE, HALF, NU, reaching_ball
+from nullpose.solver.kernels.node import BALL, CENTRE, HALF, LEVEL
 from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.zones import (
-    FORBIDDEN,
-    MOST_ALTERNATIVES,
-    OUTSIDE,
-    UNCLEAR,
-    in_zone,
-    zone_alternatives,
-)
+from nullpose.solver.kernels.vectors import square_range
+from nullpose.solver.kernels.zones import MOST_ALTERNATIVES, in_zone, zone_alternatives
 
 
 @inner_kernel
 def choose_border(domain, row):
-    """Fill the row's ball or zone: the one to be used in its box, or -1; return a zone that forbids it all.
-
-    Zones are numbered after the balls. Without such a zone, -1 is returned.
-    """
-    keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
-    balls, zones = keep_points.shape[0], domain.zone_kind.shape[0]
-    row[BALL], row[NU] = reaching_ball(keep_points, keep_radius, row), 0.0
+    """Fill the ball or zone to be used in a row's box, or -1; zones are numbered on from the balls."""
+    balls, zones = domain.keep_out_points_m.shape[0], domain.zone_kind.shape[0]
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    row[BALL], least = -1.0, domain.keep_out_m * domain.keep_out_m
+    for q in range(balls):
+        near, _ = square_range(domain.keep_out_points_m[q], centre, half, 3)
+        if near < least:
+            row[BALL], least = q, near
     if zones == 0:
-        return -1
+        return
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     chosen, inside = -1, False
     for z in range(zones):
-        count = zone_alternatives(domain, z, row, sides, counts)
-        if count == FORBIDDEN:
-            return balls + z
-        if count != OUTSIDE and count != UNCLEAR and not inside:
-            inside = in_zone(domain, z, row[CENTRE:HALF])
-            chosen = z
+        if not inside and zone_alternatives(domain, z, centre, half, sides, counts) > 0:
+            chosen, inside = z, in_zone(domain, z, centre)
     if chosen >= 0 and (inside or row[BALL] < 0.0):
         row[BALL] = balls + chosen
-    return -1
 
 
 @inner_kernel
@@ -60,7 +50,8 @@ def borders(domain, row, sides, counts):
             sides[0, 0, 1 + i] = domain.keep_out_points_m[border, i]
         sides[0, 0, 4] = domain.keep_out_m
         return 1
-    return max(np.int64(0), zone_alternatives(domain, border - balls, row, sides, counts))
+    count = zone_alternatives(domain, border - balls, row[CENTRE:HALF], row[HALF:LEVEL], sides, counts)
+    return max(np.int64(0), count)
 
 
 @inner_kernel
@@ -115,3 +106,23 @@ def border_multipliers(slopes, count, gradient, nu):
         return nu[lead] > 0.0
     nu[0] = max(0.0, pull[0] / gram[0])
     return nu[0] > 0.0
+
+
+@inner_kernel
+def weigh_borders(sides, count, row, gradient, total):
+    """Fill the sum of constraints that cancels a gradient best, (7,): value, slopes and second derivatives.
+
+    Return the first one's multiplier; -1 if none helps.
+    """
+    nu, slopes, values, bends, axes = scratch(2), scratch(2, 3), scratch(2), scratch(2), scratch_int(2)
+    for c in range(count):
+        values[c], bends[c], axes[c] = slope_and_rest(sides[c], row, slopes[c])
+    if not border_multipliers(slopes, count, gradient, nu):
+        return -1.0
+    total[:] = 0.0
+    for c in range(count):
+        total[0] += nu[c] * values[c]
+        for i in range(3):
+            total[1 + i] += nu[c] * slopes[c, i]
+            total[4 + i] += nu[c] * bends[c] if i < axes[c] else 0.0
+    return nu[0]

@@ -23,7 +23,7 @@ from nullpose.solver.kernels.constants import (
 from nullpose.solver.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
 from nullpose.solver.kernels.denominators import expand_denominator
 from nullpose.solver.kernels.domain import contains
-from nullpose.solver.kernels.enclosure import JET, axis_clearance
+from nullpose.solver.kernels.enclosure import JET, MOST, axis_clearance
 from nullpose.solver.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
 from nullpose.solver.kernels.expansion import frame_at, min_distance, min_square
 from nullpose.solver.kernels.forms import add_denominator
@@ -48,24 +48,18 @@ from nullpose.solver.kernels.node import (
     WEIGHT,
     longest_side,
     off_band,
+    split_across,
     split_axis,
     split_position,
 )
 from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD, Workspace
 from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.symmetric import copy_into
-from nullpose.solver.kernels.vectors import cross, minus, norm, row as row_of
+from nullpose.solver.kernels.symmetric import copy_into, squared_distance
+from nullpose.solver.kernels.vectors import cross, fill_affine, minus, norm, row as row_of
 
-DONE = 0
-LIMIT = 1
-FULL = 2
-BETTER = 3
+DONE, LIMIT, FULL = 0, 1, 2  # why a run over a stack ended; or BETTER
+EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes of a node
 
-_EXCLUDED = 0
-_BY_POSITION = 1
-_BY_AXIS = 2
-_BETTER = 3
-_FORESEEN = 4
 _HALVINGS = 3
 
 _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
@@ -81,9 +75,7 @@ def strongest_point(family, centre):
     anchor = -1
     for e in range(family.denominator_weight.shape[0]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
-        d = 0.0
-        for i in range(3):
-            d += (family.points_m[j, i] - centre[i]) ** 2
+        d = squared_distance(family.points_m[j], centre)
         if weight > strongest * d:
             strongest, anchor = weight / d, j
     return anchor
@@ -109,9 +101,8 @@ def best_frame(family, axis_field, row):
     if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
-    if (
-        isotropic_share(family.ground_leaks, anchor) < 1.0
-    ):  # the nearer to its own null, the faster its form turns
+    if isotropic_share(family.ground_leaks, anchor) < 1.0:
+        # the nearer to its own null, the faster its form turns
         rho *= dipole_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
         if not rho > 0.0:
             return WORLD, anchor
@@ -142,23 +133,24 @@ def examine(family, domain, axis_field, goal, row, workspace, axis):
     kind = out_of_reach(family, domain, row)
     if kind >= 0:
         row[KIND] = kind
-        return _EXCLUDED, side, 0
+        return EXCLUDED, side, 0
     half = row[HALF:LEVEL]
-    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    radius = norm(half)
     nearest = math.inf
     for j in range(family.points_m.shape[0]):
         nearest = min(nearest, min_square(family.points_m, j, row[CENTRE:HALF], half))
     nearest = math.sqrt(nearest)
     if not nearest > _CLOSE * radius:
-        return _BY_POSITION, side, 0
+        return BY_POSITION, side, 0
     if axis_field.kind == AFFINE_AXIS:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
             return examine_affine(family, domain, axis_field, goal, row, workspace, axis)
     if axis_field.kind >= BAND_AXIS and off_band(axis_field.offset, row):
         row[KIND] = OFF_BAND
-        return _EXCLUDED, side, 0
-    verdict, sought = examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis)
+        return EXCLUDED, side, 0
+    coarseness = _COARSENESS * radius / nearest
+    verdict, sought = examine_free(family, domain, axis_field, goal, row, coarseness, workspace, axis)
     return verdict, side, sought
 
 
@@ -172,10 +164,9 @@ def same_multipliers(row, other):
 
 
 @inner_kernel
-def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis):
+def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, axis):
     """Examine a box whose axis is free; return the verdict and how often multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    radius = math.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
     basis = scratch(3, 3)
     is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
@@ -192,40 +183,38 @@ def examine_free(family, domain, axis_field, goal, row, nearest, workspace, axis
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
     if excludes(family, domain, axis_field, frame, row, below, workspace):
-        return _EXCLUDED, 0
+        return EXCLUDED, 0
     if row[FACE] < 0.0 and not same_multipliers(row, goal.multipliers):
         copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
         if excludes(family, domain, axis_field, frame, row, below, workspace):
-            return _EXCLUDED, 0
-    coarseness = _COARSENESS * radius / nearest
+            return EXCLUDED, 0
     primal, reached, followed = free_multipliers(
         family, axis_field, basis, row, denominator, coarseness, workspace, axis
     )
     if is_free and followed and contains(domain, centre):
         value = reached * row[LEVEL]
         if family.denominator_isotropic.shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
-            value = math.exp(
-                min_log_ratio(family, centre, axis, workspace.log_denominators, workspace.values)
-            )
+            logs = workspace.log_denominators, workspace.values
+            value = math.exp(min_log_ratio(family, centre, axis, logs[0], logs[1]))
         if value > goal.best * (1.0 + _BEATS):
-            return _BETTER, 1
+            return BETTER, 1
     if primal == math.inf:  # no axis was met that is inside both cell and band
         wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
-        return (_BY_AXIS if is_free and wide else _BY_POSITION), 1
+        return (BY_AXIS if is_free and wide else BY_POSITION), 1
     if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
-        return _EXCLUDED, 1
+        return EXCLUDED, 1
     # Where multipliers exclude the centre, they exclude the halves of the box soon: axes need not be split.
     # With several denominators that takes long, unless they do so by more than the size of the box.
     spare = coarseness if family.denominator_isotropic.shape[0] > 1 else 0.0
     split_axes = followed and primal - reached > coarseness and primal > 1.0 - spare
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
-    split_axes = split_axes or radius == 0.0  # one position has no halves
+    split_axes = split_axes or coarseness == 0.0  # one position has no halves
     if split_axes and is_free:
-        return _BY_AXIS, 1
+        return BY_AXIS, 1
     if primal >= 1.0:
         workspace.rest[0] = math.inf
-    return _FORESEEN, 1
+    return FORESEEN, 1
 
 
 @inner_kernel
@@ -234,7 +223,7 @@ def lone_ratio(family, row, below):
     for k in range(family.numerator_weight.shape[0]):
         square = min_square(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
         most = family.numerator_isotropic[k] + family.numerator_weight[k] / square
-        if most < -below[family.denominator_of[k], 17] * (1.0 - 1e-13):
+        if most < -below[family.denominator_of[k], MOST] * (1.0 - 1e-13):
             row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
             return True
     return False
@@ -248,22 +237,19 @@ def examine_affine(family, domain, axis_field, goal, row, workspace, axis):
     denominator_jet(family, axis_field, row, jet, below)
     row[KIND] = AFFINE
     if lone_ratio(family, row, below):
-        return _EXCLUDED, 0, 0
+        return EXCLUDED, 0, 0
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return _EXCLUDED, 0, 0
+        return EXCLUDED, 0, 0
     copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return _EXCLUDED, 0, 0
+        return EXCLUDED, 0, 0
     reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
     if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
-        for m in range(3):
-            axis[m] = axis_field.offset[m]
-            for i in range(3):
-                axis[m] += axis_field.matrix[m, i] * row[CENTRE + i]
-        return _BETTER, 0, 1
+        fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+        return BETTER, 0, 1
     if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return _EXCLUDED, 0, 1
-    return _BY_POSITION, impact(total, half), 1
+        return EXCLUDED, 0, 1
+    return BY_POSITION, impact(total, half), 1
 
 
 @inner_heap_kernel
@@ -299,11 +285,7 @@ def split_foreseen(row, side, forecast, level_axes, stack, top):
 def halve(stack, place, top):
     """Halve a box of the stack across its longest side: one half in its place, the other on the top."""
     side = longest_side(stack[place])
-    copy_into(stack[place], stack[top])
-    half = 0.5 * stack[place, HALF + side]
-    stack[place, HALF + side] = stack[top, HALF + side] = half
-    stack[place, CENTRE + side] -= half
-    stack[top, CENTRE + side] += half
+    split_across(stack[place], CENTRE + side, HALF + side, stack[place], stack[top])
 
 
 @heap_kernel
@@ -345,16 +327,16 @@ def branch(
         row[LEVEL] = level
         verdict, side, new = examine(family, domain, axis_field, goal, row, workspace, axis)
         sought += new
-        if verdict == _EXCLUDED:
+        if verdict == EXCLUDED:
             copy_into(row, leaves[filled])
             filled += 1
-        elif verdict == _BETTER:
+        elif verdict == BETTER:
             copy_into(row[CENTRE:HALF], better_p)
             copy_into(axis, better_u)
             return BETTER, top + 1, filled, boxes, sought
-        elif verdict == _BY_AXIS:
+        elif verdict == BY_AXIS:
             top = split_axis(row, is_level(axis_field), stack, top)
-        elif verdict == _FORESEEN:
+        elif verdict == FORESEEN:
             top = split_foreseen(row, side, workspace, is_level(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)

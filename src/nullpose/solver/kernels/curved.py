@@ -13,24 +13,14 @@ import math
 
 import numpy as np
 
-from nullpose.solver.kernels.borders import border_multipliers, borders, slope_and_rest
+from nullpose.solver.kernels.borders import borders, weigh_borders
 from nullpose.solver.kernels.constants import ROUNDING
-from nullpose.solver.kernels.enclosure import JET, link_jet
+from nullpose.solver.kernels.enclosure import BEND, JET, LEAST, MOST, RADIUS, SLOPE, link_jet
 from nullpose.solver.kernels.forms import entry
 from nullpose.solver.kernels.jit import inner_kernel, kernel
-from nullpose.solver.kernels.node import (
-    BALL,
-    CENTRE,
-    COUNT,
-    HALF,
-    INDEX,
-    LEVEL,
-    NU,
-    WEIGHT,
-    keep_largest,
-)
+from nullpose.solver.kernels.node import BALL, CENTRE, COUNT, HALF, INDEX, LEVEL, NU, WEIGHT, keep_largest
 from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.symmetric import copy_into, eigen3
+from nullpose.solver.kernels.symmetric import add_scaled, copy_into, eigen3
 from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
 
 _SHARES = 5  # sizes of mu that are tried along concave directions
@@ -40,12 +30,12 @@ _LESS = 0.25
 @inner_kernel
 def add_jet(weight, jet, total):
     """Add a weighted jet to another; radii add up whatever the sign."""
-    for m in range(10):
+    for m in range(RADIUS):
         total[m] += weight * jet[m]
-    for m in range(10, 16):
+    for m in range(RADIUS, LEAST):
         total[m] += abs(weight) * jet[m]
-    total[16] += weight * (jet[16] if weight > 0.0 else jet[17])
-    total[17] += weight * (jet[17] if weight > 0.0 else jet[16])
+    total[LEAST] += weight * (jet[LEAST] if weight > 0.0 else jet[MOST])
+    total[MOST] += weight * (jet[MOST] if weight > 0.0 else jet[LEAST])
 
 
 @inner_kernel
@@ -54,7 +44,7 @@ def denominator_jet(family, axis_field, row, jet, totals):
     for g in range(totals.shape[0]):
         total = totals[g]
         total[:] = 0.0
-        total[0] = total[16] = total[17] = -row[LEVEL] * family.denominator_isotropic[g]
+        total[0] = total[LEAST] = total[MOST] = -row[LEVEL] * family.denominator_isotropic[g]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
             j = family.denominator_point[e]
             link_jet(family, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
@@ -66,13 +56,13 @@ def scaled_bound(jet, half, gradient, hessian):
     """Fill gradient and Hessian in units of the half sides; return the value and the radii's part."""
     rest = 0.0
     for i in range(3):
-        gradient[i] = jet[1 + i] * half[i]
-        hessian[i, i] = jet[4 + i] * half[i] * half[i]
-        rest += 0.5 * jet[10 + i] * half[i] * half[i]
+        gradient[i] = jet[SLOPE + i] * half[i]
+        hessian[i, i] = jet[BEND + i] * half[i] * half[i]
+        rest += 0.5 * jet[RADIUS + i] * half[i] * half[i]
     for e in range(3, 6):
         i, k = entry(e)
-        hessian[i, k] = hessian[k, i] = jet[4 + e] * half[i] * half[k]
-        rest += jet[10 + e] * half[i] * half[k]
+        hessian[i, k] = hessian[k, i] = jet[BEND + e] * half[i] * half[k]
+        rest += jet[RADIUS + e] * half[i] * half[k]
     return jet[0] + rest
 
 
@@ -147,18 +137,17 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
     total[:] = 0.0
     for s in range(int(row[COUNT])):
         minus = below[family.denominator_of[int(row[INDEX + s])]]
-        for m in range(JET):
-            total[m] += row[WEIGHT + s] * minus[m]
+        add_scaled(row[WEIGHT + s], minus, total)
     size = -total[0]
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         j, isotropic = family.numerator_point[k], row[WEIGHT + s] * family.numerator_isotropic[k]
         link_jet(family, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
-        total[0], total[17] = total[0] + isotropic, total[17] + isotropic
+        total[0], total[MOST] = total[0] + isotropic, total[MOST] + isotropic
         add_jet(row[WEIGHT + s] * family.numerator_weight[k], jet, total)
-    total[0], total[17] = total[0] + ROUNDING * size, total[17] + ROUNDING * size
+    total[0], total[MOST] = total[0] + ROUNDING * size, total[MOST] + ROUNDING * size
     row[NU] = 0.0
-    if total[17] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
+    if total[MOST] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
         return True
     return row[BALL] >= 0.0 and excludes_allowed(domain, row, total)
 
@@ -168,23 +157,16 @@ def excludes_allowed(domain, row, total):
     """Check whether a jet is negative wherever a border allows positions; fill its multiplier."""
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
-    nu, border_slopes, bent = scratch(2), scratch(2, 3), scratch(JET)
-    values, bends, axes = scratch(2), scratch(2), scratch_int(2)
+    bent, border = scratch(JET), scratch(7)
     for a in range(alternatives):
-        for c in range(counts[a]):
-            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, border_slopes[c])
-        if not border_multipliers(border_slopes, counts[a], total[1:4], nu):
+        row[NU] = weigh_borders(sides[a], counts[a], row, total[1:4], border)
+        if row[NU] < 0.0:
             return False
         copy_into(total, bent)
-        for c in range(counts[a]):
-            bent[0] += nu[c] * values[c]
-            for i in range(3):
-                bent[1 + i] += nu[c] * border_slopes[c, i]
-                if i < axes[c]:
-                    bent[4 + i] += nu[c] * bends[c]
+        for m in range(7):  # a jet begins with the same numbers
+            bent[m] += border[m]
         if not box_maximum(bent, row[HALF:LEVEL]) < 0.0:
             return False
-        row[NU] = nu[0]
     if alternatives > 0 and int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
         row[NU] = 1.0  # a zone's multipliers are found again by the verifier
     return alternatives > 0
@@ -196,11 +178,11 @@ def impact(total, half):
     side = 0
     most = -1.0
     for i in range(3):
-        change = abs(total[1 + i]) * half[i] + (abs(total[4 + i]) + total[10 + i]) * half[i] ** 2
+        change = abs(total[SLOPE + i]) * half[i] + (abs(total[BEND + i]) + total[RADIUS + i]) * half[i] ** 2
         for e in range(3, 6):
             j, k = entry(e)
             if i in (j, k):
-                change += (abs(total[4 + e]) + total[10 + e]) * half[j] * half[k]
+                change += (abs(total[BEND + e]) + total[RADIUS + e]) * half[j] * half[k]
         if change > most:
             side, most = i, change
     return side
@@ -229,12 +211,12 @@ def curved_multipliers(family, axis_field, row, below, jet, workspace):
         smallest = min(smallest, (n0[k] + nw[k] * jet[0]) / -minus[0])
         values[k] = minus[0] + n0[k] + nw[k] * jet[0]
         for i in range(3):
-            gradients[k, i] = minus[1 + i] + nw[k] * jet[1 + i]
+            gradients[k, i] = minus[SLOPE + i] + nw[k] * jet[SLOPE + i]
         for e in range(6):
             i, j = entry(e)
-            radius = nw[k] * jet[10 + e] + minus[10 + e]
+            radius = nw[k] * jet[RADIUS + e] + minus[RADIUS + e]
             if i == j:
-                radius = max(0.0, radius + nw[k] * jet[4 + e] + minus[4 + e])
+                radius = max(0.0, radius + nw[k] * jet[BEND + e] + minus[BEND + e])
             values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
     lead = 0
     for k in range(ratios):

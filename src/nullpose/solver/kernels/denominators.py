@@ -11,7 +11,8 @@ from nullpose.solver.kernels.jit import inner_kernel
 from nullpose.solver.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.records import TOWARDS_POINT
 from nullpose.solver.kernels.scratch import scratch
-from nullpose.solver.kernels.symmetric import top_eigenvector
+from nullpose.solver.kernels.symmetric import add_identity, top_eigenvector
+from nullpose.solver.kernels.vectors import dot
 
 _LARGEST_SHARE = 0.5
 
@@ -30,10 +31,9 @@ def expand_denominator(family, g, level, frame, centre, half, out, out_slopes):
     """Add ``-t D_g`` and its slopes; return its remainders, isotropic and on the first two axes besides."""
     form, slopes = scratch(6), scratch(3, 6)
     size = family.denominator_isotropic[g]
-    for m in range(3):
-        out[m] -= level * size
+    add_identity(-level * size, out)
     everywhere = across = 0.0
-    radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    radius = 0.5 * dot(half, half)
     for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
         _, down = expand_point(family, j, frame, centre, half, form, slopes)
@@ -102,7 +102,7 @@ def sharpen(family, frame, row, matrix, slopes):
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes, v = scratch(6), scratch(3, 6), scratch(3)
     top_eigenvector(matrix, v)
-    square = half[0] ** 2 + half[1] ** 2 + half[2] ** 2
+    square = dot(half, half)
     change = 0.0
     for s in range(int(row[COUNT])):
         weight = group_weight(family, row, s) * row[LEVEL]
@@ -121,5 +121,4 @@ def sharpen(family, frame, row, matrix, slopes):
             if eta < _LARGEST_SHARE and eta * value + rest * rest / eta < plain:
                 add_scaled(scale * eta, form, form_slopes, matrix, slopes)
                 change += scale * (rest * rest / eta - plain + ROUNDING * (trace + rest * rest / eta))
-    for m in range(3):
-        matrix[m] += change
+    add_identity(change, matrix)

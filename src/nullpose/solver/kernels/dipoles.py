@@ -18,18 +18,13 @@ from nullpose.solver.kernels.denominators import group_weight
 from nullpose.solver.kernels.expansion import min_square
 from nullpose.solver.kernels.forms import add_point, entry, in_frame
 from nullpose.solver.kernels.jit import inner_kernel
-from nullpose.solver.kernels.link_vectors import (
-    add_shear,
-    size_of,
-    third_of,
-    vector_jet,
-)
+from nullpose.solver.kernels.link_vectors import add_shear, size_of, third_of, vector_jet
 from nullpose.solver.kernels.links import isotropic_share
 from nullpose.solver.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.records import WORLD
 from nullpose.solver.kernels.scratch import scratch
-from nullpose.solver.kernels.symmetric import add_square, copy_table
-from nullpose.solver.kernels.vectors import dot, row
+from nullpose.solver.kernels.symmetric import add_identity, add_scaled, add_square, form_product, matrix_of
+from nullpose.solver.kernels.vectors import dot, minus, norm, row, store
 
 _MOST_ETA = 0.25
 _SHARE = 0.1  # of the anchor's form that may be given up where the axis hardly sees it
@@ -53,7 +48,7 @@ def add_vector(shear, v, half, third, sign, scale, jet, matrix, slopes, rest):
     """
     value, first, second = jet
     parts, weights = scratch(7, 3), scratch(7)
-    diagonal = half[0] * half[0] + half[1] * half[1] + half[2] * half[2]
+    diagonal = dot(half, half)
     ball = third * diagonal * math.sqrt(diagonal) / 6.0
     tiny = 1e-3 * ball + 1e-290
     total = ball
@@ -64,8 +59,7 @@ def add_vector(shear, v, half, third, sign, scale, jet, matrix, slopes, rest):
             parts[s, m] = factor * second[s, m]
             if i == k:
                 value[m] += parts[s, m]
-        size = math.sqrt(dot(row(parts, s), row(parts, s)))
-        weights[s] = abs(dot(row(parts, s), v)) + 1e-2 * size + tiny
+        weights[s] = abs(dot(parts[s], v)) + 1e-2 * norm(parts[s]) + tiny
         total += weights[s]
     ahead = abs(dot(value, v))
     eta = min(_MOST_ETA, max(1e-12, total / max(ahead, 1e-300)))
@@ -78,28 +72,15 @@ def add_vector(shear, v, half, third, sign, scale, jet, matrix, slopes, rest):
     far = scale * (1.0 + 1.0 / eta if sign > 0.0 else 1.0 / eta)
     for s in range(6):
         add_square(far * total / weights[s], parts[s], rest)
-    for m in range(3):
-        rest[m] += far * total * ball
+    add_identity(far * total * ball, rest)
     if sign > 0.0:  # the square of what is linear
         total = 0.0
         for i in range(3):
-            d = row(first, i)
-            weights[i] = half[i] * (abs(dot(d, v)) + 1e-2 * math.sqrt(dot(d, d))) + 1e-290
+            weights[i] = half[i] * (abs(dot(first[i], v)) + 1e-2 * norm(first[i])) + 1e-290
             total += weights[i]
         for i in range(3):
             add_square(near * total * half[i] * half[i] / weights[i], first[i], rest)
-    size = dot(value, value)
-    for m in range(3):
-        rest[m] += ROUNDING * scale * size
-
-
-@inner_kernel
-def fill_basis(family, frame, j, basis):
-    """Fill the frame in which point j is seen: its own where points are turned, which is at rest only."""
-    if family.turn.shape[0] > 0:
-        copy_table(family.turn[j], basis)
-    else:
-        copy_table(frame.basis, basis)
+    add_identity(ROUNDING * scale * dot(value, value), rest)
 
 
 @inner_kernel
@@ -108,57 +89,52 @@ def add_leak(family, j, has, shear, frame, centre, half, sign, scale, matrix, sl
 
     It is that of its dipole if ``has`` says so, or of an isotropic point.
     """
-    r, v, a, basis = scratch(3), scratch(3), scratch(3), scratch(3, 3)
-    fill_basis(family, frame, j, basis)
-    first, second = scratch(3, 3), scratch(6, 3)
-    point = family.points_m[j]
-    r[0], r[1], r[2] = in_frame(basis, (point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]))
+    r, v, a, first, second = scratch(3), scratch(3), scratch(3), scratch(3, 3), scratch(6, 3)
+    basis = family.turn[j] if family.turn.shape[0] > 0 else frame.basis
+    store(in_frame(basis, minus(row(family.points_m, j), centre)), r)
     least = math.sqrt(min_square(family.points_m, j, centre, half))
     if has:
-        v[0], v[1], v[2] = in_frame(basis, family.ground_axes[j])
+        store(in_frame(basis, family.ground_axes[j]), v)
         vector_jet(r, v, basis, a, first, second)
         gain = dot(a, a)
     else:
         gain = 1.0 / dot(r, r)
     weight = sign * scale * family.leak
-    square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2]
+    square = dot(half, half)
     if has and sign < 0.0 and shear.kind == WORLD:  # beside the dipole's own null, as in ``sharpen``
         bound = size_of(second) + VECTOR_THIRD / least**4 * math.sqrt(square)
         bend = 0.5 * square * min(VECTOR_BEND / least**3, bound)
         eta = bend / math.sqrt(max(gain, 1e-300))
         if eta < 0.5 and eta * gain + bend * bend / eta < 0.5 * square * VECTOR_SQUARE_BEND / least**4:
-            for m in range(3):
-                matrix[m] += (1.0 - eta) * weight * gain
-                rest[m] += abs(weight) * (bend * bend / eta + ROUNDING * gain)
-                for i in range(3):
-                    slopes[i, m] += 2.0 * (1.0 - eta) * weight * dot(a, row(first, i))
+            add_identity((1.0 - eta) * weight * gain, matrix)
+            add_identity(abs(weight) * (bend * bend / eta + ROUNDING * gain), rest)
+            for i in range(3):
+                add_identity(2.0 * (1.0 - eta) * weight * dot(a, first[i]), slopes[i])
             return
     for i in range(3):
-        change = 2.0 * dot(a, row(first, i)) if has else 2.0 * gain * gain * dot(r, row(basis, i))
-        for m in range(3):
-            slopes[i, m] += weight * change
-    add_identity_slopes(shear, weight * gain, slopes)
+        change = 2.0 * dot(a, first[i]) if has else 2.0 * gain * gain * dot(r, basis[i])
+        add_identity(weight * change, slopes[i])
+    add_turned_slopes(shear, weight * gain, slopes)
     e0 = e1 = e2 = 0.0
     if shear.kind != WORLD:
-        size = math.sqrt(dot(shear.still, shear.still))
+        size = norm(shear.still)
         e0, e1, e2 = size * shear.most[0], size * shear.most[1], size * shear.most[2]
     i2 = 1.0 / (least * least)
     most = 1.0 / least
     if has:
         reach = 0.5 * square * VECTOR_BEND * i2 / least
         for i in range(3):
-            reach += half[i] * math.sqrt(dot(row(first, i), row(first, i)))
+            reach += half[i] * norm(first[i])
         most = min(most, math.sqrt(gain) + reach)
     bent = 2.0 * (VECTOR_SLOPE * VECTOR_SLOPE * i2 * i2 + most * VECTOR_BEND * i2 / least) * (1.0 + e0) ** 2
     bent += 8.0 * most * VECTOR_SLOPE * i2 * e1 * (1.0 + e0)
     bent += 2.0 * most * most * (e2 * (1.0 + e0) + e1 * e1)
-    for m in range(3):
-        matrix[m] += weight * gain
-        rest[m] += abs(weight) * (0.5 * square * bent + ROUNDING * gain)
+    add_identity(weight * gain, matrix)
+    add_identity(abs(weight) * (0.5 * square * bent + ROUNDING * gain), rest)
 
 
 @inner_kernel
-def add_identity_slopes(shear, weight, slopes):
+def add_turned_slopes(shear, weight, slopes):
     """Add ``weight`` times the slopes of ``L^T L``."""
     if shear.kind == WORLD:
         return
@@ -170,20 +146,16 @@ def add_identity_slopes(shear, weight, slopes):
 
 
 @inner_kernel
-def add_identity(shear, half, weight, jamming, v, matrix, slopes, rest):
+def add_turned_identity(shear, half, weight, jamming, v, matrix, slopes, rest):
     """Add ``weight L^T L``, from above; ``jamming`` is the anchor's form where that is not zero."""
-    for m in range(3):
-        matrix[m] += weight
-    add_identity_slopes(shear, weight, slopes)
+    add_identity(weight, matrix)
+    add_turned_slopes(shear, weight, slopes)
     if shear.kind == WORLD:
         return
-    square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2]
-    size = math.sqrt(dot(shear.still, shear.still))
-    if weight > 0.0:
-        for m in range(3):
-            rest[m] += weight * (size * shear.most[0]) ** 2
+    size = norm(shear.still)
+    add_identity(max(0.0, weight) * (size * shear.most[0]) ** 2, rest)
     # twice the product of the part along the anchor's form with the other one
-    bend = abs(weight) * size * 0.5 * square * shear.most[2]
+    bend = abs(weight) * size * 0.5 * dot(half, half) * shear.most[2]
     upright, level = v[2] * v[2], v[0] * v[0] + v[1] * v[1]
     seen, unseen = (upright, 1.0) if shear.is_dipole else (level, upright)
     eta = min(max(bend, _SHARE * jamming), bend * math.sqrt(unseen / max(seen, 1e-300)))
@@ -198,30 +170,21 @@ def add_identity(shear, half, weight, jamming, v, matrix, slopes, rest):
 @inner_kernel
 def add_constant(shear, half, weight, q, matrix, slopes, rest):
     """Add ``weight L^T Q L`` of a constant form, from above."""
-    for s in range(6):
-        matrix[s] += weight * q[s]
-    size = math.sqrt(q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + 2.0 * (q[3] ** 2 + q[4] ** 2 + q[5] ** 2))
+    add_scaled(weight, q, matrix)
     if shear.kind != WORLD:
-        still = shear.still
+        still, turned = shear.still, scratch(3, 3)
+        matrix_of(q, turned)
         for i in range(3):
-            left, right = scratch(3), scratch(3)  # E = left right^T
-            for m in range(3):
-                left[m] = still[m] if shear.is_dipole else shear.first[i, m]
-                right[m] = shear.first[i, m] if shear.is_dipole else still[m]
-            x = q[0] * left[0] + q[3] * left[1] + q[4] * left[2]
-            y = q[3] * left[0] + q[1] * left[1] + q[5] * left[2]
-            z = q[4] * left[0] + q[5] * left[1] + q[2] * left[2]
-            turned = (x, y, z)
+            # E = left right^T
+            left, right = (still, shear.first[i]) if shear.is_dipole else (shear.first[i], still)
+            seen = dot(turned[0], left), dot(turned[1], left), dot(turned[2], left)
             for s in range(6):
                 a, b = entry(s)
-                slopes[i, s] += weight * (turned[a] * right[b] + turned[b] * right[a])
-        square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2]
-        length = math.sqrt(dot(still, still))
-        bend = length * shear.most[2] * square + (length * shear.most[0]) ** 2
-        for m in range(3):
-            rest[m] += abs(weight) * size * bend
-    for m in range(3):
-        rest[m] += 4.0 * ROUNDING * abs(weight)
+                slopes[i, s] += weight * (seen[a] * right[b] + seen[b] * right[a])
+        length = norm(still)
+        bend = length * shear.most[2] * dot(half, half) + (length * shear.most[0]) ** 2
+        add_identity(abs(weight) * math.sqrt(form_product(q, q)) * bend, rest)
+    add_identity(4.0 * ROUNDING * abs(weight), rest)
 
 
 @inner_kernel
@@ -243,17 +206,15 @@ def add_part(family, j, has, shear, frame, centre, half, v, sign, scale, matrix,
     if sign < 0.0 and shear.kind != WORLD and j == frame.anchor and has == shear.is_dipole:
         add_anchor(family, shear, frame, centre, half, scale, matrix, slopes, rest)
         return
-    r, w, basis = scratch(3), scratch(3), scratch(3, 3)
-    fill_basis(family, frame, j, basis)
-    value, first, second = scratch(3), scratch(3, 3), scratch(6, 3)
-    point = family.points_m[j]
-    r[0], r[1], r[2] = in_frame(basis, (point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]))
+    r, w, value, first, second = scratch(3), scratch(3), scratch(3), scratch(3, 3), scratch(6, 3)
+    basis = family.turn[j] if family.turn.shape[0] > 0 else frame.basis
+    store(in_frame(basis, minus(row(family.points_m, j), centre)), r)
     third = third_of(shear, math.sqrt(min_square(family.points_m, j, centre, half)))
     for m in range(1 if has else 3):
         if has:
-            w[0], w[1], w[2] = in_frame(basis, family.ground_axes[j])
+            store(in_frame(basis, family.ground_axes[j]), w)
         else:
-            w[0], w[1], w[2] = 0.0, 0.0, 0.0
+            w[:] = 0.0
             w[m] = 1.0
         vector_jet(r, w, basis, value, first, second)
         add_shear(shear, value, first, second)
@@ -267,7 +228,7 @@ def add_anchor(family, shear, frame, centre, half, scale, matrix, slopes, rest):
         matrix[2] -= scale * dot(shear.still, shear.still) * (1.0 - ROUNDING)
         return
     i2 = 1.0 / (frame.radius_m * frame.radius_m)
-    square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2]
+    square = dot(half, half)
     beyond = 1.0 / min_square(family.points_m, frame.anchor, centre, half) ** 2
     for m in range(2):
         matrix[m] -= scale * i2
@@ -297,15 +258,12 @@ def centre_form(family, frame, row, matrix):
         add_point(family, family.numerator_point[k], centre, frame.basis, strength, 0.0, matrix)
         weight = group_weight(family, row, s) * row[LEVEL]
         g = family.denominator_of[k]
-        for e in (
-            range(family.denominator_start[g], family.denominator_start[g + 1]) if weight > 0.0 else range(0)
-        ):
+        first, last = family.denominator_start[g], family.denominator_start[g + 1]
+        for e in range(first, last if weight > 0.0 else first):
             j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
             add_point(family, j, centre, frame.basis, -scale, 0.0, matrix)
             jamming += scale if j == frame.anchor else 0.0
-    identity = identity_weight(family, row)
-    for m in range(3):
-        matrix[m] += identity
+    add_identity(identity_weight(family, row), matrix)
     return jamming * (1.0 - family.leak)
 
 
@@ -315,9 +273,8 @@ def add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest):
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     if shear.kind != WORLD:
         jamming *= dot(shear.still, shear.still) if shear.is_dipole else 1.0 / frame.radius_m**2
-    add_identity(shear, half, identity_weight(family, row), jamming, v, matrix, slopes, rest)
-    for m in range(3):
-        rest[m] += ROUNDING * row[LEVEL]
+    add_turned_identity(shear, half, identity_weight(family, row), jamming, v, matrix, slopes, rest)
+    add_identity(ROUNDING * row[LEVEL], rest)
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         strength = row[WEIGHT + s] * family.numerator_weight[k]
@@ -325,8 +282,7 @@ def add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest):
         add_link(family, j, shear, frame, centre, half, v, 1.0, strength, matrix, slopes, rest)
         weight = group_weight(family, row, s) * row[LEVEL]
         g = family.denominator_of[k]
-        for e in (
-            range(family.denominator_start[g], family.denominator_start[g + 1]) if weight > 0.0 else range(0)
-        ):
+        first, last = family.denominator_start[g], family.denominator_start[g + 1]
+        for e in range(first, last if weight > 0.0 else first):
             j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
             add_link(family, j, shear, frame, centre, half, v, -1.0, scale, matrix, slopes, rest)

@@ -1,13 +1,15 @@
-"""The domain of positions: what is in it, and how far it is to its walls."""
+"""The domain of positions: what is in it, what forbids a box of them, and how far it is to its walls."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from nullpose.solver.kernels.jit import heap_kernel, kernel
+from nullpose.solver.kernels.jit import heap_kernel, inner_kernel, kernel
 from nullpose.solver.kernels.local_coordinates import choose_sides, side_slack
-from nullpose.solver.kernels.vectors import minus, norm, over, store
-from nullpose.solver.kernels.zones import in_zone
+from nullpose.solver.kernels.scratch import scratch, scratch_int
+from nullpose.solver.kernels.symmetric import squared_distance
+from nullpose.solver.kernels.vectors import minus, norm, over, square_range, store
+from nullpose.solver.kernels.zones import FORBIDDEN, MOST_ALTERNATIVES, in_zone, zone_alternatives
 
 _CENTRE_M = 1e-9  # a position this near to the centre of a ball or a cylinder has a way out all the same
 
@@ -18,16 +20,28 @@ def contains(domain, p):
     for i in range(3):
         if not domain.low_m[i] <= p[i] <= domain.high_m[i]:
             return False
-    for q in range(domain.keep_out_points_m.shape[0]):
-        square = 0.0
-        for i in range(3):
-            square += (domain.keep_out_points_m[q, i] - p[i]) ** 2
-        if not square >= domain.keep_out_m * domain.keep_out_m:
+    for point in domain.keep_out_points_m:
+        if not squared_distance(point, p) >= domain.keep_out_m * domain.keep_out_m:
             return False
-    forbidden = False
+    for z in range(domain.zone_kind.shape[0]):  # noqa: SIM110  kernels have no generators
+        if in_zone(domain, z, p):
+            return False
+    return True
+
+
+@inner_kernel
+def forbidding(domain, centre, half):
+    """Find the ball, or the zone, numbered on from the balls, that holds all of a box; -1 if none does."""
+    balls = domain.keep_out_points_m.shape[0]
+    for q in range(balls):
+        _, most = square_range(domain.keep_out_points_m[q], centre, half, 3)
+        if most < domain.keep_out_m * domain.keep_out_m:
+            return q
+    sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     for z in range(domain.zone_kind.shape[0]):
-        forbidden = forbidden or in_zone(domain, z, p)
-    return not forbidden
+        if zone_alternatives(domain, z, centre, half, sides, counts) == FORBIDDEN:
+            return balls + z
+    return -1
 
 
 @heap_kernel

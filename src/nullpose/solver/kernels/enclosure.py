@@ -18,9 +18,10 @@ from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.links import isotropic_share
 from nullpose.solver.kernels.scratch import scratch, zeroed
 from nullpose.solver.kernels.symmetric import copy_into, copy_table
-from nullpose.solver.kernels.vectors import cross, dot
+from nullpose.solver.kernels.vectors import cross, dot, fill_affine, minus, norm, row, store
 
-JET = 18  # value, gradient (3), the Hessian's midpoint (6) and radius (6), least and greatest value
+JET = 18  # columns of a jet: the value, and from so many on
+SLOPE, BEND, RADIUS, LEAST, MOST = 1, 4, 10, 16, 17  # gradient, Hessian's middle and radius, and bounds
 
 
 @kernel
@@ -43,30 +44,31 @@ def bounds(table, i):
     return table[i, 0], table[i, 1]
 
 
+@inner_kernel
+def fill_swing(matrix, half, swing):
+    """Fill how far each entry of ``M p`` can be from that at the centre of a box."""
+    for m in range(3):
+        swing[m] = 0.0
+        for i in range(3):
+            swing[m] += abs(matrix[m, i]) * half[i]
+
+
 @kernel
 def axis_clearance(axis_field, centre, half):
     """Return the axis field's length at the centre, and by how much it can change in the box."""
-    length = change = 0.0
-    for m in range(3):
-        u, swing = axis_field.offset[m], 0.0
-        for i in range(3):
-            u += axis_field.matrix[m, i] * centre[i]
-            swing += abs(axis_field.matrix[m, i]) * half[i]
-        length += u * u
-        change += swing * swing
-    return math.sqrt(length), math.sqrt(change)
+    u, swing = scratch(3), scratch(3)
+    fill_affine(axis_field.offset, axis_field.matrix, centre, u)
+    fill_swing(axis_field.matrix, half, swing)
+    return norm(u), norm(swing)
 
 
 @inner_kernel
-def entries(leak, offset, matrix, r, centre, u, c, dc, hc):
-    """Fill the axis at the centre, the entries whose squares make n, their gradients and constant Hessians.
+def entries(leak, matrix, r, u, c, dc, hc):
+    """Fill the entries whose squares make n, their gradients and constant Hessians.
 
     Returns how many entries there are: the fourth is ``sqrt(leak) u.r``.
     """
-    for m in range(3):
-        u[m] = offset[m]
-        for i in range(3):
-            u[m] += matrix[m, i] * centre[i]
+    hc[:, :, :] = 0.0
     for m in range(3):
         a, b = (m + 1) % 3, (m + 2) % 3
         c[m] = u[a] * r[b] - u[b] * r[a]
@@ -75,9 +77,6 @@ def entries(leak, offset, matrix, r, centre, u, c, dc, hc):
         dc[m, b] -= u[a]
         dc[m, a] += u[b]
         for i in range(3):
-            for j in range(3):
-                hc[m, i, j] = 0.0
-        for i in range(3):
             hc[m, i, b] -= matrix[a, i]
             hc[m, b, i] -= matrix[a, i]
             hc[m, i, a] += matrix[b, i]
@@ -85,7 +84,7 @@ def entries(leak, offset, matrix, r, centre, u, c, dc, hc):
     if not leak > 0.0:
         return 3
     root = math.sqrt(leak)
-    c[3] = root * (u[0] * r[0] + u[1] * r[1] + u[2] * r[2])
+    c[3] = root * dot(u, r)
     for i in range(3):
         dc[3, i] = root * (matrix[0, i] * r[0] + matrix[1, i] * r[1] + matrix[2, i] * r[2] - u[i])
         for j in range(3):
@@ -106,16 +105,46 @@ def enclose_entries(count, half, c, dc, hc, hr, boxed):
             boxed[m, 1 + i, 0], boxed[m, 1 + i, 1] = dc[m, i] - bend, dc[m, i] + bend
             swing += (abs(dc[m, i]) + 0.5 * bend) * half[i]
         boxed[m, 0, 0], boxed[m, 0, 1] = c[m] - swing, c[m] + swing
-        low, high = square((boxed[m, 0, 0], boxed[m, 0, 1]))
+        low, high = square(bounds(boxed[m], 0))
         n, n_low, n_high = n + c[m] * c[m], n_low + low, n_high + high
     return n, n_low, n_high
 
 
 @inner_kernel
-def relative_slopes(value, slope, swing, low, high):
-    """Return bounds on a derivative, ``slope`` give or take ``swing``, over a quantity in [low, high]."""
+def relative_slopes(slope, swing, size):
+    """Return bounds on a derivative, ``slope`` give or take ``swing``, over a quantity within bounds."""
     bottom, top = slope - swing, slope + swing
-    return bottom / (high if bottom > 0.0 else low), top / (low if top > 0.0 else high)
+    return bottom / size[1 if bottom > 0.0 else 0], top / size[0 if top > 0.0 else 1]
+
+
+@inner_kernel
+def square_range_about(v, swing):
+    """Return bounds on the squared length of a vector, each entry of which swings so far."""
+    least = most = 0.0
+    for m in range(3):
+        low, high = square((v[m] - swing[m], v[m] + swing[m]))
+        least, most = least + low, most + high
+    return least, most
+
+
+@inner_kernel
+def weight_of(b, s, power):
+    """Return ``1 / (b s^power)``."""
+    return 1.0 / (b * s * s * (s if power == 3.0 else 1.0))
+
+
+@inner_kernel
+def bend_of_squares(count, i, k, hc, hr, boxed):
+    """Return bounds on a second derivative of the sum of the squares of entries."""
+    total_low = total_high = 0.0
+    for m in range(count):
+        left, right = bounds(boxed[m], 1 + i), bounds(boxed[m], 1 + k)
+        x, y = product(left, right) if i != k else square(left)
+        total_low, total_high = total_low + 2.0 * x, total_high + 2.0 * y
+        bent = (2.0 * (hc[m, i, k] - hr[m, i, k]), 2.0 * (hc[m, i, k] + hr[m, i, k]))
+        x, y = product(bent, bounds(boxed[m], 0))
+        total_low, total_high = total_low + x, total_high + y
+    return total_low, total_high
 
 
 @inner_kernel
@@ -153,15 +182,11 @@ def of_gradients(i, k, power, dn, beta, sigma):
 
 
 @inner_kernel
-def dipole_entry(offset, matrix, r, v, half, centre, u, c, dc, hc, hr):
-    """Fill the axis at the centre, and ``B = (u.v) |r|^2 - (u.r) (v.r)``, its gradient and its Hessian.
+def dipole_entry(matrix, r, v, half, u, c, dc, hc, hr):
+    """Fill ``B = (u.v) |r|^2 - (u.r) (v.r)``, its gradient and its Hessian.
 
     The last with a radius over the box: B is of the third degree in the position.
     """
-    for m in range(3):
-        u[m] = offset[m]
-        for i in range(3):
-            u[m] += matrix[m, i] * centre[i]
     uv, ur, vr, s = dot(u, v), dot(u, r), dot(v, r), dot(r, r)
     slope, ahead, swing = scratch(3), scratch(3), scratch(3)  # of u.v and of u.r; how far the latter moves
     uv_swing = vr_swing = 0.0
@@ -202,31 +227,31 @@ def link_jet(family, j, axis_field, centre, half, jet):
     turned_field(axis_field, family.turn, j, offset, matrix)
     r, u, c = scratch(3), scratch(3), scratch(4)
     dc, hc, hr = scratch(4, 3), scratch(4, 3, 3), zeroed(4, 3, 3)
-    for i in range(3):
-        r[i] = family.points_m[j, i] - centre[i]
+    store(minus(row(family.points_m, j), centre), r)
+    fill_affine(offset, matrix, centre, u)
     share, axes = isotropic_share(family.ground_leaks, j), family.ground_axes
     if share > 0.0:
-        count = entries(family.leak, offset, matrix, r, centre, u, c, dc, hc)
+        count = entries(family.leak, matrix, r, u, c, dc, hc)
         quotient_jet(matrix, r, u, half, count, 2.0, c, dc, hc, hr, jet)
     if share < 1.0:
         of_dipole = scratch(JET)
-        dipole_jet(family.leak, axes, j, offset, matrix, r, centre, half, u, c, dc, hc, hr, of_dipole)
+        dipole_jet(family.leak, axes, j, matrix, r, half, u, c, dc, hc, hr, of_dipole)
         for m in range(JET):
             jet[m] = (share * jet[m] if share > 0.0 else 0.0) + (1.0 - share) * of_dipole[m]
 
 
 @inner_kernel
-def dipole_jet(leak, axes, j, offset, matrix, r, centre, half, u, c, dc, hc, hr, jet):
-    """Fill the jet of point j, which has a dipole; the arrays from u to hr are room."""
+def dipole_jet(leak, axes, j, matrix, r, half, u, c, dc, hc, hr, jet):
+    """Fill the jet of point j, which has a dipole; the arrays from c to hr are scratch."""
     if axes is not None:
         v = axes[j]
-        dipole_entry(offset, matrix, r, v, half, centre, u, c, dc, hc, hr)
+        dipole_entry(matrix, r, v, half, u, c, dc, hc, hr)
         quotient_jet(matrix, r, u, half, np.int64(1), 3.0, c, dc, hc, hr, jet)
         if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
             leaking, still = scratch(JET), zeroed(3, 3)
-            entries(0.0, v, still, r, centre, u, c, dc, hc)
+            entries(0.0, still, r, v, c, dc, hc)
             hr[:, :, :] = 0.0
-            quotient_jet(still, r, u, half, np.int64(3), 2.0, c, dc, hc, hr, leaking)
+            quotient_jet(still, r, v, half, np.int64(3), 2.0, c, dc, hc, hr, leaking)
             for m in range(JET):
                 jet[m] = (1.0 - leak) * jet[m] + leak * leaking[m]
 
@@ -249,57 +274,41 @@ def quotient_jet(matrix, r, u, half, count, power, c, dc, hc, hr, jet):
         jet: output, (JET,).
     """
     # |r|^2 and |u|^2, at the centre and over the box, and their gradients over themselves
-    s = s_low = s_high = b = b_low = b_high = 0.0
-    for m in range(3):
-        swing = 0.0
-        for i in range(3):
-            swing += abs(matrix[m, i]) * half[i]
-        low, high = square((r[m] - half[m], r[m] + half[m]))
-        s, s_low, s_high = s + r[m] * r[m], s_low + low, s_high + high
-        low, high = square((u[m] - swing, u[m] + swing))
-        b, b_low, b_high = b + u[m] * u[m], b_low + low, b_high + high
-    sigma, beta, dn = scratch(3, 2), scratch(3, 2), scratch(3, 2)
-    boxed = scratch(4, 4, 2)
+    s, b, swing = dot(r, r), dot(u, u), scratch(3)
+    fill_swing(matrix, half, swing)
+    s_range, b_range = square_range_about(r, half), square_range_about(u, swing)
+    sigma, beta, dn, boxed = scratch(3, 2), scratch(3, 2), scratch(3, 2), scratch(4, 4, 2)
     n, n_low, n_high = enclose_entries(count, half, c, dc, hc, hr, boxed)
-    third = power == 3.0
-    w = 1.0 / (b * s * s * (s if third else 1.0))
+    w = weight_of(b, s, power)
     jet[0] = n * w
     for i in range(3):
-        db = swing = slope = low = high = 0.0
+        db = change = slope = low = high = 0.0
         for m in range(count):
             slope += 2.0 * c[m] * dc[m, i]
-            x, y = product((boxed[m, 0, 0], boxed[m, 0, 1]), (boxed[m, 1 + i, 0], boxed[m, 1 + i, 1]))
+            x, y = product(bounds(boxed[m], 0), bounds(boxed[m], 1 + i))
             low, high = low + 2.0 * x, high + 2.0 * y
         for m in range(3):
             db += 2.0 * matrix[m, i] * u[m]
             for k in range(3):
-                swing += 2.0 * abs(matrix[m, i] * matrix[m, k]) * half[k]
-        jet[1 + i] = w * (slope - n * (db / b - 2.0 * power * r[i] / s))
+                change += 2.0 * abs(matrix[m, i] * matrix[m, k]) * half[k]
+        jet[SLOPE + i] = w * (slope - n * (db / b - 2.0 * power * r[i] / s))
         dn[i, 0], dn[i, 1] = low, high
-        sigma[i, 0], sigma[i, 1] = relative_slopes(s, -2.0 * r[i], 2.0 * half[i], s_low, s_high)
-        beta[i, 0], beta[i, 1] = relative_slopes(b, db, swing, b_low, b_high)
-    w_range = (
-        1.0 / (b_high * s_high * s_high * (s_high if third else 1.0)),
-        1.0 / (b_low * s_low * s_low * (s_low if third else 1.0)),
-    )
-    jet[16], jet[17] = n_low * w_range[0], min(n_high * w_range[1], 1.0 / s_low)
+        sigma[i, 0], sigma[i, 1] = relative_slopes(-2.0 * r[i], 2.0 * half[i], s_range)
+        beta[i, 0], beta[i, 1] = relative_slopes(db, change, b_range)
+    w_range = weight_of(b_range[1], s_range[1], power), weight_of(b_range[0], s_range[0], power)
+    jet[LEAST], jet[MOST] = n_low * w_range[0], min(n_high * w_range[1], 1.0 / s_range[0])
     for e in range(6):
         i, k = entry(e)
         first_low, first_high, low, high = of_gradients(i, k, power, dn, beta, sigma)
+        x, y = bend_of_squares(count, i, k, hc, hr, boxed)
+        first_low, first_high = first_low + x, first_high + y
         gram = 0.0
-        for m in range(count):
-            left, right = bounds(boxed[m], 1 + i), bounds(boxed[m], 1 + k)
-            x, y = product(left, right) if i != k else square(left)
-            first_low, first_high = first_low + 2.0 * x, first_high + 2.0 * y
-            bent = (2.0 * (hc[m, i, k] - hr[m, i, k]), 2.0 * (hc[m, i, k] + hr[m, i, k]))
-            x, y = product(bent, (boxed[m, 0, 0], boxed[m, 0, 1]))
-            first_low, first_high = first_low + x, first_high + y
         for m in range(3):
             gram += 2.0 * matrix[m, i] * matrix[m, k]
-        low -= gram / (b_low if gram > 0.0 else b_high)
-        high -= gram / (b_high if gram > 0.0 else b_low)
+        low -= gram / b_range[0 if gram > 0.0 else 1]
+        high -= gram / b_range[1 if gram > 0.0 else 0]
         if i == k:
-            low, high = low - 2.0 * power / s_low, high - 2.0 * power / s_high
+            low, high = low - 2.0 * power / s_range[0], high - 2.0 * power / s_range[1]
         x, y = product((n_low, n_high), (low, high))
         low, high = product(w_range, (first_low + x, first_high + y))
-        jet[4 + e], jet[10 + e] = 0.5 * (low + high), 0.5 * (high - low)
+        jet[BEND + e], jet[RADIUS + e] = 0.5 * (low + high), 0.5 * (high - low)

@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS
-from nullpose.solver.kernels.borders import border_multipliers, borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.borders import borders, choose_border, weigh_borders
 from nullpose.solver.kernels.constants import CONSTANT_FORM_BEND, ROUNDING
 from nullpose.solver.kernels.denominators import (
     add_mixed_denominators,
@@ -22,6 +22,7 @@ from nullpose.solver.kernels.denominators import (
     sharpen,
 )
 from nullpose.solver.kernels.dipoles import add_constant, add_links, centre_form
+from nullpose.solver.kernels.domain import forbidding
 from nullpose.solver.kernels.expansion import expand_point, min_square
 from nullpose.solver.kernels.forms import congruence, form_value
 from nullpose.solver.kernels.jit import inner_kernel
@@ -46,7 +47,15 @@ from nullpose.solver.kernels.node import (
 )
 from nullpose.solver.kernels.records import WORLD
 from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.symmetric import add_scaled, copy_into, copy_table, top_eigenvector
+from nullpose.solver.kernels.symmetric import (
+    add_identity,
+    add_scaled,
+    copy_into,
+    copy_table,
+    form_product,
+    top_eigenvector,
+)
+from nullpose.solver.kernels.vectors import dot
 from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
 
 _HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
@@ -95,8 +104,7 @@ def is_negative_without(matrix, slopes, half, corner, most, level_axes):
     """Check whether a failing corner is negative once so much is taken off the diagonal."""
     less = scratch(6)
     copy_into(matrix, less)
-    for m in range(3):
-        less[m] -= most
+    add_identity(-most, less)
     x = half[0] if corner & 1 else -half[0]
     y = half[1] if corner & 2 else -half[1]
     z = half[2] if corner & 4 else -half[2]
@@ -125,8 +133,7 @@ def add_side(form, weight, frame, matrix, matrix_slopes):
     """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
     q, basis = scratch(6), frame.basis
     congruence(form, basis, q)
-    for m in range(6):
-        matrix[m] += weight * q[m]
+    add_scaled(weight, q, matrix)
     if frame.kind == WORLD:
         return 0.0
     for i in range(3):
@@ -137,22 +144,12 @@ def add_side(form, weight, frame, matrix, matrix_slopes):
         matrix_slopes[i, 3] += weight * (y * q[4] + x * q[5])
         matrix_slopes[i, 4] += weight * (x * (q[2] - q[0]) - y * q[3])
         matrix_slopes[i, 5] += weight * (y * (q[2] - q[1]) - x * q[3])
-    size = q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + 2.0 * (q[3] ** 2 + q[4] ** 2 + q[5] ** 2)
-    return weight * CONSTANT_FORM_BEND * math.sqrt(2.0 * size) / (frame.least_radius_m * frame.least_radius_m)
-
-
-@inner_kernel
-def add_band(axis_field, frame, row, matrix, slopes):
-    """Add the band's end with its multiplier, and its slopes; return its remainder (per squared radius)."""
-    weight = row[BAND]
-    if axis_field.kind < BAND_AXIS or weight == 0.0 or is_level(axis_field):
-        return 0.0
-    form = zeroed(6)
-    form[2] = -1.0 if weight > 0.0 else 1.0
-    end = axis_field.offset[1] if weight > 0.0 else axis_field.offset[0]
-    for m in range(3):
-        matrix[m] += weight * end
-    return add_side(form, abs(weight), frame, matrix, slopes)
+    return (
+        weight
+        * CONSTANT_FORM_BEND
+        * math.sqrt(2.0 * form_product(q, q))
+        / (frame.least_radius_m * frame.least_radius_m)
+    )
 
 
 @inner_kernel
@@ -160,7 +157,7 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
     """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes = scratch(6), scratch(3, 6)
-    radius = 0.5 * (half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    radius = 0.5 * dot(half, half)
     everywhere = 0.0
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
@@ -169,18 +166,16 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
         j = family.numerator_point[k]
         up, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
         add_with_slopes(weight * strength, form, form_slopes, matrix, slopes)
-        for m in range(3):
-            matrix[m] += weight * isotropic
+        add_identity(weight * isotropic, matrix)
         size = isotropic + strength * (form[0] + form[1] + form[2])
         everywhere += weight * (radius * strength * up + ROUNDING * size)
-    if row[FACE] >= 0.0:
-        for side in range(2):
-            if row[SIDE + side] > 0.0:
-                cell_side(int(row[FACE]), row[CELL:SIDE], side, form)
-                everywhere += radius * add_side(form, row[SIDE + side], frame, matrix, slopes)
-                everywhere += 4.0 * ROUNDING * row[SIDE + side]  # a side's entries are at most 1
-    everywhere += radius * add_band(axis_field, frame, row, matrix, slopes)
-    return everywhere + 4.0 * ROUNDING * abs(row[BAND])
+    for number in range(3):
+        weight, level = constraint_of(axis_field, row, number, form)
+        if weight > 0.0:
+            add_identity(weight * level, matrix)  # which no frame turns
+            everywhere += radius * add_side(form, weight, frame, matrix, slopes)
+            everywhere += 4.0 * ROUNDING * weight  # a form's entries are at most 1
+    return everywhere
 
 
 @inner_kernel
@@ -202,45 +197,44 @@ def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
 def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
     """Fill the row's sum and its slopes and rest where points have dipoles."""
     if axes is not None:
-        v, q, turned = scratch(3), scratch(6), scratch(6)
+        v, weights, turned, half = scratch(3), scratch(3), scratch(3, 6), row[HALF:LEVEL]
         shear = shear_at(
-            family, frame, row[CENTRE:HALF], row[HALF:LEVEL],
+            family, frame, row[CENTRE:HALF], half,
             Shear(np.int64(WORLD), False, scratch(3), scratch(3, 3), scratch(6, 3), scratch(4)),
         )  # fmt: skip
         matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
         jamming = centre_form(family, frame, row, matrix)
-        half = row[HALF:LEVEL]
-        for constraint in range(3):
-            weight = constraint_of(axis_field, row, constraint, q)
-            if weight > 0.0:
-                congruence(q, frame.basis, turned)
-                add_scaled(weight, turned, matrix)
+        q = scratch(6)
+        for number in range(3):
+            weights[number], level = constraint_of(axis_field, row, number, q)
+            add_identity(level, q)
+            congruence(q, frame.basis, turned[number])
+            add_scaled(weights[number], turned[number], matrix)
         top_eigenvector(matrix, v)
         matrix[:] = 0.0
-        for constraint in range(3):
-            weight = constraint_of(axis_field, row, constraint, q)
-            if weight > 0.0:
-                congruence(q, frame.basis, turned)
-                add_constant(shear, half, weight, turned, matrix, slopes, rest)
+        for number in range(3):
+            if weights[number] > 0.0:
+                add_constant(shear, half, weights[number], turned[number], matrix, slopes, rest)
         add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
 
 
 @inner_kernel
 def constraint_of(axis_field, row, number, form):
-    """Fill the form of a cell's side (0 or 1) or of the band (2); return its multiplier, or zero."""
+    """Fill the form of a cell's side (0 or 1) or of the band (2), but for a multiple of the identity.
+
+    Return its multiplier, zero where it is not in force, and that multiple.
+    """
+    form[:] = 0.0
     if number < 2:
         if row[FACE] < 0.0 or not row[SIDE + number] > 0.0:
-            return 0.0
+            return 0.0, 0.0
         cell_side(int(row[FACE]), row[CELL:SIDE], number, form)
-        return row[SIDE + number]
+        return row[SIDE + number], 0.0
     if axis_field.kind < BAND_AXIS or is_level(axis_field):
-        return 0.0
+        return 0.0, 0.0
     upper = row[BAND] > 0.0
-    end = axis_field.offset[1] if upper else -axis_field.offset[0]
-    form[:] = 0.0
-    form[0] = form[1] = form[2] = end
-    form[2] += -1.0 if upper else 1.0
-    return abs(row[BAND])
+    form[2] = -1.0 if upper else 1.0
+    return abs(row[BAND]), axis_field.offset[1] if upper else -axis_field.offset[0]
 
 
 @inner_kernel
@@ -295,9 +289,8 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
     alternatives = borders(domain, row, sides, counts)
     if alternatives == 0:
         return False
-    v, gradient, nu, border_slopes = scratch(3), scratch(3), scratch(2), scratch(2, 3)
-    values, bends, axes = scratch(2), scratch(2), scratch_int(2)
-    half, row[NU] = row[HALF:LEVEL], 0.0
+    v, gradient, border = scratch(3), scratch(3), scratch(7)
+    half = row[HALF:LEVEL]
     if level_axes:
         matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
     # the border is to cancel the slope along the axis that fails worst
@@ -306,23 +299,18 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
         gradient[i] = form_value(slopes, i, v)
     bent, bent_slopes = scratch(6), scratch(3, 6)
     for a in range(alternatives):
-        for c in range(counts[a]):
-            values[c], bends[c], axes[c] = slope_and_rest(sides[a, c], row, border_slopes[c])
-        if not border_multipliers(border_slopes, counts[a], gradient, nu):
+        row[NU] = weigh_borders(sides[a], counts[a], row, gradient, border)
+        if row[NU] < 0.0:
             return False
         copy_into(matrix, bent)
         copy_table(slopes, bent_slopes)
-        for c in range(counts[a]):
-            rest = values[c]
-            for i in range(axes[c]):
-                rest += 0.5 * bends[c] * half[i] ** 2
-            for m in range(3):
-                bent[m] += nu[c] * rest
-                for i in range(3):
-                    bent_slopes[i, m] += nu[c] * border_slopes[c, i]
+        rest = border[0]
+        for i in range(3):
+            rest += 0.5 * border[4 + i] * half[i] ** 2
+            add_identity(border[1 + i], bent_slopes[i])
+        add_identity(rest, bent)
         if failing_corner(bent, bent_slopes, zeroed(3), half, level_axes) >= 0:
             return False
-        row[NU] = nu[0]
     if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
         row[NU] = 1.0  # a zone's multipliers are found again by the verifier
     return True
@@ -331,23 +319,16 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
 @inner_kernel
 def out_of_reach(family, domain, row):
     """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
-    keep_points, keep_radius = domain.keep_out_points_m, domain.keep_out_m
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    centre, half, row[NU] = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
     for k in range(family.numerator_weight.shape[0]):
         square = min_square(family.points_m, family.numerator_point[k], centre, half)
         least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
         if (family.numerator_isotropic[k] - least) * square + family.numerator_weight[k] < 0.0:
             row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
-    for q in range(keep_points.shape[0]):
-        d = 0.0
-        for i in range(3):
-            d += (abs(keep_points[q, i] - centre[i]) + half[i]) ** 2
-        if d < keep_radius * keep_radius:
-            row[ANCHOR] = q
-            return KEPT_OUT
-    zone = choose_border(domain, row)
-    if zone >= 0:
-        row[ANCHOR] = zone
+    border = forbidding(domain, centre, half)
+    if border >= 0:
+        row[ANCHOR] = border
         return KEPT_OUT
+    choose_border(domain, row)
     return -1

@@ -29,17 +29,13 @@ from nullpose.solver.kernels.links import isotropic_share
 from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solver.kernels.scratch import scratch
 from nullpose.solver.kernels.symmetric import tangents
-from nullpose.solver.kernels.vectors import along, dot, row, store, unit
+from nullpose.solver.kernels.vectors import along, dot, row, square_range, store, unit
 
 
 @inner_kernel
 def min_square(points, j, centre, half):
     """Return the squared distance from point j to the nearest point of the box."""
-    total = 0.0
-    for i in range(3):
-        x = max(0.0, abs(points[j, i] - centre[i]) - half[i])
-        total += x * x
-    return total
+    return square_range(points[j], centre, half, 3)[0]
 
 
 @kernel

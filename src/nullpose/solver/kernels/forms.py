@@ -7,6 +7,7 @@ import math
 from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.links import isotropic_share
 from nullpose.solver.kernels.scratch import scratch, zeroed
+from nullpose.solver.kernels.symmetric import add_identity
 from nullpose.solver.kernels.vectors import along, dot, scaled
 
 
@@ -128,9 +129,7 @@ def add_dipole_form(family, axes, j, basis, r, weight, out):
         rho2 = dot(r, r)
         a = along(scaled(rho2, v), -dot(v, r), r)
         s = weight / (rho2 * rho2 * rho2)
-        level = family.leak * s * dot(a, a)
-        for m in range(3):
-            out[m] += level
+        add_identity(family.leak * s * dot(a, a), out)
         for k in range(6):
             m, n = entry(k)
             out[k] += (1.0 - family.leak) * s * a[m] * a[n]
@@ -149,8 +148,7 @@ def add_point(family, j, p, basis, weight, isotropic, out):
 @inner_kernel
 def add_denominator(family, g, weight, p, basis, out):
     """Add ``weight * D_g``, in a frame, to a form of six numbers."""
-    for m in range(3):
-        out[m] += weight * family.denominator_isotropic[g]
+    add_identity(weight * family.denominator_isotropic[g], out)
     for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
         scale = weight * family.denominator_weight[e]
         add_point(family, family.denominator_point[e], p, basis, scale, 0.0, out)
@@ -160,16 +158,11 @@ def add_denominator(family, g, weight, p, basis, out):
 def fill_forms(family, p, numerators, denominators):
     """Fill every numerator (R, 6) and denominator (G, 6) of a family at a position."""
     n0, nw, npt = family.numerator_isotropic, family.numerator_weight, family.numerator_point
-    d0, dstart = family.denominator_isotropic, family.denominator_start
-    dpt, dw = family.denominator_point, family.denominator_weight
     numerators[:, :] = 0.0
     denominators[:, :] = 0.0
     world = zeroed(3, 3)
     world[0, 0] = world[1, 1] = world[2, 2] = 1.0
     for k in range(nw.shape[0]):
         add_point(family, npt[k], p, world, nw[k], n0[k], numerators[k])
-    for g in range(d0.shape[0]):
-        for i in range(3):
-            denominators[g, i] = d0[g]
-        for e in range(dstart[g], dstart[g + 1]):
-            add_point(family, dpt[e], p, world, dw[e], 0.0, denominators[g])
+    for g in range(denominators.shape[0]):
+        add_denominator(family, g, 1.0, p, world, denominators[g])

@@ -24,7 +24,8 @@ from nullpose.solver.kernels.jit import inner_kernel
 from nullpose.solver.kernels.links import isotropic_share
 from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD
 from nullpose.solver.kernels.scratch import scratch
-from nullpose.solver.kernels.vectors import dot, row
+from nullpose.solver.kernels.symmetric import add_scaled
+from nullpose.solver.kernels.vectors import dot, minus, norm, row, store
 
 _UPRIGHT = 0.4  # of the anchor's vector along its value at the centre: what must be left all over the box
 
@@ -93,8 +94,7 @@ def size_of(vectors):
     """Return the root of the sum of the squares of a symmetric table of vectors, (3, 3) or (6, 3)."""
     total = 0.0
     for s in range(vectors.shape[0]):
-        v = row(vectors, s)
-        total += (2.0 if s >= 3 else 1.0) * dot(v, v)
+        total += (2.0 if s >= 3 else 1.0) * dot(vectors[s], vectors[s])
     return math.sqrt(total)
 
 
@@ -103,7 +103,7 @@ def reach_along(vectors, v, half):
     """Bound the products of v with derivatives over a box."""
     total = 0.0
     for i in range(3):
-        total += abs(dot(row(vectors, i), v)) * half[i]
+        total += abs(dot(vectors[i], v)) * half[i]
     return total
 
 
@@ -111,16 +111,13 @@ def reach_along(vectors, v, half):
 def dipole_shear(family, j, centre, half, frame, shear):
     """Fill the shear of a point with a dipole; return whether its vector keeps its direction well enough."""
     r, v, a = scratch(3), scratch(3), scratch(3)
-    point = family.points_m[j]
-    r[0], r[1], r[2] = in_frame(
-        frame.basis, (point[0] - centre[0], point[1] - centre[1], point[2] - centre[2])
-    )
-    v[0], v[1], v[2] = in_frame(frame.basis, family.ground_axes[j])
+    store(in_frame(frame.basis, minus(row(family.points_m, j), centre)), r)
+    store(in_frame(frame.basis, family.ground_axes[j]), v)
     first, second, most = shear.first, shear.second, shear.most
     vector_jet(r, v, frame.basis, a, first, second)
     least = math.sqrt(min_square(family.points_m, j, centre, half))
-    diagonal = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
-    square, length = dot(a, a), math.sqrt(dot(a, a))
+    diagonal = norm(half)
+    square, length = dot(a, a), norm(a)
     a3 = VECTOR_THIRD / least**4
     a2 = min(VECTOR_BEND / least**3, size_of(second) + a3 * diagonal)
     a1 = min(VECTOR_SLOPE / least**2, size_of(first) + a2 * diagonal)
@@ -130,7 +127,7 @@ def dipole_shear(family, j, centre, half, frame, shear):
         return False
     g = bend
     for i in range(3):
-        g += half[i] * math.sqrt(dot(row(first, i), row(first, i)))
+        g += half[i] * norm(first[i])
     # derivatives of 1 / y
     i1 = length * a1 / (y * y)
     i2 = length * a2 / (y * y) + 2.0 * (length * a1) ** 2 / y**3
@@ -141,7 +138,7 @@ def dipole_shear(family, j, centre, half, frame, shear):
     most[3] = a3 / y + 3.0 * a2 * i1 + 3.0 * a1 * i2 + g * i3
     for s in range(6):
         i, k = entry(s)
-        by_i, by_k = dot(row(first, i), a), dot(row(first, k), a)
+        by_i, by_k = dot(first[i], a), dot(first[k], a)
         for m in range(3):
             second[s, m] = (second[s, m] - (first[i, m] * by_k + first[k, m] * by_i) / square) / square
     for i in range(3):
@@ -160,7 +157,7 @@ def direction_shear(frame, centre, half, shear):
         y -= abs(basis[i, 2]) * half[i]
     if not y > _UPRIGHT * frame.radius_m:
         return False
-    diagonal = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]) / y
+    diagonal = norm(half) / y
     most[0] = diagonal
     most[1] = math.sqrt(1.0 + diagonal * diagonal) / y
     most[2] = (1.0 + 2.0 * diagonal) / (y * y)
@@ -202,24 +199,20 @@ def add_shear(shear, value, first, second):
         whole = dot(value, still)
         for s in range(6):
             i, k = entry(s)
-            by_i, by_k = dot(row(first, i), still), dot(row(first, k), still)
+            by_i, by_k = dot(first[i], still), dot(first[k], still)
             for m in range(3):
-                second[s, m] += by_i * shear.first[k, m] + by_k * shear.first[i, m]
-                second[s, m] += whole * shear.second[s, m]
+                more = by_i * shear.first[k, m] + by_k * shear.first[i, m]
+                second[s, m] += more + whole * shear.second[s, m]
         for i in range(3):
-            for m in range(3):
-                first[i, m] += whole * shear.first[i, m]
+            add_scaled(whole, shear.first[i], first[i])
         return
     for s in range(6):
         i, k = entry(s)
-        more = dot(row(first, i), row(shear.first, k)) + dot(row(first, k), row(shear.first, i))
-        more += dot(value, row(shear.second, s))
-        for m in range(3):
-            second[s, m] += more * still[m]
+        more = dot(first[i], shear.first[k]) + dot(first[k], shear.first[i])
+        more += dot(value, shear.second[s])
+        add_scaled(more, still, second[s])
     for i in range(3):
-        more = dot(value, row(shear.first, i))
-        for m in range(3):
-            first[i, m] += more * still[m]
+        add_scaled(dot(value, shear.first[i]), still, first[i])
 
 
 @inner_kernel
@@ -230,7 +223,7 @@ def third_of(shear, least):
     third = VECTOR_THIRD * i2 * i2
     if shear.kind == WORLD:
         return third
-    most, size = shear.most, math.sqrt(dot(shear.still, shear.still))
+    most, size = shear.most, norm(shear.still)
     more = VECTOR_THIRD * i2 * i2 * most[0] + 3.0 * VECTOR_BEND * i2 * i1 * most[1]
     more += 3.0 * VECTOR_SLOPE * i2 * most[2] + i1 * most[3]
     return third + size * more

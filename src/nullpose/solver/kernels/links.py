@@ -13,8 +13,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.scratch import scratch, zeroed
 from nullpose.solver.kernels.vectors import cross, dot
@@ -76,7 +74,7 @@ def link_form(family, j, p, u):
 @inner_kernel
 def numerator_at(family, k, p, u):
     """Return ``u^T N_k u`` at position p."""
-    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
+    uu = dot(u, u)
     link = link_form(family, family.numerator_point[k], p, u)
     return family.numerator_isotropic[k] * uu + family.numerator_weight[k] * link
 
@@ -84,7 +82,7 @@ def numerator_at(family, k, p, u):
 @inner_kernel
 def denominator_at(family, g, p, u):
     """Return ``u^T D_g u`` at position p."""
-    total = family.denominator_isotropic[g] * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
+    total = family.denominator_isotropic[g] * dot(u, u)
     for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
         link = link_form(family, family.denominator_point[e], p, u)
         total += family.denominator_weight[e] * link
@@ -163,9 +161,9 @@ def add_seen_form(family, j, weight, p, u, grad, hess, second):
     r = scratch(3)
     for i in range(3):
         r[i] = family.points_m[j, i] - p[i]
-    rho2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
-    c = u[0] * r[0] + u[1] * r[1] + u[2] * r[2]
-    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
+    rho2 = dot(r, r)
+    c = dot(u, r)
+    uu = dot(u, u)
     cx = u[1] * r[2] - u[2] * r[1]
     cy = u[2] * r[0] - u[0] * r[2]
     cz = u[0] * r[1] - u[1] * r[0]
@@ -264,62 +262,52 @@ def add_dipole_form(family, axes, j, weight, p, u, grad, hess, second):
     return 0.0
 
 
+@inner_kernel
+def fill_isotropic(isotropic, u, gradient, form):
+    """Fill the derivatives of ``isotropic |u|^2`` in (p, u); return it."""
+    gradient[:] = 0.0
+    form[:, :] = 0.0
+    for i in range(3):
+        gradient[3 + i] = 2.0 * isotropic * u[i]
+        form[3 + i, 3 + i] = 2.0 * isotropic
+    return isotropic * dot(u, u)
+
+
+@inner_kernel
+def add_log_bend(factor, value, gradient, form, hess):
+    """Add a multiple of the second derivatives of a logarithm, from those of the number."""
+    for i in range(6):
+        for m in range(6):
+            hess[i, m] += factor * (form[i, m] / value - gradient[i] * gradient[m] / (value * value))
+
+
 @kernel
 def derivatives(family, p, u, multipliers, f, grads, hess, work):
     """Fill log ratios ``f``, their gradients (R, 6), and the multiplier-weighted Hessian (6, 6).
 
-    ``work`` is scratch of shape (G, 50): per denominator its value, its gradient, its Hessian, its total
-    multiplier.
+    ``work`` is scratch of shape (G, 7) or more: per denominator its value, and the gradient of its logarithm.
     """
-    n0, nw = family.numerator_isotropic, family.numerator_weight
-    npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
-    dstart, dpt, dw = family.denominator_start, family.denominator_point, family.denominator_weight
-    uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
-    for i in range(6):
-        for k in range(6):
-            hess[i, k] = 0.0
-    gradient = scratch(6)
-    form = scratch(6, 6)
-    for g in range(d0.shape[0]):
-        gradient[:] = 0.0
-        form[:, :] = 0.0
-        value = d0[g] * uu
-        for i in range(3):
-            gradient[3 + i] = 2.0 * d0[g] * u[i]
-            form[3 + i, 3 + i] = 2.0 * d0[g]
+    den, dstart = family.denominator_of, family.denominator_start
+    gradient, form = scratch(6), scratch(6, 6)
+    hess[:, :] = 0.0
+    for g in range(family.denominator_isotropic.shape[0]):
+        value, multiplier = fill_isotropic(family.denominator_isotropic[g], u, gradient, form), 0.0
+        for k in range(f.shape[0]):
+            multiplier += multipliers[k] if den[k] == g else 0.0
         for e in range(dstart[g], dstart[g + 1]):
-            value += add_form(family, dpt[e], dw[e], p, u, gradient, form, np.bool_(True))
+            j, weight = family.denominator_point[e], family.denominator_weight[e]
+            value += add_form(family, j, weight, p, u, gradient, form, multiplier > 0.0)
         work[g, 0] = value
-        work[g, 43] = 0.0
         for i in range(6):
             work[g, 1 + i] = gradient[i] / value
-            for k in range(6):
-                work[g, 7 + 6 * i + k] = form[i, k] / value - gradient[i] * gradient[k] / (value * value)
-    for k in range(nw.shape[0]):
-        z = multipliers[k]
-        second = z > 0.0
-        gradient[:] = 0.0
-        if second:
-            form[:, :] = 0.0
-        value = n0[k] * uu
-        if n0[k] != 0.0:
-            for i in range(3):
-                gradient[3 + i] = 2.0 * n0[k] * u[i]
-                if second:
-                    form[3 + i, 3 + i] = 2.0 * n0[k]
-        value += add_form(family, npt[k], nw[k], p, u, gradient, form, second)
-        g = den[k]
-        f[k] = math.log(value) - math.log(work[g, 0])
+        if multiplier > 0.0:
+            add_log_bend(-multiplier, value, gradient, form, hess)
+    for k in range(f.shape[0]):
+        value, below = fill_isotropic(family.numerator_isotropic[k], u, gradient, form), work[den[k]]
+        j, weight, second = family.numerator_point[k], family.numerator_weight[k], multipliers[k] > 0.0
+        value += add_form(family, j, weight, p, u, gradient, form, second)
+        f[k] = math.log(value) - math.log(below[0])
         for i in range(6):
-            grads[k, i] = gradient[i] / value - work[g, 1 + i]
+            grads[k, i] = gradient[i] / value - below[1 + i]
         if second:
-            work[g, 43] += z
-            for i in range(6):
-                for m in range(6):
-                    hess[i, m] += z * (form[i, m] / value - gradient[i] * gradient[m] / (value * value))
-    for g in range(d0.shape[0]):
-        z = work[g, 43]
-        if z > 0.0:
-            for i in range(6):
-                for m in range(6):
-                    hess[i, m] -= z * work[g, 7 + 6 * i + m]
+            add_log_bend(multipliers[k], value, gradient, form, hess)

@@ -27,10 +27,7 @@ BALL = WEIGHT + SUPPORT  # a keep-out ball that reaches into the box, or -1
 NU = BALL + 1  # and the multiplier of staying out of it, 1/m^2
 COLUMNS = NU + 1
 
-AFFINE = 2
-FAR = 3
-KEPT_OUT = 4
-OFF_BAND = 5
+AFFINE, FAR, KEPT_OUT, OFF_BAND = 2, 3, 4, 5  # kinds beside those of frames, as certificates have them
 
 
 @inner_kernel
@@ -71,22 +68,6 @@ def keep_largest(weights, total, row):
 
 
 @inner_kernel
-def reaching_ball(keep_points, keep_radius, row):
-    """Return the keep-out ball that reaches farthest into a row's box, or -1 if none does."""
-    ball = -1
-    least = keep_radius * keep_radius
-    for q in range(keep_points.shape[0]):
-        d = 0.0
-        for i in range(3):
-            x = abs(keep_points[q, i] - row[CENTRE + i]) - row[HALF + i]
-            if x > 0.0:
-                d += x * x
-        if d < least:
-            ball, least = q, d
-    return ball
-
-
-@inner_kernel
 def longest_side(row):
     """Return the longest side of a row's box."""
     side = 0
@@ -97,14 +78,24 @@ def longest_side(row):
 
 
 @inner_kernel
+def split_across(row, at, half, low, high):
+    """Fill both halves of a box, either of which may be the row itself, cut across one side.
+
+    Its centre and half width stand in the columns ``at`` and ``half``.
+    """
+    step = 0.5 * row[half]
+    copy_into(row, high)
+    copy_into(row, low)
+    low[half] = high[half] = step
+    low[at] -= step
+    high[at] += step
+
+
+@inner_kernel
 def split_position(row, side, stack, top):
     """Push the halves of a box, cut across one side; return the new top."""
-    for child in range(2):
-        copy_into(row, stack[top])
-        stack[top, HALF + side] = 0.5 * row[HALF + side]
-        stack[top, CENTRE + side] += (0.5 if child else -0.5) * row[HALF + side]
-        top += 1
-    return top
+    split_across(row, CENTRE + side, HALF + side, stack[top], stack[top + 1])
+    return top + 2
 
 
 @inner_kernel

@@ -26,23 +26,12 @@ from nullpose.solver.kernels.attitude import (
 )
 from nullpose.solver.kernels.harmonics import cap_bounds, gain_at, gain_jet
 from nullpose.solver.kernels.jit import inner_kernel
-from nullpose.solver.kernels.vectors import dot, over, row as row_of, scaled, unit
+from nullpose.solver.kernels.vectors import dot, norm, over, row as row_of, scaled, square_range, unit
 
 _WIDEST = 1.0  # radians: directions in wider caps are not expanded
 _HALVINGS = 14
 _PACE = 2.0
 _STEPS = 40
-
-
-@inner_kernel
-def square_range(point, row):
-    """Return the least and the largest squared distance of a point from a cell."""
-    least = most = 0.0
-    for i in range(3):
-        away = abs(point[i] - row[i])
-        least += max(0.0, away - row[HALF + i]) ** 2
-        most += (away + row[HALF + i]) ** 2
-    return least, most
 
 
 @inner_kernel
@@ -64,12 +53,12 @@ def fill_points(family, pattern, row, space):
     anchor = int(row[ANCHOR])
     anchor_m = vector_to(points, anchor, row)
     fill_frame(row, anchor_m, space.frame)
-    reach = math.sqrt(row[HALF] ** 2 + row[HALF + 1] ** 2 + row[HALF + 2] ** 2)
-    near, _ = square_range(points[anchor], row)
+    reach = norm(row[HALF:])
+    near, _ = square_range(points[anchor], row, row[HALF:], 3)
     held, whole = rates(row, reach, anchor_m, math.sqrt(near))
     for j in range(points.shape[0]):
         a = in_body(space.frame, vector_to(points, j, row))
-        near, far = square_range(points[j], row)
+        near, far = square_range(points[j], row, row[HALF:], 3)
         e = reach / math.sqrt(near) if near > 0.0 else math.inf
         is_anchor = j == anchor
         width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
@@ -257,12 +246,10 @@ def upper(family, level, half, multipliers, space):
 
 
 @inner_kernel
-def excluded_by_sum(family, level, row, multipliers, space):
-    """Check whether some multipliers keep the sum negative over the cell; leave the best that were tried."""
-    n, half = multipliers.shape[0], row[HALF:FACE]
-    for k in range(n):
-        multipliers[k] = row[WARM + k]
-    if n == 2:  # one number: bisection with tangents ends in a few steps, descent does not
+def excluded_by_sum(family, level, row, space):
+    """Check whether some multipliers keep the sum negative over the cell; leave the best in its row."""
+    multipliers, half = row[WARM:], row[HALF:FACE]
+    if multipliers.shape[0] == 2:  # one number: bisection with tangents ends in a few steps, descent does not
         return two_multipliers(family, level, half, multipliers, space)
     return descended(family, level, half, multipliers, space)
 

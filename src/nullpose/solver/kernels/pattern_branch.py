@@ -8,23 +8,22 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.objectives import FloatArray
-from nullpose.solver.kernels.array_branch import is_forbidden
-from nullpose.solver.kernels.attitude import ANCHOR, CHART, HALF, WARM
-from nullpose.solver.kernels.branch import BETTER, DONE, FULL, LIMIT
-from nullpose.solver.kernels.domain import contains
-from nullpose.solver.kernels.jit import heap_kernel, inner_kernel
+from nullpose.solver.kernels.attitude import ANCHOR, CENTRE, CHART, HALF, WARM
+from nullpose.solver.kernels.branch import BETTER, BY_POSITION, DONE, EXCLUDED, FULL, LIMIT
+from nullpose.solver.kernels.domain import contains, forbidding
+from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.node import split_across
 from nullpose.solver.kernels.pattern_bound import (
     excluded_by_sum,
     expand,
     fill_constants,
     fill_points,
     middle,
-    square_range,
     weak_ratio,
 )
 from nullpose.solver.kernels.pattern_search import bring_within_reach, fill_log_ratios, tilt_of
 from nullpose.solver.kernels.symmetric import copy_into
-from nullpose.solver.kernels.vectors import row as row_of
+from nullpose.solver.kernels.vectors import row as row_of, square_range, store
 
 _ROUNDING_RAD = 1e-9  # radians
 
@@ -56,17 +55,17 @@ class Space(NamedTuple):
 
 
 @inner_kernel
-def choose(family, row, space, multipliers):
+def choose(family, row, space):
     """Return the coordinate to split: the one that adds most to the bound."""
     anchor = int(row[ANCHOR])
-    near, far = square_range(family.points_m[anchor], row)
+    near, far = square_range(family.points_m[anchor], row, row[HALF:], 3)
     length = math.sqrt(0.5 * (near + far))
     total = 0.0
     for i in range(6):
         total += row[HALF + i] * (2.0 / length if i < 3 else 1.0)
     rest = 0.0
-    for k in range(multipliers.shape[0]):
-        rest += multipliers[k] * space.rest[k]
+    for k in range(space.rest.shape[0]):
+        rest += row[WARM + k] * space.rest[k]
     most, axis = -1.0, 0
     for i in range(6):
         rate = row[HALF + i] * (2.0 / length if i < 3 else 1.0)
@@ -76,24 +75,58 @@ def choose(family, row, space, multipliers):
     return axis
 
 
-@inner_kernel
-def kept(keep, row, by, leaves, filled):
-    """Keep an excluded cell if that is asked for; return how many leaves there are then.
+@inner_heap_kernel
+def space_of(family):
+    """Return scratch space for a family."""
+    m, n = family.points_m.shape[0], family.numerator_point.shape[0]
+    one_sided = np.ones(m)
+    for k in range(n):
+        for e in range(family.denominator_point.shape[0]):
+            if family.denominator_point[e] == family.numerator_point[k]:
+                one_sided[family.numerator_point[k]] = 0.0
+    return Space(
+        np.empty(5), np.empty((m, 3)), np.empty(m), np.empty((m, 6)), np.empty((m, 6, 6)), np.empty((18, 3)),
+        np.empty((6, 3)), np.empty((6, 6, 3)), np.empty(3), np.empty((3, 3)), np.empty(n), np.empty(n),
+        np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m), np.empty(m), np.empty(6),
+        np.empty((6, 6)), one_sided,
+    )  # fmt: skip
 
-    Args:
-        keep: whether it is.
-        row: the cell.
-        by: the ratio that excludes it alone, -1 for none, or, for several, how many ratios there are.
-        leaves: output.
-        filled: how many there are.
-    """
-    if not keep:
-        return filled
-    copy_into(row, leaves[filled])
-    if by < row.shape[0] - WARM:
-        for k in range(row.shape[0] - WARM):
-            leaves[filled, WARM + k] = 1.0 if k == by else 0.0
-    return filled + 1
+
+@inner_kernel
+def is_better(family, domain, pattern, reach, floor, row, space, position, rotation):
+    """Fill the pose at an allowed middle, brought within reach; check whether it is above the floor."""
+    if not contains(domain, row[CENTRE:HALF]):
+        return False
+    for i in range(3):
+        position[i] = row[i]
+        store(row_of(space.frame, i), rotation[(int(row[CHART]) + i) % 3])
+    bring_within_reach(reach, rotation)
+    return math.exp(fill_log_ratios(family, pattern, position, rotation, space.parts, space.by_l)) > floor
+
+
+@inner_kernel
+def examine_cell(family, domain, pattern, reach, level, floor, row, space, position, rotation):
+    """Return what becomes of a cell; fill its multipliers, zero where no pose of it is allowed."""
+    if forbidding(domain, row[CENTRE:], row[HALF:]) >= 0:
+        row[WARM:] = 0.0
+        return EXCLUDED
+    turning = fill_points(family, pattern, row, space)
+    tilt, _ = tilt_of(reach, row_of(space.frame, (2 - int(row[CHART])) % 3))
+    weak = weak_ratio(family, level, space)
+    if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + _ROUNDING_RAD:
+        row[WARM:] = 0.0
+        if weak >= 0:
+            row[WARM + weak] = 1.0
+        return EXCLUDED
+    value, promising = middle(family, pattern, level, row, space)
+    if value > floor and is_better(family, domain, pattern, reach, floor, row, space, position, rotation):
+        return BETTER
+    if not promising:
+        space.rest[:] = math.inf
+        return BY_POSITION
+    expand(family, pattern, row, space)
+    fill_constants(family, level, space)
+    return EXCLUDED if excluded_by_sum(family, level, row, space) else BY_POSITION
 
 
 @heap_kernel
@@ -120,81 +153,24 @@ def branch_pattern(
         position: output, (3,): that of the better pose.
         rotation: output, (3, 3): its rotation to the world from the antenna's axes.
     """
-    m, n = family.points_m.shape[0], family.numerator_point.shape[0]
-    space = Space(
-        np.empty(5),
-        np.empty((m, 3)),
-        np.empty(m),
-        np.empty((m, 6)),
-        np.empty((m, 6, 6)),
-        np.empty((18, 3)),
-        np.empty((6, 3)),
-        np.empty((6, 6, 3)),
-        np.empty(3),
-        np.empty((3, 3)),
-        np.empty(n),
-        np.empty(n),
-        np.empty(n),
-        np.empty(n),
-        np.empty(6),
-        np.empty(6),
-        np.empty(m),
-        np.empty(m),
-        np.empty(6),
-        np.empty((6, 6)),
-        np.ones(m),
-    )
-    for k in range(n):
-        for e in range(family.denominator_point.shape[0]):
-            if family.denominator_point[e] == family.numerator_point[k]:
-                space.one_sided[family.numerator_point[k]] = 0.0
-    multipliers, row = np.empty(n), np.empty(stack.shape[1])
+    space, row = space_of(family), np.empty(stack.shape[1])
     done = 0
     while top > 0:
         if done >= budget:
             return LIMIT, top, filled, done, 0
         if top + 2 > stack.shape[0] or (keep and filled >= leaves.shape[0]):
             return FULL, top, filled, done, 0
-        top -= 1
         done += 1
-        row[:] = stack[top]
-        if is_forbidden(domain, (row[0], row[1], row[2]), (row[6], row[7], row[8])):
-            filled = kept(keep, row, -1, leaves, filled)
-            continue
-        turning = fill_points(family, pattern, row, space)
-        tilt, _ = tilt_of(reach, row_of(space.frame, (2 - int(row[CHART])) % 3))
-        weak = weak_ratio(family, level, space)
-        if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + _ROUNDING_RAD:
-            filled = kept(keep, row, weak, leaves, filled)
-            continue
-        multipliers[:] = row[WARM : WARM + n]
-        value, promising = middle(family, pattern, level, row, space)
-        if value > floor and contains(domain, row[:3]):
-            first = int(row[CHART])
-            for i in range(3):
-                position[i] = row[i]
-                for k in range(3):
-                    rotation[(first + i) % 3, k] = space.frame[i, k]
-            bring_within_reach(reach, rotation)
-            nearest = fill_log_ratios(family, pattern, position, rotation, space.parts, space.by_l)
-            if math.exp(nearest) > floor:
-                stack[top] = row
-                return BETTER, top + 1, filled, done, 0
-        if promising:
-            expand(family, pattern, row, space)
-            fill_constants(family, level, space)
-            if excluded_by_sum(family, level, row, multipliers, space):
-                row[WARM : WARM + n] = multipliers
-                filled = kept(keep, row, n, leaves, filled)
-                continue
-        else:
-            space.rest[:] = math.inf
-        axis = choose(family, row, space, multipliers)
-        row[HALF + axis] *= 0.5
-        row[WARM : WARM + n] = multipliers
-        before = row[axis]
-        for side in (-1.0, 1.0):
-            row[axis] = before + side * row[HALF + axis]
-            stack[top] = row
-            top += 1
+        top -= 1
+        copy_into(stack[top], row)
+        verdict = examine_cell(family, domain, pattern, reach, level, floor, row, space, position, rotation)
+        if verdict == BETTER:
+            return BETTER, top + 1, filled, done, 0
+        if verdict == BY_POSITION:
+            side = choose(family, row, space)
+            split_across(row, side, HALF + side, stack[top], stack[top + 1])
+            top += 2
+        elif keep:
+            copy_into(row, leaves[filled])
+            filled += 1
     return DONE, top, filled, done, 0

@@ -37,6 +37,13 @@ def add_scaled(factor, source, target):
 
 
 @inner_kernel
+def add_identity(factor, form):
+    """Add a multiple of the identity to a form."""
+    for i in range(3):
+        form[i] += factor
+
+
+@inner_kernel
 def smallest_of(values):
     """Return the smallest of some numbers."""
     smallest = values[0]

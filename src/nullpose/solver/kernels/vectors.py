@@ -100,3 +100,21 @@ def components(frame, a):
 def combination(frame, a):
     """Return the vector with such components along three vectors."""
     return along(along(scaled(a[0], frame[0]), a[1], frame[1]), a[2], frame[2])
+
+
+@inner_kernel
+def square_range(point, centre, half, axes):
+    """Bound the squared distances from a point to a box along the first axes: the least and the largest."""
+    least = most = 0.0
+    for i in range(axes):
+        away = abs(point[i] - centre[i])
+        least += max(0.0, away - half[i]) ** 2
+        most += (away + half[i]) ** 2
+    return least, most
+
+
+@inner_kernel
+def fill_affine(offset, matrix, p, out):
+    """Fill ``o + M p``."""
+    for m in range(3):
+        out[m] = offset[m] + matrix[m, 0] * p[0] + matrix[m, 1] * p[1] + matrix[m, 2] * p[2]

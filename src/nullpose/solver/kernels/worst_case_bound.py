@@ -17,6 +17,7 @@ import numpy as np
 
 from nullpose.solver.kernels.constants import VECTOR_BEND, VECTOR_SLOPE
 from nullpose.solver.kernels.jit import heap_kernel, inner_kernel
+from nullpose.solver.kernels.node import split_across
 from nullpose.solver.kernels.vectors import along, combination, cross, dot, minus, norm, row, scaled, store
 from nullpose.solver.kernels.worst_case import (
     FloatArray,
@@ -305,13 +306,10 @@ def first_cells(errors, cells):
 
 @inner_kernel
 def split(cells, i, side):
-    """Put the halves of cell i in its place and behind it."""
-    half = 0.5 * cells[i, _HALF + side]
-    cells[i, _HALF + side] = half * (1.0 + 1e-15)
-    for column in range(_COLUMNS):
-        cells[i + 1, column] = cells[i, column]
-    cells[i, _CENTRE + side] -= half
-    cells[i + 1, _CENTRE + side] += half
+    """Put the halves of cell i in its place and behind it, a hair wider than half."""
+    split_across(cells[i], _CENTRE + side, _HALF + side, cells[i], cells[i + 1])
+    for k in range(i, i + 2):
+        cells[k, _HALF + side] *= 1.0 + 1e-15
 
 
 @heap_kernel

@@ -13,7 +13,8 @@ import math
 import numpy as np
 
 from nullpose.solver.kernels.jit import inner_kernel, kernel
-from nullpose.solver.kernels.node import CENTRE, HALF
+from nullpose.solver.kernels.symmetric import copy_into
+from nullpose.solver.kernels.vectors import square_range
 
 OUTSIDE = -1  # the zone does not reach into the box
 UNCLEAR = -2  # it does, in a way that is not simple
@@ -39,24 +40,19 @@ def in_polygon(edges, first, last, x, y):
 @kernel
 def in_zone(domain, z, p):
     """Check whether a zone forbids a position."""
-    kind, first, last, edges = (
-        domain.zone_kind[z],
-        domain.zone_start[z],
-        domain.zone_start[z + 1],
-        domain.zone_edges,
-    )
+    first, last, edges = domain.zone_start[z], domain.zone_start[z + 1], domain.zone_edges
     low, high = domain.zone_range_m[z]
     if not low < p[2] < high:
         return False
-    if kind == _CYLINDER:
+    if domain.zone_kind[z] == _CYLINDER:
         return (p[0] - edges[first, 0]) ** 2 + (p[1] - edges[first, 1]) ** 2 < edges[first, 2] ** 2
-    return in_polygon(edges, first, last, p[0], p[1]) != (kind == _FENCE)
+    return in_polygon(edges, first, last, p[0], p[1]) != (domain.zone_kind[z] == _FENCE)
 
 
 @inner_kernel
-def meets(edge, row):
-    """Check whether a segment meets the rectangle of a row's box, or comes within a hair of it."""
-    x, y, hx, hy = row[CENTRE], row[CENTRE + 1], row[HALF], row[HALF + 1]
+def meets(edge, centre, half):
+    """Check whether a segment meets the rectangle of a box, or comes within a hair of it."""
+    x, y, hx, hy = centre[0], centre[1], half[0], half[1]
     x1, y1, x2, y2 = edge[0] - x, edge[1] - y, edge[2] - x, edge[3] - y
     slack = _ROUNDING * (1.0 + abs(x) + abs(y) + hx + hy)
     if min(x1, x2) > hx + slack or max(x1, x2) < -hx - slack:
@@ -69,13 +65,13 @@ def meets(edge, row):
 
 
 @inner_kernel
-def middle_inside(edge, row):
-    """Return the middle of the part of a segment that lies in the rectangle of a row's box."""
+def middle_inside(edge, centre, half):
+    """Return the middle of the part of a segment that lies in the rectangle of a box."""
     low, high = 0.0, 1.0
     for i in range(2):
-        start, change = edge[i] - row[CENTRE + i], edge[2 + i] - edge[i]
+        start, change = edge[i] - centre[i], edge[2 + i] - edge[i]
         if change != 0.0:
-            a, b = (-row[HALF + i] - start) / change, (row[HALF + i] - start) / change
+            a, b = (-half[i] - start) / change, (half[i] - start) / change
             low, high = max(low, min(a, b)), min(high, max(a, b))
     share = 0.5 * (low + high)
     return edge[0] + share * (edge[2] - edge[0]), edge[1] + share * (edge[3] - edge[1])
@@ -91,76 +87,68 @@ def fill_side(edge, allowed_right, out):
 
 
 @inner_kernel
-def polygon_alternatives(domain, z, row, sides, counts):
+def polygon_alternatives(domain, z, centre, half, sides, counts):
     """Fill the alternatives of a polygon seen from above; return how many, or one of the words."""
-    kind, first, last, edges = (
-        domain.zone_kind[z],
-        domain.zone_start[z],
-        domain.zone_start[z + 1],
-        domain.zone_edges,
-    )
-    fence = kind == _FENCE
+    first, last, edges = domain.zone_start[z], domain.zone_start[z + 1], domain.zone_edges
+    fence = domain.zone_kind[z] == _FENCE
     met = 0
     earlier = later = first
     for e in range(first, last):
-        if meets(edges[e], row):
+        if meets(edges[e], centre, half):
             met += 1
             if met > 2:
                 return UNCLEAR
             earlier, later = later if met == 2 else e, e
     if met == 0:
-        inside = in_polygon(edges, first, last, row[CENTRE], row[CENTRE + 1])
+        inside = in_polygon(edges, first, last, centre[0], centre[1])
         return OUTSIDE if inside == fence else FORBIDDEN
     fill_side(edges[earlier], not fence, sides[0, 0])
     counts[0] = 1
     if met == 1:
         return 1
     fill_side(edges[later], not fence, sides[0, 1])
-    x, y = middle_inside(edges[later], row)
+    x, y = middle_inside(edges[later], centre, half)
     beyond_first = sides[0, 0, 1] * x + sides[0, 0, 2] * y - sides[0, 0, 4]
-    x, y = middle_inside(edges[earlier], row)
+    x, y = middle_inside(edges[earlier], centre, half)
     beyond_second = sides[0, 1, 1] * x + sides[0, 1, 2] * y - sides[0, 1, 4]
     if beyond_first > 0.0 and beyond_second > 0.0:  # each edge on the other's allowed side: both hold
         counts[0] = 2
         return 1
     if beyond_first < 0.0 and beyond_second < 0.0:
-        for m in range(5):
-            sides[1, 0, m] = sides[0, 1, m]
+        copy_into(sides[0, 1], sides[1, 0])
         counts[1] = 1
         return 2
     return UNCLEAR
 
 
 @inner_kernel
-def zone_alternatives(domain, z, row, sides, counts):
-    """Fill the alternatives of a zone in a row's box; return how many, or one of the words.
+def zone_alternatives(domain, z, centre, half, sides, counts):
+    """Fill the alternatives of a zone in a box; return how many, or one of the words.
 
     Args:
         domain: with the zones.
         z: which of them.
-        row: the node.
+        centre: of the box.
+        half: its half sides.
         sides: output, (MOST_ALTERNATIVES, 2, 5): constraints.
         counts: output, (MOST_ALTERNATIVES,): how many each alternative has.
     """
     low, high = domain.zone_range_m[z]
-    bottom, top = row[CENTRE + 2] - row[HALF + 2], row[CENTRE + 2] + row[HALF + 2]
+    bottom, top = centre[2] - half[2], centre[2] + half[2]
     if bottom >= high or top <= low:
         return OUTSIDE
     if domain.zone_kind[z] == _CYLINDER:
         cylinder = domain.zone_edges[domain.zone_start[z]]
-        x, y, radius = cylinder[0], cylinder[1], cylinder[2]
-        far = math.hypot(abs(row[CENTRE] - x) + row[HALF], abs(row[CENTRE + 1] - y) + row[HALF + 1])
-        near_x = max(0.0, abs(row[CENTRE] - x) - row[HALF])
-        near_y = max(0.0, abs(row[CENTRE + 1] - y) - row[HALF + 1])
-        if math.hypot(near_x, near_y) >= radius:
+        near, far = square_range(cylinder, centre, half, 2)
+        if near >= cylinder[2] ** 2:
             return OUTSIDE
         count = np.int64(0)
-        if not far < radius * (1.0 - 1e-12):
-            sides[0, 0, 0], sides[0, 0, 1], sides[0, 0, 2] = 1.0, x, y
-            sides[0, 0, 3], sides[0, 0, 4] = 0.0, radius
+        if not far < cylinder[2] ** 2 * (1.0 - 1e-12):
+            sides[0, 0, 0], sides[0, 0, 1], sides[0, 0, 2] = 1.0, cylinder[0], cylinder[1]
+            sides[0, 0, 3], sides[0, 0, 4] = 0.0, cylinder[2]
             counts[0], count = 1, np.int64(1)
     else:
-        count = polygon_alternatives(domain, z, row, sides, counts)
+        count = polygon_alternatives(domain, z, centre, half, sides, counts)
         if count < 0:
             return count
     slack = _ROUNDING * (1.0 + abs(bottom) + abs(top))
