@@ -52,7 +52,8 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.
     """The exact link at any position of a box lies within value, slopes and second derivatives."""
     rng = np.random.default_rng(seed)
     boxes, j = one_box(rng), int(rng.integers(4))
-    value, slopes, hessian, ranged = link_jet(field, boxes, POINTS[j][None], leak, dipole)
+    jet = link_jet(field, boxes, POINTS[j][None], leak, dipole)
+    value, slopes, hessian, ranged = jet.value, jet.slopes, jet.bends, jet.over
     if not np.all(np.isfinite(hessian.low) & np.isfinite(hessian.high)):
         return
     centre, half = exact(boxes.centre[0]), exact(boxes.half[0])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from nullpose import Scenario, UsageError, solve
+from nullpose.certificate.certificate import DEEPEST
 from nullpose.solver.certificate_from_proof import certificate_of
 
 PROOF = import_module("nullpose.solver.proof")
@@ -60,5 +61,24 @@ def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyP
     assert dropped.objective.upper_bound == pytest.approx(kept.objective.upper_bound, rel=1e-9)
     assert (kept.rigour, dropped.rigour) == ("verifiable", "floating-point")
     assert dropped.stats.boxes > 0
+    monkeypatch.setattr("nullpose.solver.certificate_from_proof.MOST_LEAVES", 1)
     with pytest.raises(UsageError, match="too many leaves"):
         certificate_of(dropped)
+
+
+def test_leaves_too_thin_for_a_certificate_are_named() -> None:
+    """Four nodes on a ring, one altitude, level: the best place is one where boxes never come to an end."""
+    assert PROOF.MOST_HALVINGS == DEEPEST
+    ring_m = [[35.0, 0.0, 0.0], [0.0, 35.0, 0.0], [-35.0, 0.0, 0.0], [0.0, -35.0, 0.0]]
+    scenario = Scenario.from_dict(
+        {
+            "airspace": {"altitude_m": [8.0, 8.0]},
+            "receiver": {"noise_w": 1e-6, "reference_gain_db": 0.0},
+            "airframe": {"tilt_max_deg": 0.0, "mount_deg": 90.0},
+            "nodes": [{"position_m": place, "power_w": 1.0} for place in ring_m],
+        }
+    )
+    result = solve(scenario, gap=0.1, threads=1)
+    assert (result.status, result.rigour) == ("certified", "floating-point")
+    with pytest.raises(UsageError, match="halves boxes more than 50 times"):
+        certificate_of(result)

@@ -7,7 +7,8 @@ arithmetic; the maximum of the quadratic is bounded by its dual (see "The certif
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from nullpose.certificate.forms import (
     squares,
 )
 from nullpose.certificate.interval import Interval, dot, stack, swapped, where
+from nullpose.certificate.jets import Jet
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -36,24 +38,8 @@ _UNIT = Interval(np.eye(3)[:, :, None])
 _AFTER, _LAST = [1, 2, 0], [2, 0, 1]
 
 
-class LinkJet(NamedTuple):
-    """A link over boxes: value and gradient at the centres, Hessian and value all over them.
-
-    Args:
-        value: (b,).
-        slopes: (3, b).
-        bends: (6, b).
-        ranged: (b,).
-    """
-
-    value: Interval
-    slopes: Interval
-    bends: Interval
-    ranged: Interval
-
-
-def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, axes: FloatArray) -> LinkJet:
-    """Expand a link: value and gradient at the centres, Hessian and value over the boxes.
+def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, axes: FloatArray) -> Jet:
+    """Expand a link: value and gradient at the centres, its Hessian and what it is over the boxes.
 
     Args:
         field: the axis field.
@@ -69,14 +55,20 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, ax
     if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
         alone = _isotropic_jet(axes, boxes, points, 0.0)
         share = 1.0 - Interval(leak)
-        jets = LinkJet(*(jet * share + other * leak for jet, other in zip(jets, alone, strict=True)))
+        jets = _joined(lambda jet, other: jet * share + other * leak, jets, alone)
     if not np.all(has):
         others = _isotropic_jet(field, boxes, points, leak)
-        jets = LinkJet(*(where(has, jet, other) for jet, other in zip(jets, others, strict=True)))
+        jets = _joined(partial(where, has), jets, others)
     return jets
 
 
-def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray) -> LinkJet:
+def _joined(join: Callable[[Interval, Interval], Interval], first: Jet, second: Jet) -> Jet:
+    """Return a jet made of two, number by number."""
+    value, slopes = join(first.value, second.value), join(first.slopes, second.slopes)
+    return Jet(value, slopes, join(first.bends, second.bends), join(first.over, second.over))
+
+
+def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray) -> Jet:
     """Expand links as :func:`link_jet` where points have dipoles, without what leaks.
 
     Their link is ``B^2 / (|u|^2 |r|^6)``, ``B = (u.v) |r|^2 - (u.r) (v.r)``.
@@ -104,10 +96,10 @@ def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatA
     product, gradient = product + Interval(-reach, reach), gradient + Interval(-swing, swing)
     over, _, hessian = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
     most = np.fmin(over.high, (1.0 / r.squared().total()).high)
-    return LinkJet(value, slopes, hessian, Interval(np.maximum(over.low, 0.0), most))
+    return Jet(value, slopes, hessian, Interval(np.maximum(over.low, 0.0), most))
 
 
-def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float) -> LinkJet:
+def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float) -> Jet:
     """Expand links as :func:`link_jet` where points have no dipoles; the axis may be given, (b, 3)."""
     matrix = Interval(field.matrix[:, :, None] if isinstance(field, AxisField) else np.zeros((3, 3, 1)))
     half = Interval(boxes.half.T)
@@ -131,7 +123,7 @@ def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArr
     over, _, hessian = _quotient(matrix, u, r, cross, slopes, bend)
     # the gain is at most 1, and never below zero
     most = np.fmin(over.high, (1.0 / r.squared().total()).high)
-    return LinkJet(value, gradient, hessian, Interval(np.maximum(over.low, 0.0), most))
+    return Jet(value, gradient, hessian, Interval(np.maximum(over.low, 0.0), most))
 
 
 def _cross(x: Interval, y: Interval) -> Interval:
@@ -196,9 +188,9 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
     at = ((scale, family.points_m[point], dipoles[point]) for point, scale in terms)
     jets = [(scale, link_jet(field, boxes, place, family.leak, axes)) for scale, place, axes in at]
     zero = Interval(np.zeros((6, len(boxes))))
-    starts = (identity, zero[:3], zero, identity)
+    starts = {"value": identity, "slopes": zero[:3], "bends": zero, "over": identity}
     value, slopes, hessian, ranged = (
-        sum((scale * jet[i] for scale, jet in jets), start) for i, start in enumerate(starts)
+        sum((scale * getattr(jet, part) for scale, jet in jets), start) for part, start in starts.items()
     )
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:

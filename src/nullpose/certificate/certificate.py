@@ -25,6 +25,8 @@ KEPT_OUT = 4  # inside a keep-out ball or a forbidden zone
 OFF_BAND = 5  # a cell of axes that the airframe does not reach
 PROFILE = 6  # any axis of an antenna that is the same all round
 
+DEEPEST = 50  # halvings of a root or of a cell of axes: with more a middle is no floating-point number
+
 # What is known of each leaf: kind and shape of the entry, by the name of the column.
 COLUMNS: Mapping[str, tuple[type, tuple[int, ...]]] = {
     "box": (int, (6,)),

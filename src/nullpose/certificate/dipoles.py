@@ -10,16 +10,17 @@ from nullpose.certificate.forms import (
     COLUMN,
     COUNTED,
     IDENTITY,
-    PLACE,
     ROW,
     Linear,
+    congruence,
     outer,
     squares,
     top_vectors,
 )
 from nullpose.certificate.interval import Interval, dot, where
+from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import ROUNDING, VECTOR_BEND, VECTOR_SLOPE
-from nullpose.certificate.shear import LinkVector, Shear, link_vector, shear_of, sheared, size_of, smaller
+from nullpose.certificate.shear import Shear, link_vector, shear_of, sheared, size_of, smaller
 from nullpose.certificate.weighted_sum import Multiple, weighted_sum
 from nullpose.problem.family import Family
 
@@ -42,33 +43,33 @@ def dipole_sum(
     """
     shear = shear_of(family, leaves, boxes)
     family, identity, above, below = weighted_sum(family, leaves)
-    wanted = [(_vectors(family, shear, boxes, point), point, scale) for point, scale in above]
-    unwanted = [(_vectors(family, shear, boxes, point), point, scale) for point, scale in below]
+    terms = [
+        (_vectors(family, shear, boxes, point), point, scale, sign)
+        for sign, each in ((1.0, above), (-1.0, below))
+        for point, scale in each
+    ]
     held = [(constant_form(shear, q), q, weight) for q, weight in constants if np.any(weight != 0.0)]
     centre = shear.gram * identity
-    for sign, terms in ((1.0, wanted), (-1.0, unwanted)):
-        for jets, point, scale in terms:
-            for jet in jets:
-                centre = centre + squares(jet.value) * (scale * (sign * (1.0 - family.leak)))
-            if family.leak > 0.0:
-                gain, _ = _gain(family, boxes, point)
-                centre = centre + shear.gram * (gain * scale * (sign * family.leak))
+    for jets, point, scale, sign in terms:
+        for jet in jets:
+            centre = centre + squares(jet.value) * (scale * (sign * (1.0 - family.leak)))
+        if family.leak > 0.0:
+            gain, _ = _gain(family, boxes, point)
+            centre = centre + shear.gram * (gain * scale * (sign * family.leak))
     for form, _, weight in held:
         centre = centre + form.value * weight
     top = top_vectors(centre)
     total = _identity(shear, boxes, identity, _jamming(family, shear, below), top)
-    for sign, terms in ((1.0, wanted), (-1.0, unwanted)):
-        for jets, point, scale in terms:
-            if family.leak > 0.0:
-                total = total + _leaking(family, shear, boxes, point, scale * family.leak, sign)
-            share = scale * (1.0 - Interval(family.leak))
-            anchored = shear.on & (point == shear.anchor) & (sign < 0.0)
-            for jet in jets:
-                used = where(anchored, 0.0, share)
-                total = total + square_over(jet, boxes, top, used, sign)
-            if np.any(anchored):
-                share = where(anchored, share, 0.0)
-                total = total + _anchored(shear, boxes, family.points_m[shear.anchor], share)
+    for jets, point, scale, sign in terms:
+        if family.leak > 0.0:
+            total = total + _leaking(family, shear, boxes, point, scale * family.leak, sign)
+        share = scale * (1.0 - Interval(family.leak))
+        anchored = shear.on & (point == shear.anchor) & (sign < 0.0)
+        for jet in jets:
+            total = total + square_over(jet, boxes, top, where(anchored, 0.0, share), sign)
+        if np.any(anchored):
+            share = where(anchored, share, 0.0)
+            total = total + _anchored(shear, boxes, family.points_m[shear.anchor], share)
     for form, q, weight in held:
         norm = (q.squared() * COUNTED[:, None]).total().sqrt()
         bent = shear.most[2] * boxes.half2 + shear.most[0].squared()
@@ -76,7 +77,7 @@ def dipole_sum(
     return total, shear
 
 
-def _vectors(family: Family, shear: Shear, boxes: Boxes, point: IntArray) -> list[LinkVector]:
+def _vectors(family: Family, shear: Shear, boxes: Boxes, point: IntArray) -> list[Jet]:
     """Return the link vectors of a point for each box: one of a dipole, or three of which two count then."""
     points_m, axes = family.points_m[point], family.ground_axes[point]
     has = np.any(axes != 0.0, axis=1)
@@ -88,7 +89,7 @@ def _vectors(family: Family, shear: Shear, boxes: Boxes, point: IntArray) -> lis
     return jets
 
 
-def square_over(jet: LinkVector, boxes: Boxes, top: FloatArray, scale: Interval, sign: float) -> Linear:
+def square_over(jet: Jet, boxes: Boxes, top: FloatArray, scale: Interval, sign: float) -> Linear:
     """Return an upper bound on ``sign * scale * c c^T`` over boxes, linear in the position.
 
     With c's linear part p and the rest s, ``(p + s)^2`` is at most ``(1 + eta) p^2 + (1 + 1 / eta) s^2`` and
@@ -103,10 +104,10 @@ def square_over(jet: LinkVector, boxes: Boxes, top: FloatArray, scale: Interval,
     """
     half = boxes.half.T
     steps = Interval(half)[ROW] * half[COLUMN] * np.where(IDENTITY > 0.0, 0.25, 1.0)[:, None]
-    parts = jet.second * steps
+    parts = jet.bends * steps
     value = jet.value + parts[:, 0] + parts[:, 1] + parts[:, 2]
     reach = boxes.half2.sqrt()
-    ball = (jet.third * boxes.half2 * reach / 6.0).most()
+    ball = (jet.over * boxes.half2 * reach / 6.0).most()
     middle = parts.middle()
     weight = np.abs(np.einsum("ksb,kb->sb", middle, top)) + 1e-2 * np.linalg.norm(middle, axis=0)
     weight = weight + 1e-3 * ball.high + _TINY
@@ -117,9 +118,9 @@ def square_over(jet: LinkVector, boxes: Boxes, top: FloatArray, scale: Interval,
     far = scale * (1.0 / Interval(eta) + (1.0 if sign > 0.0 else 0.0)) * total
     rest = _spread(parts, weight) * far + _IDENTITIES * (ball * far)
     form = squares(value)
-    slopes = outer(jet.first, value[:, None])
+    slopes = outer(jet.slopes, value[:, None])
     if sign > 0.0:
-        steep = jet.first * half
+        steep = jet.slopes * half
         middle = steep.middle()
         weight = np.abs(np.einsum("kib,kb->ib", middle, top)) + 1e-2 * np.linalg.norm(middle, axis=0) + _TINY
         rest = rest + _spread(steep, weight) * (near * Interval(weight).total())
@@ -142,7 +143,7 @@ def _gain(family: Family, boxes: Boxes, point: IntArray) -> tuple[Interval, Inte
     r = (Interval(points_m) - boxes.centre).T
     plain = 1.0 / r.squared().total()
     gain = where(has, jet.value.squared().total(), plain)
-    return gain, where(has, dot(jet.first, jet.value[:, None]) * 2.0, r * plain.squared() * 2.0)
+    return gain, where(has, dot(jet.slopes, jet.value[:, None]) * 2.0, r * plain.squared() * 2.0)
 
 
 def _leaking(
@@ -156,7 +157,7 @@ def _leaking(
     i1 = 1.0 / boxes.nearest(points_m)
     a1, a2 = i1.squared() * VECTOR_SLOPE, i1 * i1.squared() * VECTOR_BEND
     jet = link_vector(points_m, axes, boxes)
-    reach = dot(Interval(jet.first.squared().total().sqrt().high), boxes.half.T) + a2 * boxes.half2 * 0.5
+    reach = dot(Interval(jet.slopes.squared().total().sqrt().high), boxes.half.T) + a2 * boxes.half2 * 0.5
     of_dipole = smaller(i1.most(), (jet.value.squared().total().sqrt() + reach).most())
     most = where(np.any(axes != 0.0, axis=1), of_dipole, i1.most())
     bent = (a1.squared() + most * a2) * (m0 + 1.0).squared() * 2.0
@@ -181,7 +182,7 @@ def _beside_null(
     jet, near = link_vector(points_m, axes, boxes), boxes.nearest(points_m)
     reach = boxes.half2.sqrt()
     bound = smaller(
-        (VECTOR_BEND / (near.squared() * near)).most(), (size_of(jet.second) + jet.third * reach).most()
+        (VECTOR_BEND / (near.squared() * near)).most(), (size_of(jet.bends) + jet.over * reach).most()
     )
     bend = (bound * boxes.half2 * 0.5).most()
     gain = jet.value.squared().total().middle()
@@ -200,9 +201,7 @@ def identity_form(shear: Shear) -> Linear:
 
 def constant_form(shear: Shear, q: Interval) -> Linear:
     """Return ``(I + E)^T Q (I + E)`` in the basis, to first order, of constant forms, (6, b)."""
-    basis = shear.basis
-    half = dot(q[PLACE][:, :, None], basis[:, None])  # Q basis
-    form = dot(basis[:, ROW], half[:, COLUMN])
+    form, half = congruence(q, shear.basis)
     turned = _turned(shear)
     slopes = dot(turned[:, ROW], half[:, COLUMN][:, :, None]) + dot(
         turned[:, COLUMN], half[:, ROW][:, :, None]

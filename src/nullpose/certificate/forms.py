@@ -63,6 +63,17 @@ def definite(a: Interval) -> tuple[np.ndarray, np.ndarray, Interval]:
     return block, block & (det.low > 0.0), det
 
 
+def congruence(q: Interval, basis: Interval) -> tuple[Interval, Interval]:
+    """Return ``basis^T Q basis`` of forms, (6, b), and ``Q basis``, (3, 3, b)."""
+    half = dot(q[PLACE][:, :, None], basis[:, None])
+    return dot(basis[:, ROW], half[:, COLUMN]), half
+
+
+def gram(basis: Interval) -> Interval:
+    """Return ``basis^T basis``, (6, b)."""
+    return dot(basis[:, ROW], basis[:, COLUMN])
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Linear:
     """Symmetric matrices ``Q + sum_i x_i Q_i`` of the step x from a box's centre.
@@ -126,13 +137,10 @@ def _dominant(a: Interval) -> np.ndarray:
     eigenvectors, about, a matrix is all but diagonal: definite, if each entry of the diagonal is larger than
     the sum of the others in its row.
     """
-    axes = np.moveaxis(np.linalg.eigh(matrices(a.middle()))[1], 0, -1)
-    half = dot(a[PLACE][:, :, None], Interval(axes)[:, None])
-    seen = dot(Interval(axes)[:, ROW], half[:, COLUMN])
+    axes = Interval(np.moveaxis(np.linalg.eigh(matrices(a.middle()))[1], 0, -1))
+    holds = np.ones(a.low.shape[1], dtype=bool)
     # the axes themselves must span the space: their products are those of an orthonormal basis, about
-    gram = dot(Interval(axes)[:, ROW], Interval(axes)[:, COLUMN])
-    holds = np.ones(axes.shape[-1], dtype=bool)
-    for form in (seen, gram):
+    for form in (congruence(a, axes)[0], gram(axes)):
         off = form.magnitude()[PLACE]
         rest = Interval(off[_NEXT, range(3)]) + off[_LAST, range(3)]
         holds &= np.all(form.low[:3] > rest.high, axis=0)

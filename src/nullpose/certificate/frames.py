@@ -13,7 +13,7 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
-from nullpose.certificate.forms import COLUMN, PLACE, ROW, Linear, outer, squares
+from nullpose.certificate.forms import COLUMN, Linear, congruence, gram, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
 from nullpose.certificate.lemmas import AREA_BEND
 from nullpose.problem.family import Family
@@ -67,11 +67,11 @@ def frames_of(family: Family, leaves: Leaves, boxes: Boxes) -> Frames:
         direction.low[:, turning],
         direction.high[:, turning],
     )
-    gram = dot(basis[:, ROW], basis[:, COLUMN])
-    gram.low[2] = gram.high[2] = 1.0
+    products = gram(basis)
+    products.low[2] = products.high[2] = 1.0
     no_row = turning & (COLUMN == 2)[:, None]
-    across = where(no_row, 0.0, gram - squares(dot(basis, direction[:, None])))
-    return Frames(turning, anchor, direction, rho, boxes.nearest(anchor_m), basis, gram, across)
+    across = where(no_row, 0.0, products - squares(dot(basis, direction[:, None])))
+    return Frames(turning, anchor, direction, rho, boxes.nearest(anchor_m), basis, products, across)
 
 
 def axes_across(third: FloatArray, mask: np.ndarray) -> FloatArray:
@@ -138,8 +138,7 @@ def constant(frames: Frames, q: Interval) -> Linear:
     With ``K = (e d^T - d e^T) / rho`` the frame's transpose changes by K, which keeps d on the anchor; the
     form, by ``K Q + Q K^T``.
     """
-    half = dot(q[PLACE][:, :, None], frames.basis[:, None])  # Q basis
-    form = dot(frames.basis[:, ROW], half[:, COLUMN])
+    form, half = congruence(q, frames.basis)
     if not np.any(frames.turning):
         return Linear(form, Interval(np.zeros((6, 3, len(frames.turning)))))
     # in the basis: e (Q d)^T - d (Q e)^T and its transpose, over rho

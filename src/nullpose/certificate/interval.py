@@ -71,9 +71,9 @@ class Interval:
         o = as_interval(other)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             defined = (o.low > 0.0) | (o.high < 0.0)
-            quotient = self * where(defined, Interval(_down(1.0 / o.high), _up(1.0 / o.low)), _ANY)
+            quotient = self * where(defined, Interval(_down(1.0 / o.high), _up(1.0 / o.low)), ANY)
         # 0 times infinity: nothing is known
-        return where(np.isnan(quotient.low) | np.isnan(quotient.high), _ANY, quotient)
+        return where(np.isnan(quotient.low) | np.isnan(quotient.high), ANY, quotient)
 
     def __rtruediv__(self, other: ArrayLike) -> Interval:
         return as_interval(other) / self
@@ -120,7 +120,8 @@ class Interval:
         return result
 
 
-_ANY = Interval(-np.inf, np.inf)
+ANY = Interval(-np.inf, np.inf)
+"""A number of which nothing is known."""
 
 
 def as_interval(value: Interval | ArrayLike) -> Interval:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 import numpy as np
 
 from nullpose.certificate.certificate import FloatArray
-from nullpose.certificate.interval import Interval, where
+from nullpose.certificate.interval import ANY, Interval, where
 
 PAIRS = np.array(list(combinations_with_replacement(range(5), 2)))
 """Coordinates of each second derivative that is kept, (15, 2)."""
@@ -15,19 +16,21 @@ PAIRS = np.array(list(combinations_with_replacement(range(5), 2)))
 _FIRST, _SECOND = PAIRS.T
 
 
+@dataclass(frozen=True, slots=True, eq=False)
 class Jet:
-    """Functions of five coordinates over boxes, and their derivatives.
+    """Functions over boxes, numbers or vectors, and their derivatives; products are those of numbers.
 
     Args:
-        value: (b,) what they are.
-        slopes: (5, b) first derivatives.
-        bends: (15, b) second derivatives, by ``PAIRS``.
+        value: (b,) what they are; vectors have their components along a first axis, and so in what follows.
+        slopes: (n, b) first derivatives.
+        bends: second derivatives, (15, b) by ``PAIRS`` of five coordinates, or (6, b) as a form of three.
+        over: what else is known of them all over the boxes.
     """
 
-    __slots__ = ("bends", "slopes", "value")
-
-    def __init__(self, value: Interval, slopes: Interval, bends: Interval) -> None:
-        self.value, self.slopes, self.bends = value, slopes, bends
+    value: Interval
+    slopes: Interval
+    bends: Interval
+    over: Interval = ANY
 
     def __add__(self, other: Jet) -> Jet:
         return Jet(self.value + other.value, self.slopes + other.slopes, self.bends + other.bends)

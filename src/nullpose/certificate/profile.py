@@ -120,13 +120,9 @@ class ProfileField(AxisField):
         if not antenna.is_axisymmetric:
             raise ValueError(f"{antenna.label}: its gain changes round its axis")
         super().__init__(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)))
-        even = antenna.harmonics.is_even
-        for name, value in (
-            ("profile", _profile(antenna.harmonics.cosine[:, 0].tobytes())),
-            ("ends", _ends(scenario)),
-            ("even", even),
-        ):
-            object.__setattr__(self, name, value)
+        object.__setattr__(self, "profile", _profile(antenna.harmonics.cosine[:, 0].tobytes()))
+        object.__setattr__(self, "ends", _ends(scenario))
+        object.__setattr__(self, "even", antenna.harmonics.is_even)
 
 
 def profiles_of(fields: Mapping[str, AxisField]) -> list[Profile]:

@@ -19,13 +19,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import DEEPEST, FloatArray, IntArray, Leaves
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.jets import PAIRS, largest
 from nullpose.certificate.plain_tests import kept_out_holds
 from nullpose.certificate.profile import Profile, ProfileField
 from nullpose.certificate.profile_links import PI, Link, about, links_of, sine_cosine
-from nullpose.certificate.weighted_sum import weighted_sum
+from nullpose.certificate.weighted_sum import Multiple, weighted_sum
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 
@@ -35,7 +35,6 @@ _MOST = (
 )
 _NOTHING = 1e-300  # a share below it is outward rounding of zero
 _CHUNK = 4096
-_DEEPEST = 50  # halvings of a turn: with more its middle is no floating-point number
 _ANGLE_SLACK_RAD = 1e-12  # radians: what is reached is taken so much wider, for the rounding of its ends
 
 
@@ -73,7 +72,7 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
     cells = _Cells(whole, leaves.cell[rows, 1:])
     most = _MOST * len(rows) + _CHUNK
     for _ in range(_ROUNDS):
-        if not 0 < len(cells.boxes) <= most or np.any(cells.turn[:, ::2] > _DEEPEST):
+        if not 0 < len(cells.boxes) <= most or np.any(cells.turn[:, ::2] > DEEPEST):
             break
         excluded, side = _excluded(family, field, leaves.chosen(cells.boxes.leaf), cells)
         cells = _halved(cells.chosen(~excluded), side[~excluded])
@@ -93,24 +92,17 @@ def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Bo
 
 def _halved(cells: _Cells, side: IntArray) -> _Cells:
     """Cut into both halves of each cell, across a coordinate: x, y, z, the angle or the spin."""
-    boxes, turn = cells.boxes, cells.turn
-    both, rows = [], np.arange(len(boxes))
-    for sign in (-1, 1):
-        centre, half, depth = boxes.centre.copy(), boxes.half.copy(), turn.copy()
-        cut = rows[side < 3], side[side < 3]
-        slack = 4e-16 * (np.abs(centre[cut]) + half[cut])
-        centre[cut] += sign * 0.5 * half[cut]
-        half[cut] = np.nextafter(0.5 * half[cut] + slack, np.inf)
-        at = rows[side >= 3], 2 * (side[side >= 3] - 3)
-        depth[at] += 1
-        depth[at[0], at[1] + 1] = 2 * depth[at[0], at[1] + 1] + (sign > 0)
-        both.append((Boxes(leaf=boxes.leaf, centre=centre, half=half), depth))
-    (first, low), (second, high) = both
-    whole = {
-        name: np.concatenate([getattr(first, name), getattr(second, name)])
-        for name in ("leaf", "centre", "half")
-    }
-    return _Cells(Boxes(**whole), np.concatenate([low, high]))
+    sign, side = np.repeat([-1.0, 1.0], len(side)), np.tile(side, 2)
+    both = cells.chosen(np.tile(np.arange(len(cells.boxes)), 2))
+    centre, half, turn = both.boxes.centre, both.boxes.half, both.turn
+    at = np.flatnonzero(side < 3), side[side < 3]
+    slack = 4e-16 * (np.abs(centre[at]) + half[at])
+    centre[at] += sign[at[0]] * 0.5 * half[at]
+    half[at] = np.nextafter(0.5 * half[at] + slack, np.inf)
+    rows, depth = np.flatnonzero(side >= 3), 2 * (side[side >= 3] - 3)
+    turn[rows, depth] += 1
+    turn[rows, depth + 1] = 2 * turn[rows, depth + 1] + (sign[rows] > 0.0)
+    return both
 
 
 def _excluded(
@@ -239,13 +231,10 @@ def _out_of_reach(
 def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval], list[Interval]]:
     """Return a sum's constant, and by what each point's gain over squared distance adds and takes away."""
     _, identity, above, below = weighted_sum(family, leaves)
-    sides: list[list[Interval]] = []
-    for parts in (above, below):
-        each = []
-        for point in range(len(family.points_m)):
-            total = Interval(np.zeros(len(leaves)))
-            for which, scale in parts:
-                total = total + where(which == point, scale, 0.0)
-            each.append(total)
-        sides.append(each)
-    return identity, sides[0], sides[1]
+
+    def of_points(parts: list[Multiple]) -> list[Interval]:
+        zero = Interval(np.zeros(len(leaves)))
+        points = range(len(family.points_m))
+        return [sum((where(which == j, scale, 0.0) for which, scale in parts), zero) for j in points]
+
+    return identity, of_points(above), of_points(below)

@@ -13,9 +13,10 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
-from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITY, ROW, squares
+from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITY, ROW, gram, squares
 from nullpose.certificate.frames import axes_across
 from nullpose.certificate.interval import Interval, dot, stack, where
+from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import DIRECTION_THIRD, ROUNDING, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
 from nullpose.problem.family import Family
 
@@ -23,23 +24,6 @@ _UPRIGHT = 0.4
 _SHARP = 1e-8  # how well an anchor's vector must be known, so that the basis is orthonormal but for ROUNDING
 _UNIT = np.eye(3)[:, :, None]
 _IDENTITIES = IDENTITY[:, None]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LinkVector:
-    """A vector over boxes: its value and derivatives at the centres, and a bound on the third.
-
-    Args:
-        value: (3, b).
-        first: (3, 3, b) the derivative along each of the world's axes, on the second axis.
-        second: (3, 6, b) likewise.
-        third: (b,) upper bound, along any unit direction, anywhere in the box.
-    """
-
-    value: Interval
-    first: Interval
-    second: Interval
-    third: Interval
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,8 +56,11 @@ class Shear:
     pull: Interval
 
 
-def link_vector(points_m: FloatArray, axes: FloatArray, boxes: Boxes) -> LinkVector:
+def link_vector(points_m: FloatArray, axes: FloatArray, boxes: Boxes) -> Jet:
     """Return ``a = (|r|^2 v - (v.r) r) / |r|^3`` of points and dipoles, one of each for a box.
+
+    Its derivatives at the centres are those along the world's axes, on the second axis; ``over`` is an upper
+    bound on the third along any unit direction, anywhere in the box.
 
     Args:
         points_m: (b, 3).
@@ -94,7 +81,7 @@ def link_vector(points_m: FloatArray, axes: FloatArray, boxes: Boxes) -> LinkVec
     second = v[:, None] * along_v + r[:, None] * along_r
     second = (second + _UNIT[:, i] * along_i + _UNIT[:, j] * along_j) / cube
     near = boxes.nearest(points_m)
-    return LinkVector(value, first, second, (VECTOR_THIRD / near.squared().squared()).most())
+    return Jet(value, first, second, (VECTOR_THIRD / near.squared().squared()).most())
 
 
 def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
@@ -110,29 +97,28 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
     is_sharp = still.radius().max(axis=0) < _SHARP * np.linalg.norm(still.middle(), axis=0)
     on = turning & (upright.low > _UPRIGHT) & is_sharp
     # E = still w^T for a dipole, w still^T for a point without
-    left = still[:, None, None] * first[None]
-    right = first[:, None] * still[None, :, None]
-    e_first = where(on, where(is_dipole, left, right), 0.0)
-    left, right = still[:, None, None] * second[None], second[:, None] * still[None, :, None]
-    e_second = where(on, where(is_dipole, left, right), 0.0)
+    e_first, e_second = (
+        where(on, where(is_dipole, still[:, None, None] * w[None], w[:, None] * still[None, :, None]), 0.0)
+        for w in (first, second)
+    )
     length = still.squared().total().sqrt()
     bounds = where(on, (most * length).most(), 0.0)
     basis, anchored = _basis(on, is_dipole, still)
-    gram = dot(basis[:, ROW], basis[:, COLUMN])
+    products = gram(basis)
     rho = (Interval(points_m) - boxes.centre).T.squared().total().sqrt()
     pull = where(on & ~is_dipole, still * 2.0 / rho, 0.0)
-    across = where((COLUMN == 2)[:, None], 0.0, gram - squares(dot(basis, still[:, None])))
-    shape = where(is_dipole, anchored, across / rho.squared())
-    return Shear(on, anchor, is_dipole, e_first, e_second, bounds, basis, gram, where(on, shape, 0.0), pull)
+    across = where((COLUMN == 2)[:, None], 0.0, products - squares(dot(basis, still[:, None])))
+    shape = where(on, where(is_dipole, anchored, across / rho.squared()), 0.0)
+    return Shear(on, anchor, is_dipole, e_first, e_second, bounds, basis, products, shape, pull)
 
 
-def _dipole_turn(jet: LinkVector, points_m: FloatArray, boxes: Boxes) -> tuple[Interval, ...]:
+def _dipole_turn(jet: Jet, points_m: FloatArray, boxes: Boxes) -> tuple[Interval, ...]:
     """Return ``a.a0 / |a0|^2`` at least, -a0, and w = (a - a0) / (a.a0): derivatives, and bounds on them."""
-    a, first, second = jet.value, jet.first, jet.second
+    a, first, second = jet.value, jet.slopes, jet.bends
     near, half = boxes.nearest(points_m), Interval(boxes.half.T)
     reach = boxes.half2.sqrt().most()
     square, length = a.squared().total(), a.squared().total().sqrt().most()
-    a3 = jet.third
+    a3 = jet.over
     a2 = smaller((VECTOR_BEND / (near.squared() * near)).most(), (size_of(second) + a3 * reach).most())
     a1 = smaller((VECTOR_SLOPE / near.squared()).most(), (size_of(first) + a2 * reach).most())
     bend = (a2 * boxes.half2 * 0.5).most()
@@ -207,21 +193,21 @@ def smaller(first: Interval, second: Interval) -> Interval:
     return Interval(np.fmin(first.high, second.high))
 
 
-def sheared(jet: LinkVector, shear: Shear, near: Interval) -> LinkVector:
+def sheared(jet: Jet, shear: Shear, near: Interval) -> Jet:
     """Return ``basis^T (I + E)^T a`` of a link vector a."""
     value, e1, e2 = jet.value, shear.first, shear.second
-    first = jet.first + dot(e1, value[:, None, None])
-    second = jet.second + dot(e2, value[:, None, None])
-    mixed = dot(e1[:, :, COLUMN], jet.first[:, None, ROW])
-    second = second + mixed + dot(e1[:, :, ROW], jet.first[:, None, COLUMN])
+    first = jet.slopes + dot(e1, value[:, None, None])
+    second = jet.bends + dot(e2, value[:, None, None])
+    mixed = dot(e1[:, :, COLUMN], jet.slopes[:, None, ROW])
+    second = second + mixed + dot(e1[:, :, ROW], jet.slopes[:, None, COLUMN])
     m0, m1, m2, m3 = (shear.most[i] for i in range(4))
     i1 = 1.0 / near
-    third = jet.third * (m0 + 1.0) + i1 * i1.squared() * m1 * (3.0 * VECTOR_BEND)
+    third = jet.over * (m0 + 1.0) + i1 * i1.squared() * m1 * (3.0 * VECTOR_BEND)
     third = third + i1.squared() * m2 * (3.0 * VECTOR_SLOPE) + i1 * m3
     basis = shear.basis
     # the basis' columns are longer than one by rounding alone
     grown = (third * ROUNDING).most()
-    return LinkVector(
+    return Jet(
         dot(basis, value[:, None]),
         dot(basis[:, :, None], first[:, None]),
         dot(basis[:, :, None], second[:, None]),

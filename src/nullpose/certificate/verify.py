@@ -11,6 +11,7 @@ from nullpose.certificate.affine_test import affine_holds
 from nullpose.certificate.boxes import Boxes, boxes_of, parts, uncovered
 from nullpose.certificate.certificate import (
     AFFINE,
+    DEEPEST,
     FAR,
     KEPT_OUT,
     OFF_BAND,
@@ -37,7 +38,6 @@ _CHUNK = 4096
 _CUT_AT_ONCE = 128
 _CUTS = 2  # boxes whose test fails by a hair are cut into eight, so many times
 _MORE_CUTS = 6  # or as often as that, while few of the pieces fail
-_DEEPEST = 50
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -179,8 +179,8 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
         "the band's multiplier is not a number": ~np.isfinite(leaves.band),
         "its cell does not exist": _outside(leaves.face + 1, 4),
-        "its depth is out of range": np.any(_outside(depth, _DEEPEST + 1), axis=1),
-        "its index is out of range": np.any(_outside(index, 1 << np.clip(depth, 0, _DEEPEST)), axis=1),
+        "its depth is out of range": np.any(_outside(depth, DEEPEST + 1), axis=1),
+        "its index is out of range": np.any(_outside(index, 1 << np.clip(depth, 0, DEEPEST)), axis=1),
     }
     for words, mask in faults.items():
         if np.any(mask):

@@ -14,7 +14,9 @@ from nullpose.errors import UsageError
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
+from nullpose.solver.branch_and_bound import MOST_LEAVES
 from nullpose.solver.leaves_from_proof import leaves_of
+from nullpose.solver.proof import MOST_HALVINGS
 from nullpose.solver.result import Result
 from nullpose.solver.rigour import Rigour, bound_above
 
@@ -64,9 +66,10 @@ def certificate_of(solution: Result) -> Certificate:
     if solution.objective.upper_bound is None:
         raise UsageError("certificate: nothing was proved; leave out --fast (certify=False)")
     if not solution.proofs:
+        few = solution.stats.boxes <= MOST_LEAVES  # then it is not for their number that there are no leaves
+        what = f"halves boxes more than {MOST_HALVINGS} times" if few else "has too many leaves for one"
         raise UsageError(
-            "certificate: the proof has too many leaves for one; ask for a wider --gap, or leave out "
-            "--certificate and --verify"
+            f"certificate: the proof {what}; ask for a wider --gap, or leave out --certificate and --verify"
         )
     pose = solution.pose
     value, bound = _ratios(solution, fields)

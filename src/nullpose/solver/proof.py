@@ -21,7 +21,9 @@ from nullpose.solver.options import SolveOptions
 from nullpose.solver.rigour import bound_above
 from nullpose.solver.worker_pool import Kernel, WorkerPool
 
-_SMALLEST = 0.99 * 2.0**-50  # of a box or a cell over the root: the verifier takes 50 halvings
+MOST_HALVINGS = 50
+"""Of a leaf that a certificate can hold, as the verifier has it."""
+_SMALLEST = 0.99 * 2.0**-MOST_HALVINGS  # of a box or a cell over the root
 _TRIES = ((400, False), (20_000, False), (200_000, True))
 """Boxes from the root after which a better pose is looked for, and whether all threads share them.
 
