@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pattern_files import DATA, written
 
 from nullpose.antenna.files import read_pattern
 from nullpose.antenna.summary import summary_of
@@ -19,9 +20,9 @@ KNOWN = {
 
 
 @pytest.mark.parametrize("name", KNOWN)
-def test_known_patterns(data: Path, name: str) -> None:
+def test_known_patterns(name: str) -> None:
     """Peak, ripple and null are those of the finer grids, to what 5 degrees show; nothing is lost."""
-    summary = summary_of(read_pattern(data / f"{name}_5deg.out.gz"))
+    summary = summary_of(read_pattern(DATA / f"{name}_5deg.out.gz"))
     peak_dbi, ripple_db, null_db = KNOWN[name]
     assert summary.peak_dbi == pytest.approx(peak_dbi, abs=0.1)
     assert summary.ripple_db == pytest.approx(ripple_db, abs=0.2)
@@ -31,18 +32,18 @@ def test_known_patterns(data: Path, name: str) -> None:
     assert summary.table.frequency_hz == 2.4e9
 
 
-def test_the_short_dipole_is_the_formula(data: Path) -> None:
+def test_the_short_dipole_is_the_formula() -> None:
     """The gain of the dipole alone is 1.5 sin^2 but for its length, a tenth of a wavelength."""
-    table = read_pattern(data / "alone_short_5deg.out.gz")
+    table = read_pattern(DATA / "alone_short_5deg.out.gz")
     formula = 1.5 * np.sin(np.radians(table.theta_deg[1:-1]))[:, None] ** 2
     assert np.max(np.abs(10.0 * np.log10(table.gain[1:-1] / formula))) < 0.1
 
 
-def test_a_table_of_averages_alone_is_passed_over(written: dict[str, str], tmp_path: Path) -> None:
+def test_a_table_of_averages_alone_is_passed_over(tmp_path: Path) -> None:
     """What an RP card asks for beside the pattern does not block it."""
-    whole = read_pattern(_saved(tmp_path, written["nec"]))
+    whole = read_pattern(_saved(tmp_path, written("nec")))
     averages = "\n  ----- RADIATION PATTERNS -----\n\n AVERAGE POWER GAIN= 1.0\n 0.00000E+00  ANTENNA.NEC\n"
-    np.testing.assert_array_equal(read_pattern(_saved(tmp_path, written["nec"] + averages)).gain, whole.gain)
+    np.testing.assert_array_equal(read_pattern(_saved(tmp_path, written("nec") + averages)).gain, whole.gain)
     with pytest.raises(ScenarioError, match="no table of gains"):
         read_pattern(_saved(tmp_path, averages))
 

@@ -1,15 +1,16 @@
-"""What the tests of pattern files share: a pattern without any symmetry, and a writer for each format."""
+"""Known patterns, one of them without any symmetry, and a writer for each format of pattern files."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parents[1] / "antenna" / "data"
 FREQUENCY_HZ = 2.4e9
 
 Field = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.complex128]]
@@ -44,7 +45,7 @@ def field_of(theta_deg: NDArray[np.float64], phi_deg: NDArray[np.float64]) -> ND
     return _raw_field(theta_deg, phi_deg) / np.sqrt(_MEAN)
 
 
-def db(power: NDArray[np.float64]) -> NDArray[np.float64]:
+def db(power: Any) -> Any:
     """Returns decibels."""
     return 10.0 * np.log10(np.maximum(power, 1e-99))
 
@@ -75,12 +76,13 @@ FIELDS: dict[str, Field] = {"any": field_of, "dipole": dipole_field, "omni": omn
 
 
 def _rows(grid: Grid, field: Field, *, theta_inner: bool) -> list[tuple]:
-    """Returns theta, phi and both parts of the field of every direction, in a file's order."""
+    """Returns theta, phi, both parts of the field and the power of every direction, in a file's order."""
     theta, phi = np.meshgrid(*grid, indexing="ij")
     if theta_inner:
         theta, phi = theta.T, phi.T
     parts = field(theta, phi).reshape(-1, 2)
-    return list(zip(theta.ravel(), phi.ravel(), parts[:, 0], parts[:, 1], strict=True))
+    power = np.sum(np.abs(parts) ** 2, axis=1)
+    return list(zip(theta.ravel(), phi.ravel(), parts[:, 0], parts[:, 1], power, strict=True))
 
 
 def _sphere(step_deg: float, first_deg: float = 0.0, last_deg: float = 360.0) -> Grid:
@@ -90,13 +92,10 @@ def _sphere(step_deg: float, first_deg: float = 0.0, last_deg: float = 360.0) ->
 
 def _nec_rows(grid: Grid, field: Field) -> str:
     lines = []
-    for theta, phi, along, round_z in _rows(grid, field, theta_inner=True):
-        gains = " ".join(f"{float(db(np.array(p))):8.2f}" for p in (abs(along) ** 2, abs(round_z) ** 2))
-        total = float(db(np.array(abs(along) ** 2 + abs(round_z) ** 2)))
-        parts = " ".join(
-            f"{0.37 * abs(part):.4E} {np.degrees(np.angle(part)):9.2f}" for part in (along, round_z)
-        )
-        lines.append(f"{theta:8.2f} {phi:8.2f} {gains} {total:8.2f} 0.5000 12.00 RIGHT {parts}")
+    for theta, phi, a, b, power in _rows(grid, field, theta_inner=True):
+        gains = " ".join(f"{db(each):8.2f}" for each in (abs(a) ** 2, abs(b) ** 2, power))
+        parts = " ".join(f"{0.37 * abs(part):.4E} {np.degrees(np.angle(part)):9.2f}" for part in (a, b))
+        lines.append(f"{theta:8.2f} {phi:8.2f} {gains} 0.5000 12.00 RIGHT {parts}")
     return "\n".join(lines)
 
 
@@ -130,7 +129,7 @@ def write_ffd(field: Field = field_of, step_deg: float = 5.0) -> str:
     grid = _sphere(step_deg, -180.0, 180.0)
     rows = _rows(grid, field, theta_inner=False)
     table = "\n".join(
-        f"{9 * a.real:.8e} {9 * a.imag:.8e} {9 * b.real:.8e} {9 * b.imag:.8e}" for _, _, a, b in rows
+        f"{9 * a.real:.8e} {9 * a.imag:.8e} {9 * b.real:.8e} {9 * b.imag:.8e}" for _, _, a, b, _ in rows
     )
     counts = [len(angles) for angles in grid]
     return f"0 180 {counts[0]}\n-180 180 {counts[1]}\nFrequencies 1\nFrequency 2.4e9\n{table}\n"
@@ -151,7 +150,7 @@ def write_ffs(
     volts = np.sqrt(376.730313 / (2.0 * np.pi) * powers[1])
     table = "\n".join(
         f"{phi:9.3f} {theta:9.3f} " + " ".join(f"{volts * x:.8e}" for x in (a.real, a.imag, b.real, b.imag))
-        for theta, phi, a, b in rows
+        for theta, phi, a, b, _ in rows
     )
     told = "\n".join(f"{power:e}" for power in powers)
     return (
@@ -170,10 +169,8 @@ def write_cst(field: Field = field_of, step_deg: float = 5.0) -> str:
         "Abs(Phi  )[dBi   ]  Phase(Phi  )[deg.]  Ax.Ratio[dB    ]",
         "-" * 120,
     ]
-    for theta, phi, a, b in _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True):
-        total, along, round_z = (
-            float(db(np.array(p))) for p in (abs(a) ** 2 + abs(b) ** 2, abs(a) ** 2, abs(b) ** 2)
-        )
+    for theta, phi, a, b, power in _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True):
+        total, along, round_z = db([power, abs(a) ** 2, abs(b) ** 2])
         angles = [np.degrees(np.angle(part)) % 360.0 for part in (a, b)]
         parts = f"{along:.4e} {angles[0]:8.3f} {round_z:.4e} {angles[1]:8.3f}"
         lines.append(f"{theta:8.3f} {phi:8.3f} {total:.4e} {parts} 4.000e+01")
@@ -183,9 +180,7 @@ def write_cst(field: Field = field_of, step_deg: float = 5.0) -> str:
 def write_csv(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns a table of gains, its rows in no order."""
     rows = _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True)
-    lines = [
-        f"{theta:g},{phi:g},{float(db(np.array(abs(a) ** 2 + abs(b) ** 2))):.4f}" for theta, phi, a, b in rows
-    ]
+    lines = [f"{theta:g},{phi:g},{db(power):.4f}" for theta, phi, _, _, power in rows]
     np.random.default_rng(1).shuffle(lines)
     return "\n".join(["theta_deg,phi_deg,gain_dbi", *lines]) + "\n"
 
@@ -193,15 +188,15 @@ def write_csv(field: Field = field_of, step_deg: float = 5.0) -> str:
 def write_complex_csv(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns a table of fields."""
     rows = _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=False)
-    lines = [f"{t:g},{p:g},{a.real:.7f},{a.imag:.7f},{b.real:.7f},{b.imag:.7f}" for t, p, a, b in rows]
+    lines = [f"{t:g},{p:g},{a.real:.7f},{a.imag:.7f},{b.real:.7f},{b.imag:.7f}" for t, p, a, b, _ in rows]
     return "\n".join(["theta_deg,phi_deg,re_theta,im_theta,re_phi,im_phi", *lines]) + "\n"
 
 
 def write_hfss_csv(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns what a report of HFSS writes: headings and units in quotes, azimuths from -180."""
     lines = ['"Freq [GHz]","Phi [deg]","Theta [deg]","dB(GainTotal) []"']
-    for theta, phi, a, b in _rows(_sphere(step_deg, -180.0, 180.0), field, theta_inner=True):
-        lines.append(f"2.4,{phi:g},{theta:g},{float(db(np.array(abs(a) ** 2 + abs(b) ** 2))):.9f}")
+    rows = _rows(_sphere(step_deg, -180.0, 180.0), field, theta_inner=True)
+    lines += [f"2.4,{phi:g},{theta:g},{db(power):.9f}" for theta, phi, _, _, power in rows]
     return "\n".join(lines) + "\n"
 
 
@@ -209,17 +204,16 @@ def write_hfss_linear(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns a report of linear realised gains, its columns in another order, polar angles from -180."""
     lines = ["RealizedGainTotal,Theta[deg],Phi[deg],Freq[MHz]"]
     grid = np.arange(-180.0, 181.0, step_deg), np.arange(0.0, 180.0, step_deg)
-    for theta, phi, a, b in _rows(grid, field, theta_inner=False):
-        lines.append(f"{abs(a) ** 2 + abs(b) ** 2:.9f},{theta:g},{phi:g},2400")
+    rows = _rows(grid, field, theta_inner=False)
+    lines += [f"{power:.9f},{theta:g},{phi:g},2400" for theta, phi, _, _, power in rows]
     return "\n".join(lines) + "\n"
 
 
 def write_cst_gains(field: Field = field_of, step_deg: float = 5.0) -> str:
     """Returns a table of CST without phases, of realised gains."""
     lines = ["Theta [deg.]  Phi   [deg.]  Abs(Grlz)[dBi   ]   Ax.Ratio[dB    ]  ", "-" * 60]
-    for theta, phi, a, b in _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True):
-        total = float(db(np.array(abs(a) ** 2 + abs(b) ** 2)))
-        lines.append(f"{theta:8.3f} {phi:8.3f} {total:.3e} 4.000e+01")
+    rows = _rows(_sphere(step_deg, 0.0, 355.0), field, theta_inner=True)
+    lines += [f"{theta:8.3f} {phi:8.3f} {db(power):.3e} 4.000e+01" for theta, phi, _, _, power in rows]
     return "\n".join(lines) + "\n"
 
 
@@ -259,43 +253,7 @@ WRITERS: dict[str, tuple[str, Callable[..., str]]] = {
 }
 
 
-@pytest.fixture(scope="session")
-def written() -> dict[str, str]:
-    """The pattern without symmetry in each format, by the writer's name."""
-    return {name: write() for name, (_, write) in WRITERS.items()}
-
-
-@pytest.fixture(scope="session")
-def formats() -> dict[str, str]:
-    """Which format each writer writes."""
-    return {name: told for name, (told, _) in WRITERS.items()}
-
-
-@pytest.fixture(scope="session")
-def patterns() -> dict[str, Field]:
-    """Three known patterns: one without any symmetry, one with exact nulls, one the same all round."""
-    return FIELDS
-
-
-@pytest.fixture(scope="session")
-def writers() -> dict[str, Callable[..., str]]:
-    """What writes a pattern, (field, step in degrees), by the writer's name; two cuts of the last only."""
-    return {name: write for name, (_, write) in WRITERS.items()} | {"msi": write_omni_msi}
-
-
-@pytest.fixture(scope="session")
-def field() -> Field:
-    """The field of the pattern without symmetry."""
-    return field_of
-
-
-@pytest.fixture(scope="session")
-def msi() -> Callable[..., str]:
-    """The writer of two cuts."""
-    return write_msi
-
-
-@pytest.fixture(scope="session")
-def data() -> Path:
-    """The folder of genuine files."""
-    return DATA
+@cache
+def written(name: str) -> str:
+    """Returns the pattern without symmetry in the format of a writer."""
+    return WRITERS[name][1]()
