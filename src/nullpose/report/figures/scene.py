@@ -97,9 +97,8 @@ def _frame(axes: Axes3D, stage: Stage) -> None:
     low, high = limits_m(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(tuple(high - low), zoom=stage.view.zoom)  # one metre is as long along every axis
-    pad_pt = stage.view.pad_pt
-    axes.set_xlabel("x (east)  m", labelpad=pad_pt - 3)
-    axes.set_ylabel("y (north)  m", labelpad=pad_pt - 1)
+    axes.set_xlabel("x (east)  m", labelpad=-3)
+    axes.set_ylabel("y (north)  m", labelpad=-1)
     axes.set_zlabel("z (up)  m", labelpad=-8)
     axes.tick_params(pad=-2, labelsize=7.5)
     sides = ((axes.xaxis, 5), (axes.yaxis, 7), (axes.zaxis, 3))

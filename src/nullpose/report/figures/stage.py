@@ -34,21 +34,17 @@ class View:
 
     Args:
         inches: width of each panel, height of the figure.
-        edges: where panels end and begin, as shares of the height.
         elevation_deg: how high the camera stands.
         pattern: radius drawn where the gain is largest; a pattern has no size of its own.
         azimuth_deg: where the camera stands, from x (east) towards y (north).
         zoom: how much of its place a scene fills.
-        pad_pt: more space between numbers and names of the level axes, points.
     """
 
     inches: tuple[float, float]
-    edges: tuple[float, float]
     elevation_deg: float
     pattern: float
     azimuth_deg: float = -32.0
     zoom: float = 1.12
-    pad_pt: float = 0.0
 
     @property
     def camera(self) -> FloatArray:
@@ -58,9 +54,9 @@ class View:
         return np.array([flat * math.cos(azimuth), flat * math.sin(azimuth), math.sin(elevation)])
 
 
-PANELS = View(inches=(4.6, 3.7), edges=(0.08, 0.98), elevation_deg=20.0, pattern=0.15)
-PAIR = View(inches=(4.8, 4.7), edges=(0.10, 0.89), elevation_deg=38.0, pattern=0.11, zoom=1.02)
-ALONE = View(inches=(7.0, 5.4), edges=(0.13, 0.97), elevation_deg=38.0, pattern=0.11)
+PANELS = View(inches=(4.6, 3.7), elevation_deg=20.0, pattern=0.15)
+PAIR = View(inches=(4.8, 4.7), elevation_deg=38.0, pattern=0.11, zoom=0.97)
+ALONE = View(inches=(7.0, 5.4), elevation_deg=38.0, pattern=0.11)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
