@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 import shapely
 from shapely import Polygon
 
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
-from nullpose.scenario.areas import Area, areas_of
+from nullpose.scenario.areas import Area, account_of, areas_of, polygons_of
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import Raw, RawTable, refusal, require
 from nullpose.scenario.geo_file import Feature
@@ -27,18 +27,9 @@ _HALVES_M = (REACH_M, 3e4, 1.5e4, 8e3, 4e3, 2e3)  # of squares about the origin
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
-class Filled(NamedTuple):
-    """A raw airspace with what a file holds.
-
-    Args:
-        airspace: raw.
-        notes: on what became of the file's features.
-        places: of areas in the file, by their path in the scenario.
-    """
-
-    airspace: RawTable
-    notes: list[str]
-    places: Mapping[str, str]
+Filled: TypeAlias = tuple[RawTable, list[str], dict[str, str]]
+"""A raw airspace, notes on what became of a file's features, and the places in the file of what is from it by
+their path in the scenario."""
 
 
 def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> Filled:
@@ -57,23 +48,24 @@ def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     listed, place = list(airspace.get("no_fly", ())), _place(origin)
     names = {str(zone.get("name")) for zone in listed if isinstance(zone, Mapping)}
     reach = _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
-    areas = areas_of(features, reach, _ground_m(origin), names)
+    areas, counts, remarks = areas_of(features, reach, _ground_m(origin), names)
     bounds: RawTable = {}
     words = ""
     for half_m in _HALVES_M:
-        if place is None or areas.corners <= MOST_CORNERS:
+        corners = sum(len(polygon.exterior.coords) - 1 for polygon in polygons_of(areas))
+        if place is None or corners <= MOST_CORNERS:
             break
         box_m = _box_m(airspace, half_m, place)
-        areas.cut(_box_deg(box_m, place))
+        areas = [area for area in areas if area.cut(_box_deg(box_m, place))]
         ends_m = dict(zip(("x_m", "y_m"), box_m.T.tolist(), strict=True))
         bounds = {key: ends for key, ends in ends_m.items() if half_m in ends}
         words = " and ".join(f"{key} = {ends}" for key, ends in bounds.items()) or "the airspace of the file"
     if words:
-        areas.remarks.append(f"they are cut to {words}, since all have too many corners")
-    zones = [(zone, area.place) for area in areas.areas for zone in area.zones()]
+        remarks.append(f"they are cut to {words}, since all have too many corners")
+    zones = [(zone, area.place) for area in areas for zone in area.zones()]
     places = {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(zones, len(listed))}
     filled = {**airspace, **bounds, "no_fly": [*listed, *(zone for zone, _ in zones)]}
-    return Filled(filled, areas.account(), places)
+    return filled, account_of(areas, counts, remarks), places
 
 
 def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> Filled:
@@ -91,19 +83,19 @@ def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     """
     place, ground_m = _place(origin), _ground_m(origin)
     reach = _everywhere(0.0 if place is None else float(place[1]))
-    areas = areas_of(features, reach, ground_m, is_fence=True)
-    is_fence = len(areas.areas) == len(areas.polygons) == 1 and not areas.areas[0].cylinders
-    require(is_fence, "", f"it has {areas.counts['area']} areas, must be one polygon, the fence")
-    (polygon,) = areas.polygons
+    areas, counts, remarks = areas_of(features, reach, ground_m, is_fence=True)
+    is_fence = len(areas) == len(polygons_of(areas)) == 1 and not areas[0].cylinders
+    require(is_fence, "", f"it has {counts['area']} areas, must be one polygon, the fence")
+    (polygon,) = areas[0].polygons
     holes = [
         {"name": f"hole {index} of the fence", "polygon_lat_lon_deg": corners_of(ring)}
         for index, ring in enumerate(polygon.interiors, 1)
     ]
     fenced = {**airspace, "geofence_lat_lon_deg": corners_of(polygon.exterior)}
     fenced |= {"no_fly": [*holes, *airspace.get("no_fly", ())]} if holes else {}
-    fenced |= dict(_altitudes(airspace, areas.areas[0], ground_m))
-    places = {"airspace.geofence_lat_lon_deg": areas.areas[0].place}
-    return Filled(fenced, areas.account(is_fence=True), places)
+    fenced |= dict(_altitudes(airspace, areas[0], ground_m))
+    places = {"airspace.geofence_lat_lon_deg": areas[0].place}
+    return fenced, account_of(areas, counts, remarks, is_fence=True), places
 
 
 def _altitudes(airspace: Raw, fence: Area, ground_m: Ground) -> Iterator[tuple[str, list[float]]]:

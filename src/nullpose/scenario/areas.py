@@ -60,67 +60,48 @@ class Area:
         return bool(self.polygons or self.cylinders)
 
 
-@dataclass(slots=True)
-class Areas:
-    """The areas of a file and an account of all that it holds.
+def account_of(
+    areas: Sequence[Area], counts: Counter[str], remarks: Sequence[str], *, is_fence: bool = False
+) -> list[str]:
+    """Say in a line what became of all features of a file, then in a line each kind of remark.
 
     Args:
         areas: within reach.
         counts: of features by what became of them.
         remarks: on all of them.
+        is_fence: whether they are a fence, whose holes are zones; no line where there is nothing to say.
     """
+    polygons = polygons_of(areas)
+    shapes = {"polygon": len(polygons), "cylinder": sum(len(area.cylinders) for area in areas)}
+    in_brackets = f" ({counted(shapes)})" if areas else ""
+    passed = counted({kind: counts[kind] for kind in _PASSED_OVER})
+    holes = sum(len(polygon.interiors) for polygon in polygons)
+    limits = areas[0].limits if is_fence else {}
+    parts = {
+        "fence: 1 polygon": is_fence,
+        f"zones: {len(areas)} of {counts['area']} in reach{in_brackets}": not is_fence,
+        EXCHANGED: counts["area"] and not areas,
+        f"passed over: {passed}": passed,
+        f"holes {'that are zones' if is_fence else 'filled'}: {holes}": holes,
+        f"borders that cross, all inside counts: {counts['crossing']}": counts["crossing"],
+        ", ".join(f"{key} = {ends}" for key, ends in limits.items()): limits,
+    }
+    words = [part for part, is_so in parts.items() if is_so]
+    names: dict[str, list[str]] = {}
+    for area in areas:
+        for remark in area.remarks:
+            names.setdefault(remark, []).append(area.name or area.place)
+    more = {remark: f" (and so {len(others) - 1} more)" for remark, others in names.items() if others[1:]}
+    return [
+        *(["; ".join(words)] if len(words) > 1 or not is_fence else []),
+        *remarks,
+        *(f'"{first}"{more.get(remark, "")} {remark}' for remark, (first, *_) in names.items()),
+    ]
 
-    areas: list[Area] = field(default_factory=list)
-    counts: Counter[str] = field(default_factory=Counter)
-    remarks: list[str] = field(default_factory=list)
 
-    @property
-    def polygons(self) -> list[Polygon]:
-        """The polygons of all areas."""
-        return [polygon for area in self.areas for polygon in area.polygons]
-
-    @property
-    def corners(self) -> int:
-        """How many corners the polygons have, holes filled."""
-        return sum(len(polygon.exterior.coords) - 1 for polygon in self.polygons)
-
-    def cut(self, box: Polygon) -> None:
-        """Leave out what lies outside a box of degrees."""
-        self.areas = [area for area in self.areas if area.cut(box)]
-
-    def account(self, is_fence: bool = False) -> list[str]:
-        """Say in a line what became of all features, then in a line each kind of remark.
-
-        Args:
-            is_fence: whether they are a fence, whose holes are zones; no line where there is nothing to say.
-        """
-        counts, areas, polygons = self.counts, self.areas, self.polygons
-        shapes = {"polygon": len(polygons), "cylinder": sum(len(area.cylinders) for area in areas)}
-        in_brackets = f" ({counted(shapes)})" if areas else ""
-        passed = counted({kind: counts[kind] for kind in _PASSED_OVER})
-        holes = sum(len(polygon.interiors) for polygon in polygons)
-        limits = areas[0].limits if is_fence else {}
-        parts = {
-            "fence: 1 polygon": is_fence,
-            f"zones: {len(areas)} of {counts['area']} in reach{in_brackets}": not is_fence,
-            EXCHANGED: counts["area"] and not areas,
-            f"passed over: {passed}": passed,
-            f"holes {'that are zones' if is_fence else 'filled'}: {holes}": holes,
-            f"borders that cross, all inside counts: {counts['crossing']}": counts["crossing"],
-            ", ".join(f"{key} = {ends}" for key, ends in limits.items()): limits,
-        }
-        words = [part for part, is_so in parts.items() if is_so]
-        lines = ["; ".join(words)] if len(words) > 1 or not is_fence else []
-        names: dict[str, list[str]] = {}
-        for area in areas:
-            for remark in area.remarks:
-                names.setdefault(remark, []).append(area.name or area.place)
-        more = {remark: f" (and so {len(others) - 1} more)" for remark, others in names.items() if others[1:]}
-        return [
-            *lines,
-            *self.remarks,
-            *(f'"{first}"{more.get(remark, "")} {remark}' for remark, (first, *_) in names.items()),
-        ]
+def polygons_of(areas: Sequence[Area]) -> list[Polygon]:
+    """List the polygons of all areas."""
+    return [polygon for area in areas for polygon in area.polygons]
 
 
 def counted(numbers: Mapping[str, int]) -> str:
@@ -138,7 +119,7 @@ def areas_of(
     names: set[str] | None = None,
     *,
     is_fence: bool = False,
-) -> Areas:
+) -> tuple[list[Area], Counter[str], list[str]]:
     """Find the areas of features: polygons, closed lines, and points with a radius.
 
     The parts of a feature are united; walls, which cover no ground, are left out. An area out of reach is
@@ -151,26 +132,28 @@ def areas_of(
         names: that are taken.
         is_fence: whether every crossing of a border is a fault; a zone may have small ones.
 
+    Returns:
+        The areas within reach, counts of features by what became of them, and remarks on all of them.
+
     Raises:
         ScenarioError: with the faults of all features.
     """
-    found, taken, faults = Areas(), set(names or ()), list[Fault]()
+    areas, counts, taken, faults = list[Area](), Counter[str](), set(names or ()), list[Fault]()
     for feature in features:
         try:
-            area = _area(feature, reach, found.counts, is_fence)
+            area = _area(feature, reach, counts, is_fence)
             if area is not None:
                 area.limits, area.remarks = altitude_limits(feature, ground_m)
                 area.name = unique(area.name, taken)
-                found.areas.append(area)
+                areas.append(area)
         except ScenarioError as error:
             faults += error.faults
     if faults:
         raise ScenarioError(faults)
     points = [each for each in features if getattr(each.geometry, "geom_type", "") in ("Point", "MultiPoint")]
     keys = {key for point in points for key in point.properties if _LIKE_RADII.search(key)} - {"radius_m"}
-    if keys:
-        found.remarks.append(f"of points {', '.join(sorted(keys))} is not read; a radius is radius_m")
-    return found
+    unread = f"of points {', '.join(sorted(keys))} is not read; a radius is radius_m"
+    return areas, counts, [unread] if keys else []
 
 
 def _area(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> Area | None:
