@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Unpack
 
 import numpy as np
@@ -17,9 +18,11 @@ from nullpose.problem.schemes import Scheme, as_scheme
 from nullpose.scenario import Scenario, require_scenario
 from nullpose.solver.array import solve_array
 from nullpose.solver.by_scheme import solve_by_scheme
+from nullpose.solver.compiling import working_clock
+from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveKeywords, SolveOptions
-from nullpose.solver.result import Result, Results
-from nullpose.solver.robust.solving import solve_robust
+from nullpose.solver.result import Result, Results, provenance
+from nullpose.solver.robust.exchange import ROBUST_GAP, solve_robust
 from nullpose.solver.solve_and_prove import solve_and_prove
 
 
@@ -74,13 +77,34 @@ def solve(
     """
     require_scenario(scenario)
     scheme, limits = as_scheme(scheme), SolveOptions(**options, on_progress=on_progress)
-    if not robust and scenario.array is None:
-        return solve_by_scheme(scenario, scheme, null_jammer, limits)
-    if scheme is not Scheme.OPTIMUM or null_jammer is not None:
+    if (robust or scenario.array is not None) and (scheme is not Scheme.OPTIMUM or null_jammer is not None):
         refused = f"scheme {scheme.value}" if null_jammer is None else f"null jammer {null_jammer!r}"
         kind = "a robust pose" if robust else "a scenario with an [array]"
         raise UsageError(f"solve: given {refused} for {kind}; allowed: the scheme {Scheme.OPTIMUM.value}")
-    return solve_robust(scenario, limits) if robust else solve_array(scenario, limits)
+    limits, began = limits.of(scenario, ROBUST_GAP if robust else None), working_clock()
+    if robust:
+        answer = solve_robust(scenario, limits)
+    elif scenario.array is not None:
+        answer = solve_array(scenario, scenario.array, limits)
+    else:
+        answer = solve_by_scheme(scenario, scheme, null_jammer, limits)
+    objective = objective_of(scenario, answer.value, answer.upper_bound, answer.rigour)
+    status, reason = status_of(objective, limits.target, answer.reason)
+    return Result(
+        scenario=scenario,
+        scheme=answer.scheme,
+        status=status,
+        reason=reason,
+        objective=objective,
+        pose=answer.pose,
+        links=answer.links,
+        stats=replace(answer.stats, wall_s=working_clock() - began),
+        provenance=provenance(limits.seed) | answer.settings,
+        note=answer.note,
+        null_jammer=null_jammer,
+        proofs=answer.proofs,
+        details=answer.details,
+    )
 
 
 def compare(

@@ -16,10 +16,8 @@ from nullpose.physics.evaluate import links_of
 from nullpose.problem.axis_field import AxisField
 from nullpose.scenario import Array, Scenario
 from nullpose.solver.array_search import ArraySearch
-from nullpose.solver.compiling import working_clock
-from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
-from nullpose.solver.result import Result, Stats, provenance
+from nullpose.solver.result import Answer, Stats
 from nullpose.solver.solve_and_prove import solve_and_prove
 
 _MOST_BOXES = 300_000
@@ -61,7 +59,7 @@ class ArrayDetails:
         return {"array": self.array.to_dict() | {"combining": "digital", "weights": weights}}
 
 
-def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
+def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answer:
     """Find the best position, yaw and combining of an array of upright dipoles on a level vehicle.
 
     Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Every
@@ -69,22 +67,19 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
     The bound comes from a branch and bound over positions and yaws.
 
     Args:
-        scenario: one with an array; its airframe and its uncertainty are not consulted.
-        options: as given by the user; limits of time and boxes are not consulted.
+        scenario: its airframe and its uncertainty are not consulted.
+        array: what the vehicle carries.
+        options: those of the scenario; limits of time and boxes are not consulted.
 
     Raises:
         UsageError: the objective is another than min-sinr.
         SolveError: no position reaches every node.
     """
-    array = scenario.array
-    assert array is not None, "the caller asks"
     if scenario.objective != USUAL:
         raise UsageError(
             f"array: given a scenario with objective {scenario.objective!r}; allowed: one "
             "under which the drone receives; arrays are not there for others"
         )
-    options = options.of(scenario)
-    began = working_clock()
     search = ArraySearch(scenario, array, options.seed)
     bound = _solved(search, options)
     yaw_rad = math.remainder(search.state[3], 2.0 * math.pi)
@@ -94,27 +89,22 @@ def solve_array(scenario: Scenario, options: SolveOptions) -> Result:
     if scenario.has_margins:
         ratios["margin"] = ratios["sinr"] / scenario.node_required_sinr
     links = links_of(scenario, ratios)
-    value = Quantity.of(scenario).least(links)
-    objective = objective_of(scenario, value, None if bound is None else bound.value)
     reached = bound is None or bound.value <= math.exp(search.best) * (1.0 + options.target)
-    status, reason = status_of(objective, options.target, "" if reached else "box limit reached")
-    return Result(
-        scenario=scenario,
+    return Answer(
         scheme="array-digital",
-        status=status,
-        objective=objective,
         pose=pose,
         links=links,
+        value=Quantity.of(scenario).least(links),
+        upper_bound=None if bound is None else bound.value,
+        reason="" if reached else "box limit reached",
+        settings=options.settings,
         stats=Stats(
-            wall_s=working_clock() - began,
             starts=search.starts,
             evaluations=search.evaluations,
             boxes=0 if bound is None else bound.boxes,
             searches=len(search.ends),
             agreeing=search.agreeing,
         ),
-        provenance=provenance(options.seed) | options.settings,
-        reason=reason,
         details=ArrayDetails(array=array, weights=digital_weights(scenario, pose.position_m, places)),
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -15,26 +16,24 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.schemes import Scheme, SchemeRecord
 from nullpose.scenario import Scenario
-from nullpose.solver.compiling import working_clock
 from nullpose.solver.incumbent import Incumbent
-from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.position_search import PositionSearch
-from nullpose.solver.result import Result, Stats, provenance
+from nullpose.solver.result import Answer, Stats
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
 
 def solve_by_scheme(
     scenario: Scenario, scheme: Scheme, null_jammer: str | None, options: SolveOptions
-) -> Result:
+) -> Answer:
     """Solve a scenario with one antenna under a scheme.
 
     Args:
         scenario: what to solve; an array is not consulted.
         scheme: how the pose is chosen.
         null_jammer: for a scheme that nulls a jammer: which; without it each is tried and the best kept.
-        options: as given by the user.
+        options: those of the scenario.
 
     Raises:
         UsageError: the scheme has no meaning here, or no jammer has that name.
@@ -47,31 +46,24 @@ def solve_by_scheme(
         raise UsageError(
             f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
         )
-    options = options.of(scenario)
-    began = working_clock()
     outcome, fields = solve_scheme(scenario, record, options, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = evaluate(scenario, pose)
-    rigour = Rigour.VERIFIABLE if outcome.proofs and fields is not None else Rigour.FLOATING_POINT
-    objective = objective_of(scenario, Quantity.of(scenario).least(links), outcome.upper_bound, rigour)
-    status, reason = status_of(objective, options.target, outcome.reason)
-    return Result(
-        scenario=scenario,
+    return Answer(
         scheme=scheme,
-        status=status,
-        reason=reason,
-        objective=objective,
         pose=pose,
         links=links,
+        value=Quantity.of(scenario).least(links),
+        upper_bound=outcome.upper_bound,
+        reason=outcome.reason,
+        settings=options.settings,
         stats=Stats(
-            wall_s=working_clock() - began,
             starts=outcome.incumbent.starts,
             evaluations=outcome.incumbent.evaluations,
             boxes=outcome.nodes,
         ),
-        provenance=provenance(options.seed) | options.settings,
+        rigour=Rigour.VERIFIABLE if outcome.proofs and fields is not None else None,
         note=record.note(scenario, tuple(fields or ()), outcome.chosen),
-        null_jammer=null_jammer,
         proofs=outcome.proofs,
     )
 
@@ -94,11 +86,12 @@ def solve_scheme(
     names = scenario.jammer_names
     if null_jammer is not None and null_jammer not in names:
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
+    family = build_family(scenario, any_antenna=True)
     if not scenario.antenna_record.is_quadratic:
-        from nullpose.solver.pattern import solve_pattern  # and SciPy's optimisers with it
+        from nullpose.solver.pattern import solve_pattern  # and SciPy with it
 
-        return solve_pattern(scenario, options), {}
-    family, fields = build_family(scenario), record.fields(scenario, null_jammer)
+        return solve_pattern(scenario, family, options), {}
+    fields = record.fields(scenario, null_jammer)
     if fields is None:
         return _by_values(record, family, options), None
     return solve_and_prove(family, list(fields.values()), options), fields
@@ -109,11 +102,10 @@ def _by_values(record: SchemeRecord, family: Family, options: SolveOptions) -> O
     from nullpose.solver.kernels.maximum_gain import maximum_gain_value
 
     axis = np.empty(3)
-    search = PositionSearch(
-        lambda at_m: float(maximum_gain_value(family.arrays, at_m, axis)), family, options.seed
-    )
+    log_value = partial(maximum_gain_value, family.arrays, axis=axis)
+    search = PositionSearch(log_value, family, options.seed)
     search.search()
-    maximum_gain_value(family.arrays, search.state, axis)
+    log_value(search.state)  # fills the axis
     ratios = len(family.numerator_point)
     found = Incumbent(
         position_m=search.state,

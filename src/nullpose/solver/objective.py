@@ -53,7 +53,7 @@ class Objective:
 
 
 def objective_of(
-    scenario: Scenario, value: float, ratio_bound: float | None, rigour: Rigour = Rigour.FLOATING_POINT
+    scenario: Scenario, value: float, ratio_bound: float | None, rigour: Rigour | None = None
 ) -> Objective:
     """Report the value at a pose with the bound that was proved.
 
@@ -61,7 +61,7 @@ def objective_of(
         scenario: what it asks for decides which number it is.
         value: that number.
         ratio_bound: no pose has its smallest ratio above this; None if nothing is proved.
-        rigour: of the bound, if there is one.
+        rigour: of the numbers; without it floating-point if there is a bound.
 
     Raises:
         SolveError: the bound is below the value: a fault of nullpose.
@@ -78,7 +78,7 @@ def objective_of(
         value_db=math.nan if quantity.is_rate else quantity.in_unit(value),
         upper_bound=bound,
         relative_gap=gap,
-        rigour=Rigour.NONE if bound is None else rigour,
+        rigour=rigour or (Rigour.NONE if bound is None else Rigour.FLOATING_POINT),
     )
 
 

@@ -11,7 +11,6 @@ from nullpose.antenna import PatternAntenna
 from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
 from nullpose.physics.rotation import rotation_world_from_body
-from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.records import Reach
 from nullpose.scenario import Scenario
@@ -32,7 +31,7 @@ _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
 _ROUNDING = 1e-9  # relative: a middle that is better by less is the incumbent again
 
 
-def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
+def solve_pattern(scenario: Scenario, family: Family, options: SolveOptions) -> Outcome:
     """Return the best pose for an antenna with a pattern, with a bound if one is asked for.
 
     A multistart search; then a branch and bound over cells of positions and attitudes, which takes up every
@@ -40,6 +39,7 @@ def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
 
     Args:
         scenario: one whose antenna has a pattern.
+        family: its ratios and domain, as for an isotropic gain of 1.
         options: what is asked for, its gap stated.
 
     Raises:
@@ -47,8 +47,7 @@ def solve_pattern(scenario: Scenario, options: SolveOptions) -> Outcome:
     """
     antenna = scenario.antenna_record
     assert not antenna.is_quadratic, "the caller asks"
-    run = PatternRun(build_family(scenario, any_antenna=True), antenna, reach_of(scenario, antenna), options)
-    return run.outcome()
+    return PatternRun(family, antenna, reach_of(scenario, antenna), options).outcome()
 
 
 def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:

@@ -37,9 +37,9 @@ class Stats:
         agreeing: those of them that ended at the best value, within 1e-4.
     """
 
-    wall_s: float
-    starts: int
-    evaluations: int
+    wall_s: float = 0.0
+    starts: int = 0
+    evaluations: int = 0
     boxes: int = 0
     searches: int | None = None
     agreeing: int | None = None
@@ -54,6 +54,39 @@ class Details(Protocol):
 
     def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
         """Write plain data for JSON, over the keys of a result, whose objective is given."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Answer:
+    """What a way of solving finds, from which the result is made.
+
+    Args:
+        scheme: the case.
+        pose: position and attitude.
+        links: every node's link at the pose.
+        value: the number that was maximised, there.
+        upper_bound: no pose has its smallest ratio above this; None if nothing is proved.
+        reason: why the proof stopped short of the gap; empty if it did not.
+        settings: what of the options produced it.
+        stats: counts.
+        rigour: of the bound; None if it has no certificate.
+        note: as in a result, like the rest.
+        proofs: see there.
+        details: see there.
+    """
+
+    scheme: Scheme | str
+    pose: Pose
+    links: tuple[Link, ...]
+    value: float
+    upper_bound: float | None
+    reason: str
+    settings: dict[str, float]
+    stats: Stats
+    rigour: Rigour | None = None
+    note: str = ""
+    proofs: tuple[Proof, ...] = ()
+    details: Details | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

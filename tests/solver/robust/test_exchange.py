@@ -13,7 +13,7 @@ from nullpose.problem.robust import BindingCase
 from nullpose.scenario import Scenario
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.robust.exchange import Exchange
-from nullpose.solver.robust.inner import Inner
+from nullpose.solver.robust.guarantee import Inner
 
 POSE = np.array([5.0, 20.0, 9.0]), np.array([0.6, 0.0, 0.8])
 

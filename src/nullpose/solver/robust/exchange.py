@@ -1,25 +1,44 @@
-"""The exchange: error cases are added where they bind, until the finite family speaks for all of them."""
+"""The pose that guarantees most: error cases are added where they bind, until few speak for all."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from nullpose.objectives import FloatArray
+from nullpose.physics import Pose, evaluate
 from nullpose.physics.error_case import ErrorCase
+from nullpose.physics.gain import worst_polarised
 from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.robust import BindingCase, build_robust_family
-from nullpose.solver.compiling import limit_clock
+from nullpose.scenario import Scenario
+from nullpose.solver.branch_and_bound import INTERRUPT
+from nullpose.solver.compiling import limit_clock, precompile
 from nullpose.solver.incumbent import Incumbent
 from nullpose.solver.multistart import SearchSettings, climb, multistart, search_settings
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import prove
-from nullpose.solver.robust.inner import Inner
+from nullpose.solver.result import Answer, Stats
+from nullpose.solver.rigour import Rigour
+from nullpose.solver.robust.guarantee import Inner, guarantee_of, require_dipole
+from nullpose.solver.robust.solution import GuardedPose, RobustDetails
+from nullpose.solver.solve_and_prove import solve_and_prove
 
+ROBUST_GAP = 1e-2
+"""The relative gap asked for unless another is."""
+
+POLARISATION = (
+    "jammers and eavesdroppers whose dipole has a null depth count as isotropic, and what leaks through a "
+    "node's null counts as lost: the worst that they could be"
+)
+"""The note of a solution whose scenario states such."""
+_MOST_CELLS_REACHED = "limit of the proof of what the pose guarantees: most cells of errors"
 _CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
 _MOST_ROUNDS = 100
 _SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee
@@ -29,15 +48,74 @@ _ACCURACIES = 1e-6, 3e-3
 _LEAST_GAP, _WIDEST_GAP = 1e-8, 10.0  # of a proof
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Visited:
-    """A pose and the smallest ratio of the worst cases found there.
+def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
+    """Find the pose whose objective is largest when the scenario's errors do their worst.
+
+    What the pose guarantees is proved; that no pose guarantees much more is proved with ``certify``. On a
+    limit or an interrupt the best so far is returned.
 
     Args:
-        position_m: (3,) metres.
-        axis: (3,) of unit length.
-        worst: that ratio.
+        scenario: with errors or without, which makes the guaranteed value the nominal one.
+        limits: the options of the scenario.
+
+    Raises:
+        UsageError: an array in place of the dipole.
+        SolveError: no pose reaches every node.
     """
+    field, search = AxisField.within(*scenario.axis_band), replace(limits, certify=False)
+    inner = Inner(worst_polarised(require_dipole(scenario)))
+    stated = solve_and_prove(build_family(scenario), [field], search).incumbent
+    nominal = Pose.of_airframe(scenario, stated.position_m, stated.axis)
+    exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
+    if limits.certify:
+        precompile(inner.family.ground_axes is not None)  # compiling must not count against the time limit
+    began, again = limit_clock(), True
+    robust = None
+    try:
+        while again:
+            exchange.search(began + limits.time_limit_s)
+            robust = _guarded(scenario, exchange, robust)
+            again = limits.certify and exchange.prove(exchange.level(robust.guarantee.lower), began)
+    except KeyboardInterrupt:
+        exchange.reason = INTERRUPT
+    robust = _guarded(scenario, exchange, robust)
+    is_close = robust.guarantee.worst <= exchange.level(robust.guarantee.lower)
+    unsettled = "error cases that the search did not settle" if is_close else _MOST_CELLS_REACHED
+    without_errors = guarantee_of(inner, nominal.position_m, nominal.antenna_axis, exchange.accuracy())
+    return Answer(
+        scheme="robust",
+        pose=robust.pose,
+        links=evaluate(scenario, robust.pose),
+        value=robust.guaranteed,
+        upper_bound=exchange.upper_bound,
+        reason=exchange.reason or unsettled * limits.certify,
+        settings={"gap": limits.target},
+        stats=Stats(starts=exchange.starts, evaluations=exchange.evaluations, boxes=exchange.boxes),
+        # what is guaranteed rests on a floating-point proof, whether a bound is asked for or not
+        rigour=Rigour.FLOATING_POINT,
+        note="" if scenario is inner.scenario else POLARISATION,
+        details=RobustDetails(
+            robust=robust,
+            nominal=GuardedPose(scenario=scenario, pose=nominal, guarantee=without_errors),
+            cases=len(exchange.cases),
+        ),
+    )
+
+
+def _guarded(scenario: Scenario, exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
+    """Prove what the best pose so far guarantees, unless that is the one from before."""
+    position_m, axis, _ = exchange.best
+    if before is not None and np.allclose(
+        (before.guarantee.position_m, before.guarantee.axis), (position_m, axis), 1e-12
+    ):
+        return before
+    pose = Pose.of_airframe(scenario, position_m, axis)
+    proved = guarantee_of(exchange.inner, pose.position_m, pose.antenna_axis, exchange.accuracy())
+    return GuardedPose(scenario=scenario, pose=pose, guarantee=proved)
+
+
+class Visited(NamedTuple):
+    """A pose and the smallest ratio of the worst cases found there."""
 
     position_m: FloatArray
     axis: FloatArray

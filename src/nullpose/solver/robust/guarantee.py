@@ -2,68 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
-from nullpose.objectives import FloatArray
-from nullpose.physics.error_case import ErrorCase
+from nullpose.objectives import FloatArray, IntArray
+from nullpose.physics import ErrorCase, ratios_under, rotation_between
 from nullpose.physics.gain import worst_polarised
 from nullpose.physics.pose import as_position
+from nullpose.problem.build import build_family
+from nullpose.problem.robust import interferer_field, point_uncertainty_m
 from nullpose.scenario import Scenario
-from nullpose.solver.robust.inner import Inner, RatioGuarantee
+from nullpose.solver.robust.solution import Guarantee, RatioGuarantee
 
 ACCURACY = 3e-3
 """Relative distance between a guarantee and the worst case found, unless another is asked for."""
 
 _FINEST = 1e-6
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Guarantee:
-    """What a pose guarantees: the smallest ratio over the nodes and over all errors together.
-
-    A ratio is a node's margin (its SINR where it states no weight and no requirement), or for
-    a secrecy rate ``(1 + SNR_k) / (1 + SNR_e)``, two to the power of the secrecy rate.
-
-    Args:
-        position_m: (3,) the commanded position.
-        axis: (3,) the commanded unit antenna axis.
-        ratios: one for every node, or for every node and eavesdropper.
-        cells: cells of errors examined.
-    """
-
-    position_m: FloatArray
-    axis: FloatArray
-    ratios: tuple[RatioGuarantee, ...]
-    cells: int
-
-    @property
-    def nominal(self) -> float:
-        """The smallest ratio without errors."""
-        return min(ratio.nominal for ratio in self.ratios)
-
-    @property
-    def lower(self) -> float:
-        """A proved lower bound on the smallest ratio over all errors."""
-        return min(ratio.lower for ratio in self.ratios)
-
-    @property
-    def worst(self) -> float:
-        """The smallest ratio in the worst cases found: an upper bound on the same number."""
-        return self.binding.worst
-
-    @property
-    def binding(self) -> RatioGuarantee:
-        """The ratio that is smallest in its worst case."""
-        return min(self.ratios, key=lambda ratio: ratio.worst)
-
-    @property
-    def case(self) -> ErrorCase:
-        """The worst error case found."""
-        return self.binding.case
+_ROUND_SET = 1e-12  # semi-axes this close make a ball
+_FLATTEST = 1e-9  # semi-axes are at least this share of the largest
+_EXACT = 1e-9  # accuracy where nothing has to be split
+_MOST_CELLS = 100_000
+_MOST_OF_ELLIPSOIDS, _MOST_OF_DIPOLES = 4_000, 1_000  # whose bounds take so much longer
 
 
 def guarantee(
@@ -138,3 +102,125 @@ def require_dipole(scenario: Scenario) -> Scenario:
     if scenario.array is not None:
         raise UsageError("array: guarantees are for one dipole; remove [array], or solve without robust")
     return scenario
+
+
+class Inner:
+    """What may go wrong in a scenario, prepared once for many poses.
+
+    Args:
+        scenario: nodes, jammers or eavesdroppers, receiver, and how well all of it is known.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+        self.family = build_family(scenario)
+        self.angle_rad = math.radians(scenario.receiver.attitude_error_deg)
+        self.reach_m = float(scenario.receiver.position_error_m)
+        self.none = ErrorCase.none(scenario)
+        self.moved = interferer_field(scenario, "offsets")
+        axes = self.family.ground_axes
+        self.dipoles = np.zeros_like(self.family.points_m) if axes is None else axes
+        self.radii, self.axes, self.semi = _shapes(point_uncertainty_m(scenario))
+        is_closed = (self.family.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
+        self.radii[~is_closed & (self.radii > 0.0)] = -1.0
+
+    def worst(
+        self, position_m: FloatArray, axis: FloatArray, accuracy: float = 1.0
+    ) -> tuple[RatioGuarantee, ...]:
+        """Find the worst error case of every ratio at a pose.
+
+        Args:
+            position_m: (3,) the commanded position.
+            axis: (3,) the commanded antenna axis, of unit length.
+            accuracy: relative distance of the bound from the worst found; 1 asks for no bound.
+        """
+        nominal = ratios_under(self.scenario, position_m, axis, self.none)
+        return tuple(
+            self._worst(ratio, position_m, axis, accuracy, nominal) for ratio in range(self.n_ratios)
+        )
+
+    @property
+    def n_ratios(self) -> int:
+        """How many ratios the nominal family has."""
+        return len(self.family.numerator_point)
+
+    def _worst(
+        self, ratio: int, p: FloatArray, u: FloatArray, accuracy: float, nominal: FloatArray
+    ) -> RatioGuarantee:
+        from nullpose.solver.kernels.worst_case import Errors, Ratio
+        from nullpose.solver.kernels.worst_case_bound import worst_case
+        from nullpose.solver.kernels.worst_case_links import Sets
+
+        family = self.family
+        group = family.denominator_of[ratio]
+        entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
+        points = family.denominator_point[entries]
+        noise, shaped = float(family.denominator_isotropic[group]), bool(np.any(self.radii < 0.0))
+        node_m = family.points_m[family.numerator_point[ratio]] - p
+        numbers = Ratio(
+            isotropic=float(family.numerator_isotropic[ratio]) / noise,
+            weight=float(family.numerator_weight[ratio]) / noise,
+            node=tuple(node_m.tolist()),
+            shares=family.denominator_weight[entries] / noise,
+            centres=family.points_m[points] - p,
+            sets=Sets(
+                self.radii[points],
+                self.axes[points] if shaped else None,
+                self.semi[points] if shaped else None,
+                self.dipoles[points],
+            ),
+            leak=family.leak,
+            dipole=tuple(self.dipoles[family.numerator_point[ratio]].tolist()),
+        )
+        errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
+        if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:
+            accuracy = min(accuracy, _EXACT)  # closed form
+        y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
+        most = _MOST_OF_ELLIPSOIDS if np.any(numbers.sets.radii < 0.0) else _MOST_CELLS
+        most = _MOST_OF_DIPOLES if np.any(numbers.sets.dipoles) else most
+        lower, worst, cells = worst_case(numbers, errors, accuracy, most, y, offset, places)
+        case = self._case(u, y, offset, points, places - (numbers.centres - offset))
+        node, eavesdropper = divmod(ratio, nominal.shape[1])
+        listeners = self.scenario.eavesdropper_names
+        # a null on the node is exact in the case, not in its rounded evaluation
+        value = float(ratios_under(self.scenario, p, u, case)[node, eavesdropper]) if worst > 0.0 else 0.0
+        return RatioGuarantee(
+            node=self.scenario.node_names[node],
+            eavesdropper=listeners[eavesdropper] if listeners else "",
+            nominal=float(nominal[node, eavesdropper]),
+            lower=float(lower),
+            worst=value,
+            case=case,
+            ratio=ratio,
+            cells=int(cells),
+        )
+
+    def _case(
+        self, u: FloatArray, y: FloatArray, offset: FloatArray, points: IntArray, moved: FloatArray
+    ) -> ErrorCase:
+        offsets_m = np.array(getattr(self.none, self.moved))
+        certain = self.radii[points] == 0.0
+        offsets_m[points - len(self.scenario.nodes)] = np.where(certain[:, None], 0.0, moved)
+        case = replace(self.none, **{self.moved: offsets_m})
+        if self.reach_m > 0.0:  # what cannot err has no rounding error either
+            case = replace(case, position_offset_m=offset)
+        if self.angle_rad > 0.0:
+            case = replace(case, rotation_world=rotation_between(u, y if float(u @ y) >= 0.0 else -y))
+        return case
+
+
+def _frame(u: FloatArray) -> Any:
+    """Return the axis and two unit vectors across it."""
+    first = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
+    first /= np.linalg.norm(first)
+    return tuple(tuple(each.tolist()) for each in (u, first, np.cross(u, first)))
+
+
+def _shapes(sets_m: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Describe sets by radius, -1 for no ball, and by axes and half lengths."""
+    axes, semi, _ = np.linalg.svd(sets_m)
+    largest = semi[:, :1]
+    is_ball = np.all(semi >= largest * (1.0 - _ROUND_SET), axis=1)
+    grown = largest[:, 0] * (1.0 + 4.0 * np.finfo(float).eps)  # what rounding may have taken off
+    semi = np.maximum(semi, _FLATTEST * largest) * (1.0 + 4.0 * np.finfo(float).eps)
+    return np.where(is_ball, grown, -1.0), np.ascontiguousarray(np.swapaxes(axes, 1, 2)), semi

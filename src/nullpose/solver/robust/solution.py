@@ -11,11 +11,86 @@ import numpy as np
 from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import Pose, evaluate, pose_frames
 from nullpose.physics.error_case import ErrorCase
+from nullpose.problem.robust import BindingCase
 from nullpose.scenario import Scenario
-from nullpose.solver.robust.guarantee import Guarantee
 
 _LEAST_RAD = 1e-9
 _LEAST_M = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RatioGuarantee:
+    """What a pose guarantees to one node.
+
+    Args:
+        node: the node's name.
+        eavesdropper: the eavesdropper's name, or empty.
+        nominal: the ratio without errors.
+        lower: no error makes it smaller than this; 0 if that was not asked for.
+        worst: the ratio in the worst case found, by the plain physics; between the two the smallest lies.
+        case: that case.
+        ratio: index of the ratio in the nominal family.
+        cells: cells of errors examined.
+    """
+
+    node: str
+    eavesdropper: str
+    nominal: float
+    lower: float
+    worst: float
+    case: ErrorCase
+    ratio: int
+    cells: int
+
+    @property
+    def binding(self) -> BindingCase:
+        """The case and its ratio, for the finite family."""
+        return BindingCase(self.ratio, self.case)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Guarantee:
+    """What a pose guarantees: the smallest ratio over the nodes and over all errors together.
+
+    A ratio is a node's margin (its SINR where it states no weight and no requirement), or for
+    a secrecy rate ``(1 + SNR_k) / (1 + SNR_e)``, two to the power of the secrecy rate.
+
+    Args:
+        position_m: (3,) the commanded position.
+        axis: (3,) the commanded unit antenna axis.
+        ratios: one for every node, or for every node and eavesdropper.
+        cells: cells of errors examined.
+    """
+
+    position_m: FloatArray
+    axis: FloatArray
+    ratios: tuple[RatioGuarantee, ...]
+    cells: int
+
+    @property
+    def nominal(self) -> float:
+        """The smallest ratio without errors."""
+        return min(ratio.nominal for ratio in self.ratios)
+
+    @property
+    def lower(self) -> float:
+        """A proved lower bound on the smallest ratio over all errors."""
+        return min(ratio.lower for ratio in self.ratios)
+
+    @property
+    def worst(self) -> float:
+        """The smallest ratio in the worst cases found: an upper bound on the same number."""
+        return self.binding.worst
+
+    @property
+    def binding(self) -> RatioGuarantee:
+        """The ratio that is smallest in its worst case."""
+        return min(self.ratios, key=lambda ratio: ratio.worst)
+
+    @property
+    def case(self) -> ErrorCase:
+        """The worst error case found."""
+        return self.binding.case
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

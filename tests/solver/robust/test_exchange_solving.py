@@ -7,11 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+import nullpose
 from nullpose.physics import objective_value
 from nullpose.scenario import Scenario
 from nullpose.solver import Result, Status, solve
 from nullpose.solver.robust import guarantee
-from nullpose.solver.robust.inner import Inner
+from nullpose.solver.robust.guarantee import Inner
 
 
 def test_the_robust_pose_of_the_paper(strong: Scenario, solved: Result) -> None:
@@ -150,3 +151,15 @@ def test_nothing_can_be_guaranteed(paper: Callable, erring: Callable) -> None:
     assert solved.objective.relative_gap == math.inf
     assert solved.status is Status.GAP_NOT_REACHED
     assert json.loads(json.dumps(solved.to_dict(), allow_nan=False))["relative_gap"] is None
+
+
+@pytest.mark.parametrize("depth_db", [None, 20.0])
+def test_the_best_pose_without_errors_has_the_value_that_solve_finds(depth_db: float | None) -> None:
+    """The column without errors has the stated antennas, also where a guarantee counts worse ones."""
+    nulls = [f"nodes.{name}.null_depth_db={depth_db}" for name in ("S1", "S2") if depth_db is not None]
+    changes = ["receiver.attitude_error_deg=1", *nulls]
+    uncertain = nullpose.apply_overrides(nullpose.load("examples/whips.toml"), changes)
+    robust, best = solve(uncertain, robust=True, certify=False), solve(uncertain, certify=False)
+    assert robust.details.nominal.nominal == pytest.approx(best.objective.value, rel=1e-6)
+    robust_sinr = nullpose.min_sinr(uncertain, robust.pose)
+    assert robust.details.robust.nominal == pytest.approx(robust_sinr, rel=1e-12)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from nullpose.solver.robust.inner import Inner
+from nullpose.solver.robust.guarantee import Inner
 
 POSE = (np.array([5.0, 20.0, 12.0]), np.array([0.6, 0.0, 0.8]))
 
