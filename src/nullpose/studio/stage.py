@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from nullpose.studio.drawing import FLAT, Shape, Shapes, label, lines
 from nullpose.studio.drone import drone_shapes
 from nullpose.studio.field_map import Scale
 from nullpose.studio.ground import ground_shapes, scene_size_m
-from nullpose.studio.look import LIGHT, Look, round_steps, scale_colours
+from nullpose.studio.look import LIGHT, Look, Rgb, round_steps, scale_colours
 from nullpose.studio.state import Key, State
 from nullpose.study.value_map import Field
 
@@ -47,7 +48,6 @@ class Stage:
         self._scene, self._look, self._on_drag = scene, look, on_drag
         self._shapes: Shapes = {}
         self._handles: dict[str, Any] = {}
-        self._map: tuple[object, Shapes] = (None, {})
         self.size_m = np.inf
         self.eye_m: ArrayLike = np.ones(3)
 
@@ -60,13 +60,12 @@ class Stage:
         size_m = scene_size_m(state.scenario)
         if not _OTHER_SIZE[0] < size_m / self.size_m < _OTHER_SIZE[1]:
             self.size_m = size_m
-        shown = state.field_map, state.map_name
-        if shown != self._map[0]:
-            self._map = shown, {} if state.scale is None else _map_shapes(state.scale, self._look)
         shapes = ground_shapes(state, self.size_m, self._look, has_arrows=self._on_drag is not None)
         for slot in range(len(state.cases)):
             shapes |= drone_shapes(state, slot, self.size_m, self.eye_m, self._look)
-        self._show(shapes | self._map[1])
+        if state.scale is not None:
+            shapes |= _map_shapes(state.scale, self._look.map_alpha, self._look.contour)
+        self._show(shapes)
 
     def _show(self, shapes: Shapes) -> None:
         for name in self._shapes.keys() - shapes.keys():
@@ -98,13 +97,14 @@ def _same(before: Any, value: Any) -> bool:
     return np.array_equal(before, value) if isinstance(value, np.ndarray) else before == value
 
 
-def _map_shapes(scale: Scale, look: Look) -> Shapes:
+@lru_cache(8)
+def _map_shapes(scale: Scale, map_alpha: int, contour: Rgb) -> Shapes:
     """Draw a map as a coloured plane with contours, a little above its altitude."""
     field, (low, high) = scale.field, scale.ends
     east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + _LIFT_M
     width = float(east[-1] + east[1] - 2.0 * east[0])
     plane = {
-        "image": _image(field, low, high, look.map_alpha),
+        "image": _image(field, low, high, map_alpha),
         "render_width": width,
         "render_height": float(north[-1] - north[0] + east[1] - east[0]),
         "format": "png",
@@ -116,7 +116,7 @@ def _map_shapes(scale: Scale, look: Look) -> Shapes:
     if contours:
         segments = [np.stack([line[:-1], line[1:]], axis=1) for level in contours.values() for line in level]
         raised = np.insert(np.concatenate(segments), 2, altitude_m + 1e-3 * width, axis=-1)
-        shapes["/map/contours"] = lines(raised, look.contour, 1.3)
+        shapes["/map/contours"] = lines(raised, contour, 1.3)
     for level in list(contours)[:: max(1, len(contours) // _MOST_LABELS)]:
         points = np.concatenate(contours[level])
         x, y = points[np.argmax(points[:, 0])]  # eastmost: in front, beside the labels of the points

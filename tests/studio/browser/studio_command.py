@@ -44,9 +44,11 @@ class Command:
     def ended(self, by: int = signal.SIGINT) -> tuple[str, str]:
         """End it by a signal, and return what it says after its address, and its complaints."""
         os.killpg(self.process.pid, by)
-        said = self.process.communicate(timeout=30.0)
-        assert self.process.returncode == 0
-        return said
+        assert self.process.wait(30.0) == 0
+        assert self.process.stdout is not None
+        assert self.process.stderr is not None
+        with self.process.stdout, self.process.stderr:
+            return self.process.stdout.read(), self.process.stderr.read()
 
 
 def _html(address: str) -> bytes:
