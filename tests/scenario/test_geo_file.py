@@ -152,8 +152,8 @@ def test_limits_that_are_not_read_are_said(tmp_path: Path) -> None:
     )
     scenario, notes = zones_of(tmp_path, "z.geojson")
     assert all(zone.altitude_m is None for zone in scenario.airspace.no_fly)
-    assert 'z.geojson: "X" counts at all altitudes; its upper_limit is not read' in notes
-    assert any('"Y" counts at all times; its limitedApplicability' in note for note in notes)
+    assert 'z.geojson: "X" counts at all altitudes; not read: upper_limit' in notes
+    assert any('"Y" counts at all times; not read: limitedApplicability' in note for note in notes)
 
 
 def test_altitudes_over_different_things_need_an_origin_that_states_both(tmp_path: Path) -> None:

@@ -160,7 +160,7 @@ def test_zones_with_too_many_corners_are_cut_once(tmp_path: Path) -> None:
         "z.geojson: zones: 1 of 2 in reach (1 polygon)",
         "z.geojson: they are cut to x_m = [-30000.0, 30000.0] and y_m = [-30000.0, 30000.0], since all have "
         "too many corners",
-        'z.geojson: "near" counts at all altitudes; its upper is not read',
+        'z.geojson: "near" counts at all altitudes; not read: upper',
     ]
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PatternTable:
-    """Power gain over the whole sphere on a grid of polar angles, body axes x forward, y left, z up.
+    """Power gain over the whole sphere on a grid of directions, body axes x forward, y left, z up.
 
     Args:
         theta_deg: (t,) polar angles from z, rising from 0 to 180.

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from nullpose.scenario.rules import Choice
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import MountDegrees, TiltDegrees
 from nullpose.scenario.ways import Ways, exactly_one
 
@@ -36,16 +36,13 @@ class Airframe(Section):
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("preset", "tilt_max_deg"),)
     unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
 
-    preset: _Preset | None = Field(
-        default=None,
-        description="An airframe by name: omnidirectional (tilts by up to 180 degrees), level (0 degrees) or "
+    preset: _Preset | None = optional(
+        "An airframe by name: omnidirectional (tilts by up to 180 degrees), level (0 degrees) or "
         "fixed-tilt-hexarotor (30 degrees). Either this or tilt_max_deg.",
-        examples=["level"],
+        "level",
     )
-    tilt_max_deg: TiltDegrees | None = Field(
-        default=None,
-        description="Largest tilt of the vehicle from the horizontal, in degrees. Either this or preset.",
-        examples=[10.0],
+    tilt_max_deg: TiltDegrees | None = optional(
+        "Largest tilt of the vehicle from the horizontal, in degrees. Either this or preset.", 10.0
     )
     mount_deg: MountDegrees = Field(
         default=0.0,

@@ -23,7 +23,7 @@ from nullpose.scenario.polygon import (
     offset_outlines_m,
 )
 from nullpose.scenario.rules import list_of_tables
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import KeepOutMetres, Label, MarginMetres, Range
 from nullpose.scenario.ways import Ways
 
@@ -66,29 +66,25 @@ class Airspace(Section):
         description="Lowest and highest altitude of the vehicle above the origin, in metres: [low, high].",
         examples=[[8.0, 30.0]],
     )
-    altitude_msl_m: Range | None = Field(
-        default=None,
-        description="The same over the sea (the geoid), in metres, in place of altitude_m; where [origin] "
+    altitude_msl_m: Range | None = optional(
+        "The same over the sea (the geoid), in metres, in place of altitude_m; where [origin] "
         "states its own.",
-        examples=[[215.0, 265.0]],
+        [215.0, 265.0],
     )
-    altitude_ellipsoid_m: Range | None = Field(
-        default=None,
-        description="The same over the WGS-84 ellipsoid, in metres, in place of altitude_m; where [origin] "
+    altitude_ellipsoid_m: Range | None = optional(
+        "The same over the WGS-84 ellipsoid, in metres, in place of altitude_m; where [origin] "
         "states its own.",
-        examples=[[260.0, 310.0]],
+        [260.0, 310.0],
     )
-    x_m: Range | None = Field(
-        default=None,
-        description="Range of the vehicle's position towards the east, in metres: [west end, east end]. "
+    x_m: Range | None = optional(
+        "Range of the vehicle's position towards the east, in metres: [west end, east end]. "
         "Left out: unbounded.",
-        examples=[[-100.0, 100.0]],
+        [-100.0, 100.0],
     )
-    y_m: Range | None = Field(
-        default=None,
-        description="Range of the vehicle's position towards the north, in metres: [south end, north end]. "
+    y_m: Range | None = optional(
+        "Range of the vehicle's position towards the north, in metres: [south end, north end]. "
         "Left out: unbounded.",
-        examples=[[-100.0, 150.0]],
+        [-100.0, 150.0],
     )
     keep_out_m: KeepOutMetres = Field(
         default=1.0,
@@ -101,29 +97,25 @@ class Airspace(Section):
         "sideways, above a zone's ceiling and below its floor. x_m, y_m and altitude_m have no margin.",
         examples=[3.0],
     )
-    geofence_m: Polygon | None = Field(
-        default=None,
-        description="Vertices of a polygon that the vehicle stays in, in metres, in order around it: "
+    geofence_m: Polygon | None = optional(
+        "Vertices of a polygon that the vehicle stays in, in metres, in order around it: "
         "[[east, north], ...]. Left out: no fence.",
-        examples=[[[-40.0, -20.0], [40.0, -20.0], [40.0, 70.0], [-40.0, 70.0]]],
+        [[-40.0, -20.0], [40.0, -20.0], [40.0, 70.0], [-40.0, 70.0]],
     )
-    geofence_lat_lon_deg: EarthlyPolygon | None = Field(
-        default=None,
-        description="The same vertices in degrees, in place of geofence_m, in a scenario with an [origin]: "
+    geofence_lat_lon_deg: EarthlyPolygon | None = optional(
+        "The same vertices in degrees, in place of geofence_m, in a scenario with an [origin]: "
         "[[latitude, longitude], ...].",
-        examples=[[[49.9998, 14.4996], [49.9998, 14.5004], [50.0006, 14.5004], [50.0006, 14.4996]]],
+        [[49.9998, 14.4996], [49.9998, 14.5004], [50.0006, 14.5004], [50.0006, 14.4996]],
     )
-    geofence_from: Label | None = Field(
-        default=None,
-        description="Name of a GeoJSON or KML file with the fence as one polygon, relative to this file's "
+    geofence_from: Label | None = optional(
+        "Name of a GeoJSON or KML file with the fence as one polygon, relative to this file's "
         "folder. In place of geofence_m.",
-        examples=["fence.geojson"],
+        "fence.geojson",
     )
-    no_fly_from: Label | None = Field(
-        default=None,
-        description="Name of a GeoJSON or KML file with no-fly zones, relative to this file's folder. They "
+    no_fly_from: Label | None = optional(
+        "Name of a GeoJSON or KML file with no-fly zones, relative to this file's folder. They "
         "are added to those in tables headed [[airspace.no_fly]].",
-        examples=["zones.kml"],
+        "zones.kml",
     )
     no_fly: Annotated[tuple[NoFlyZone, ...], list_of_tables("airspace.no_fly")] = Field(
         default=(),

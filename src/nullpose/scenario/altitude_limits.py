@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import RawTable, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.units import EARTHLY_RANGES
@@ -47,26 +46,18 @@ def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[RawTable, list[
     Raises:
         ScenarioError: the limits cannot be read, or need what the origin does not state.
     """
-    properties, remarks = feature.properties, []
-    found = {key: properties[key] for key in RANGES if key in properties}
-    if not found and (limits := _limits(feature)):
+    properties, limits = feature.properties, _limits(feature)
+    found, unread = {key: properties[key] for key in RANGES if key in properties}, list[str]()
+    if not found and limits:
         low, high = (_end(*limit) for limit in limits)
         found = _joined(feature, low, high, ground_m)
     elif not found:
-        heights_m = _heights_m(feature)
-        found = _between(feature, heights_m)
-        unread = [key for key in properties if _LIKE_LIMITS.search(key) and key != "altitudeMode"]
-        if not found and unread:
-            remarks.append(f"counts at all altitudes; its {_are(unread)} not read")
-        if not found and np.any(heights_m):
-            remarks.append("counts at all altitudes; one height alone is not read")
-    if times := [key for key in properties if _LIKE_TIMES.search(key)]:
-        remarks.append(f"counts at all times; its {_are(times)} not read")
-    return found, remarks
-
-
-def _are(keys: list[str]) -> str:
-    return f"{', '.join(keys)} {'are' if len(keys) > 1 else 'is'}"
+        found, has_height = _of_kml(feature)
+        likely = [key for key in properties if _LIKE_LIMITS.search(key) and key != "altitudeMode"]
+        unread = [] if found else likely + ["height"] * has_height
+    times = [key for key in properties if _LIKE_TIMES.search(key)]
+    remarks = [f"counts at all altitudes; not read: {', '.join(unread)}"] if unread else []
+    return found, [*remarks, *([f"counts at all times; not read: {', '.join(times)}"] if times else [])]
 
 
 def _limits(feature: Feature) -> list[tuple[str, Any, Any, Any]]:
@@ -152,19 +143,19 @@ def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
     return (ground_m[key] or 0.0) - (ground_m[over] or 0.0)
 
 
-def _heights_m(feature: Feature) -> Floats:
-    """Return the heights of a placemark's corners, where its altitudeMode gives them a meaning."""
-    if feature.properties.get("altitudeMode") not in _OF_KML or feature.geometry is None:
-        return np.zeros(0)
+def _of_kml(feature: Feature) -> tuple[RawTable, bool]:
+    """Read the altitudes between roof and floor, or from the ground up to what is extruded.
+
+    Returns:
+        The altitudes, and whether the corners have heights whose altitudeMode gives them a meaning.
+    """
+    mode = feature.properties.get("altitudeMode")
+    if mode not in _OF_KML or feature.geometry is None:
+        return {}, False
     heights_m = shapely.get_coordinates(feature.geometry, include_z=True)[:, 2]
-    return np.asarray(heights_m[np.isfinite(heights_m)])
-
-
-def _between(feature: Feature, heights_m: Floats) -> RawTable:
-    """Return the altitudes between roof and floor, or from the ground up to what is extruded."""
+    heights_m = heights_m[np.isfinite(heights_m)]
     low_m, high_m = heights_m.min(initial=np.inf), heights_m.max(initial=-np.inf)
     is_extruded = feature.properties.get("extrude") in (1, True)
     if not len(heights_m) or (high_m - low_m < _FLAT_M and not is_extruded):
-        return {}
-    ends_m = [-_FAR_M if is_extruded else float(low_m), float(high_m)]
-    return {_OF_KML[feature.properties["altitudeMode"]]: ends_m}
+        return {}, bool(np.any(heights_m))
+    return {_OF_KML[mode]: [-_FAR_M if is_extruded else float(low_m), float(high_m)]}, True

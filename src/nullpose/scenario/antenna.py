@@ -14,7 +14,7 @@ from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.errors import ScenarioError
 from nullpose.scenario.faults import ONLY_LOCAL, Place, Raw, RawTable
 from nullpose.scenario.rules import Choice, Count, ListOf
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels, Wavelengths
 
 _MOST_ROWS = HIGHEST_DEGREE + 1
@@ -53,35 +53,27 @@ class Antenna(Section):
         + ".",
         examples=list(ANTENNAS),
     )
-    null_depth_db: NullDepthDecibels | None = Field(
-        default=None,
-        description="How deep the dipole's null is, in dB below its broadside gain: on an airframe 15 to 35. "
+    null_depth_db: NullDepthDecibels | None = optional(
+        "How deep the dipole's null is, in dB below its broadside gain: on an airframe 15 to 35. "
         "Left out: the null is perfect.",
-        examples=[30.0],
+        30.0,
     )
-    file: str | None = Field(
-        default=None,
-        description="Name of a file in the scenario's folder or below it: for a profile a CSV file of "
+    file: str | None = optional(
+        "Name of a file in the scenario's folder or below it: for a profile a CSV file of "
         "angle_deg and gain_dbi, for a pattern a file of a format below.",
-        examples=["hexarotor.out"],
+        "hexarotor.out",
     )
-    format: str | None = Field(
-        default=None,
-        description='The format of a pattern\'s file: "nec", "ffd", "ffs", "cst", "msi" or "csv". '
+    format: str | None = optional(
+        'The format of a pattern\'s file: "nec", "ffd", "ffs", "cst", "msi" or "csv". '
         "Left out: the file tells it.",
-        examples=["nec"],
+        "nec",
     )
-    frequency_hz: Hertz | None = Field(
-        default=None,
-        description="Which of several frequencies in the file, in Hz.",
-        examples=[2.4e9],
-    )
-    two_cuts: _TwoCuts | None = Field(
-        default=None,
-        description='"sum-of-losses": make an estimate of two cuts (msi) of an antenna that is not the same '
+    frequency_hz: Hertz | None = optional("Which of several frequencies in the file, in Hz.", 2.4e9)
+    two_cuts: _TwoCuts | None = optional(
+        '"sum-of-losses": make an estimate of two cuts (msi) of an antenna that is not the same '
         "all round, and say so in every result. Left out: such cuts are refused, as they do not tell the "
         "pattern.",
-        examples=["sum-of-losses"],
+        "sum-of-losses",
     )
     normalise: _Normalise = Field(
         default="none",
@@ -96,10 +88,9 @@ class Antenna(Section):
         "are in dBi. Left out: 0, as in the paper.",
         examples=[1.76],
     )
-    harmonics: _Rows | None = Field(
-        default=None,
-        description="What was read of the file, written by nullpose: for each degree of the gain's spherical "
-        "harmonics its cosine terms, then its sine terms. With them the file is not needed.",
+    harmonics: _Rows | None = optional(
+        "What was read of the file, written by nullpose: for each degree of the gain's spherical "
+        "harmonics its cosine terms, then its sine terms. With them the file is not needed."
     )
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:

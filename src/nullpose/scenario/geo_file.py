@@ -36,12 +36,7 @@ _SIGNS = {".kmz": b"PK", ".gpkg": b"SQLite format 3\0", ".shp": b"\0\0\x27\x0a",
 _GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
 _WGS84 = ("CRS84", "CRS84h", "4326", "4979", "4258")  # as the names of reference systems end
 # Of GDAL's warnings: rings are closed here; age, style and measures along lines change no place.
-_NO_MATTER = (
-    "Non closed ring",
-    "bad application_id",
-    "parsing kml Style",
-    "Measured (M) geometry types",
-)
+_NO_MATTER = ("Non closed ring", "bad application_id", "parsing kml Style", "Measured (M) geometry types")
 _POINTS_OF_LINES = {"route_points", "track_points"}  # of GPX, which are in its lines too
 _OF_DRAWING = {"id", "tessellate", "visibility", "drawOrder", "icon", "snippet"}  # GDAL's columns of KML
 

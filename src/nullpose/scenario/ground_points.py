@@ -11,7 +11,7 @@ from nullpose.antenna import GROUND_ANTENNAS, short_dipole
 from nullpose.scenario.faults import Place
 from nullpose.scenario.radio import POWER, Powered
 from nullpose.scenario.rules import Choice
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
@@ -75,33 +75,23 @@ class GroundPoint(Section):
         "and an altitude in a scenario with an [origin].",
         examples=[[17.0, 15.0, 4.0]],
     )
-    lat_deg: Latitude | None = Field(
-        default=None,
-        description="Latitude in degrees (WGS-84), north positive; with lon_deg and alt_m in place of "
+    lat_deg: Latitude | None = optional(
+        "Latitude in degrees (WGS-84), north positive; with lon_deg and alt_m in place of "
         "position_m, in a scenario with an [origin].",
-        examples=[50.001],
+        50.001,
     )
-    lon_deg: Longitude | None = Field(
-        default=None,
-        description="Longitude in degrees (WGS-84), east positive; with lat_deg and alt_m.",
-        examples=[14.502],
+    lon_deg: Longitude | None = optional(
+        "Longitude in degrees (WGS-84), east positive; with lat_deg and alt_m.", 14.502
     )
-    alt_m: Altitude | None = Field(
-        default=None,
-        description="Altitude in metres over the WGS-84 ellipsoid; with lat_deg and lon_deg.",
-        examples=[252.0],
+    alt_m: Altitude | None = optional(
+        "Altitude in metres over the WGS-84 ellipsoid; with lat_deg and lon_deg.", 252.0
     )
-    alt_msl_m: SeaAltitude | None = Field(
-        default=None,
-        description="Altitude in metres over the sea (the geoid), in place of alt_m; where [origin] states "
-        "its own.",
-        examples=[207.0],
+    alt_msl_m: SeaAltitude | None = optional(
+        "Altitude in metres over the sea (the geoid), in place of alt_m; where [origin] states its own.",
+        207.0,
     )
-    alt_agl_m: GroundHeight | None = Field(
-        default=None,
-        description="Height in metres above the ground at the origin, which counts as level, in place of "
-        "alt_m.",
-        examples=[2.0],
+    alt_agl_m: GroundHeight | None = optional(
+        "Height in metres above the ground at the origin, which counts as level, in place of alt_m.", 2.0
     )
     antenna: GroundAntennaKind = Field(
         default="isotropic",
@@ -109,17 +99,14 @@ class GroundPoint(Section):
         "takes part with half the power; or dipole, a short one.",
         examples=list(GROUND_ANTENNAS),
     )
-    antenna_axis: AxisDirection | None = Field(
-        default=None,
-        description="How a dipole lies: the direction of its wire, [east, north, up], of any length. Left "
-        "out: upright.",
-        examples=[[0.0, 0.0, 1.0]],
+    antenna_axis: AxisDirection | None = optional(
+        "How a dipole lies: the direction of its wire, [east, north, up], of any length. Left out: upright.",
+        [0.0, 0.0, 1.0],
     )
-    null_depth_db: NullDepthDecibels | None = Field(
-        default=None,
-        description="How deep a dipole's null is, in dB below its broadside gain: beside a mast or a body 15 "
+    null_depth_db: NullDepthDecibels | None = optional(
+        "How deep a dipole's null is, in dB below its broadside gain: beside a mast or a body 15 "
         "to 35. What is received through it has no known polarisation. Left out: the null is perfect.",
-        examples=[20.0],
+        20.0,
     )
     gain_dbi: DecibelsIsotropic = Field(
         default=0.0,
@@ -190,41 +177,34 @@ class Node(Emitter):
         at_most_one("jamming_w", "jamming_dbm"),
     )
 
-    weight: Weight | None = Field(
-        default=None,
-        description="What the node's SINR is divided by before the smallest is taken: a node of weight 2 is "
+    weight: Weight | None = optional(
+        "What the node's SINR is divided by before the smallest is taken: a node of weight 2 is "
         "given twice the SINR. Either this or min_sinr_db, or neither, which is a weight of 1.",
-        examples=[2.0],
+        2.0,
     )
-    min_sinr_db: RatioDecibels | None = Field(
-        default=None,
-        description="The SINR that the node requires, in dB; what counts is how far it is exceeded. Either "
+    min_sinr_db: RatioDecibels | None = optional(
+        "The SINR that the node requires, in dB; what counts is how far it is exceeded. Either "
         "this or weight, or neither.",
-        examples=[3.0],
+        3.0,
     )
-    noise_w: Watts | None = Field(
-        default=None,
-        description="Noise power of the node's own receiver, in watts; where the drone transmits. Either "
+    noise_w: Watts | None = optional(
+        "Noise power of the node's own receiver, in watts; where the drone transmits. Either "
         "this or noise_dbm. Left out: the noise of [receiver].",
-        examples=[1e-3],
+        1e-3,
     )
-    noise_dbm: DecibelMilliwatts | None = Field(
-        default=None,
-        description="Noise power of the node's own receiver, in dBm; where the drone transmits. Either "
-        "this or noise_w.",
-        examples=[-97.0],
+    noise_dbm: DecibelMilliwatts | None = optional(
+        "Noise power of the node's own receiver, in dBm; where the drone transmits. Either this or noise_w.",
+        -97.0,
     )
-    jamming_w: Watts | None = Field(
-        default=None,
-        description="Jamming power that the node's own receiver gets, in watts; where the drone transmits. "
+    jamming_w: Watts | None = optional(
+        "Jamming power that the node's own receiver gets, in watts; where the drone transmits. "
         "Either this or jamming_dbm. Left out: worked out from the jammers, in line of sight.",
-        examples=[1e-3],
+        1e-3,
     )
-    jamming_dbm: DecibelMilliwatts | None = Field(
-        default=None,
-        description="Jamming power that the node's own receiver gets, in dBm; where the drone transmits. "
+    jamming_dbm: DecibelMilliwatts | None = optional(
+        "Jamming power that the node's own receiver gets, in dBm; where the drone transmits. "
         "Either this or jamming_w.",
-        examples=[-90.0],
+        -90.0,
     )
 
     @property
@@ -254,14 +234,11 @@ class Eavesdropper(Uncertain, GroundPoint):
     letter: ClassVar[str] = "E"
     ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, at_most_one("noise_w", "noise_dbm"))
 
-    noise_w: Watts | None = Field(
-        default=None,
-        description="Noise power of the eavesdropper's receiver, in watts. Either this or noise_dbm. Left "
+    noise_w: Watts | None = optional(
+        "Noise power of the eavesdropper's receiver, in watts. Either this or noise_dbm. Left "
         "out: the noise of [receiver].",
-        examples=[1e-3],
+        1e-3,
     )
-    noise_dbm: DecibelMilliwatts | None = Field(
-        default=None,
-        description="Noise power of the eavesdropper's receiver, in dBm. Either this or noise_w.",
-        examples=[-97.0],
+    noise_dbm: DecibelMilliwatts | None = optional(
+        "Noise power of the eavesdropper's receiver, in dBm. Either this or noise_w.", -97.0
     )

@@ -12,11 +12,7 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario.faults import ONLY_LOCAL, Raw, RawTable, refusal, require
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
-from nullpose.scenario.toml_file import (
-    file_text,
-    tables_of,
-    uploaded_text,
-)
+from nullpose.scenario.toml_file import file_text, tables_of, uploaded_text
 
 _FILE_KEYS = ("nodes_from", "airspace.geofence_from", "airspace.no_fly_from", "antenna.file")
 _EARLY = re.compile(r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b")

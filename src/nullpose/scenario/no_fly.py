@@ -14,15 +14,8 @@ from pydantic import Field
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m, offset_outlines_m
-from nullpose.scenario.section import Section
-from nullpose.scenario.units import (
-    EARTHLY,
-    Label,
-    LatLon,
-    PlanePoint,
-    RadiusMetres,
-    Range,
-)
+from nullpose.scenario.section import Section, optional
+from nullpose.scenario.units import EARTHLY, Label, LatLon, PlanePoint, RadiusMetres, Range
 from nullpose.scenario.ways import Ways
 
 ALTITUDES = Ways((("altitude_m",), ("altitude_msl_m",), ("altitude_ellipsoid_m",)), fewest=0, most=3)
@@ -76,58 +69,40 @@ class NoFlyZone(Section):
         default="",
         description="Name, unique among the no-fly zones. Left out: Z1, Z2, ... by their place in the file.",
     )
-    x_m: Range | None = Field(
-        default=None,
-        description="Range of a box towards the east, in metres: [west end, east end]. With y_m.",
-        examples=[[-20.0, 5.0]],
+    x_m: Range | None = optional(
+        "Range of a box towards the east, in metres: [west end, east end]. With y_m.", [-20.0, 5.0]
     )
-    y_m: Range | None = Field(
-        default=None,
-        description="Range of a box towards the north, in metres: [south end, north end]. With x_m.",
-        examples=[[10.0, 40.0]],
+    y_m: Range | None = optional(
+        "Range of a box towards the north, in metres: [south end, north end]. With x_m.", [10.0, 40.0]
     )
-    centre_m: PlanePoint | None = Field(
-        default=None,
-        description="Centre of a cylinder, in metres: [east, north]. With radius_m.",
-        examples=[[17.0, 15.0]],
+    centre_m: PlanePoint | None = optional(
+        "Centre of a cylinder, in metres: [east, north]. With radius_m.", [17.0, 15.0]
     )
-    radius_m: RadiusMetres | None = Field(
-        default=None,
-        description="Radius of a cylinder, in metres. With centre_m.",
-        examples=[12.0],
+    radius_m: RadiusMetres | None = optional("Radius of a cylinder, in metres. With centre_m.", 12.0)
+    polygon_m: Polygon | None = optional(
+        "Vertices of a polygon, in metres, in order around it: [[east, north], ...].",
+        [[0.0, 0.0], [20.0, 0.0], [10.0, 15.0]],
     )
-    polygon_m: Polygon | None = Field(
-        default=None,
-        description="Vertices of a polygon, in metres, in order around it: [[east, north], ...].",
-        examples=[[[0.0, 0.0], [20.0, 0.0], [10.0, 15.0]]],
-    )
-    centre_lat_lon_deg: LatLon | None = Field(
-        default=None,
-        description="Centre of a cylinder in degrees: [latitude, longitude]. In place of centre_m, in a "
+    centre_lat_lon_deg: LatLon | None = optional(
+        "Centre of a cylinder in degrees: [latitude, longitude]. In place of centre_m, in a "
         "scenario with an [origin].",
-        examples=[[50.0005, 14.5028]],
+        [50.0005, 14.5028],
     )
-    polygon_lat_lon_deg: EarthlyPolygon | None = Field(
-        default=None,
-        description="Vertices of a polygon in degrees, in order around it: [[latitude, longitude], ...]. In "
+    polygon_lat_lon_deg: EarthlyPolygon | None = optional(
+        "Vertices of a polygon in degrees, in order around it: [[latitude, longitude], ...]. In "
         "place of polygon_m, in a scenario with an [origin].",
-        examples=[[[50.0, 14.5], [50.0, 14.5003], [50.0002, 14.5001]]],
+        [[50.0, 14.5], [50.0, 14.5003], [50.0002, 14.5001]],
     )
-    altitude_m: Range | None = Field(
-        default=None,
-        description="Lowest and highest altitude of the zone above the origin, in metres: [low, high]. Left "
+    altitude_m: Range | None = optional(
+        "Lowest and highest altitude of the zone above the origin, in metres: [low, high]. Left "
         "out: all altitudes.",
-        examples=[[0.0, 20.0]],
+        [0.0, 20.0],
     )
-    altitude_msl_m: Range | None = Field(
-        default=None,
-        description="The same over the sea (the geoid), in metres, in place of altitude_m.",
-        examples=[[185.0, 205.0]],
+    altitude_msl_m: Range | None = optional(
+        "The same over the sea (the geoid), in metres, in place of altitude_m.", [185.0, 205.0]
     )
-    altitude_ellipsoid_m: Range | None = Field(
-        default=None,
-        description="The same over the WGS-84 ellipsoid, in metres, in place of altitude_m.",
-        examples=[[230.0, 250.0]],
+    altitude_ellipsoid_m: Range | None = optional(
+        "The same over the WGS-84 ellipsoid, in metres, in place of altitude_m.", [230.0, 250.0]
     )
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:

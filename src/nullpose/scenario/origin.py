@@ -17,7 +17,7 @@ from nullpose.scenario.faults import EXCHANGED, RawTable
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
     EARTHLY,
@@ -62,16 +62,13 @@ class Origin(Section):
     lon_deg: Longitude = Field(
         description="Longitude of the origin in degrees (WGS-84), east positive.", examples=[14.5]
     )
-    alt_m: Altitude | None = Field(
-        default=None,
-        description="Altitude of the origin in metres over the WGS-84 ellipsoid. This, alt_msl_m or both.",
-        examples=[250.0],
+    alt_m: Altitude | None = optional(
+        "Altitude of the origin in metres over the WGS-84 ellipsoid. This, alt_msl_m or both.", 250.0
     )
-    alt_msl_m: SeaAltitude | None = Field(
-        default=None,
-        description="Altitude of the origin in metres over the sea (the geoid). This, alt_m or both, which "
+    alt_msl_m: SeaAltitude | None = optional(
+        "Altitude of the origin in metres over the sea (the geoid). This, alt_m or both, which "
         "says how far sea and ellipsoid are apart.",
-        examples=[205.0],
+        205.0,
     )
 
     @property

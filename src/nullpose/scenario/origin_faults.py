@@ -9,13 +9,7 @@ import numpy as np
 
 from nullpose.scenario.faults import EXCHANGED, Place, Raw, path_of
 from nullpose.scenario.ground_points import GroundPoint
-from nullpose.scenario.origin import (
-    FARTHEST_M,
-    POINT_LISTS,
-    Origin,
-    in_metres,
-    size_m,
-)
+from nullpose.scenario.origin import FARTHEST_M, POINT_LISTS, Origin, in_metres, size_m
 from nullpose.scenario.units import ALTITUDE_KEYS, EARTHLY, EARTHLY_CORNERS, EARTHLY_RANGES
 
 _SAME_PLACE_M = 1e-3  # metres and degrees of one thing may be given together if they agree within this
@@ -100,9 +94,7 @@ def _far(metres: Mapping[Place, Raw]) -> Iterator[tuple[Place, str]]:
 
 
 def _apart(
-    tables: Mapping[Place, Any],
-    earthly: Mapping[Place, Sequence[str]],
-    metres: Mapping[Place, Raw],
+    tables: Mapping[Place, Any], earthly: Mapping[Place, Sequence[str]], metres: Mapping[Place, Raw]
 ) -> Iterator[tuple[Place, str]]:
     """Yield what is stated in metres and on the Earth, and not at one place."""
     for place, values in metres.items():
@@ -111,10 +103,7 @@ def _apart(
             apart = both - value if both.shape == value.shape else np.array(np.inf)
             if (apart_m := size_m(apart[:, None] if key == "altitude_m" else apart)) > _SAME_PLACE_M:
                 how = _words([each for each in earthly[place] if EARTHLY[each] == key])
-                yield (
-                    place,
-                    f"{key} and {how} are {apart_m:.3g} m apart, must be one place; remove either",
-                )
+                yield (place, f"{key} and {how} are {apart_m:.3g} m apart, must be one place; remove either")
 
 
 def _mixed(points: Mapping[Place, GroundPoint], raw: Raw) -> Iterator[tuple[Place, str]]:

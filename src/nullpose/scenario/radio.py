@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
     SPEED_OF_LIGHT_M_PER_S,
     DecibelMilliwatts,
@@ -40,26 +40,19 @@ class Receiver(Section):
     )
     unstated: ClassVar[frozenset[str]] = frozenset({"attitude_error_deg", "position_error_m"})
 
-    noise_w: Watts | None = Field(
-        default=None,
-        description="Noise power in the receiver's bandwidth, in watts. Either this or noise_dbm.",
-        examples=[1e-3],
+    noise_w: Watts | None = optional(
+        "Noise power in the receiver's bandwidth, in watts. Either this or noise_dbm.", 1e-3
     )
-    noise_dbm: DecibelMilliwatts | None = Field(
-        default=None,
-        description="Noise power in the receiver's bandwidth, in dBm. Either this or noise_w.",
-        examples=[-97.0],
+    noise_dbm: DecibelMilliwatts | None = optional(
+        "Noise power in the receiver's bandwidth, in dBm. Either this or noise_w.", -97.0
     )
-    reference_gain_db: Decibels | None = Field(
-        default=None,
-        description="Path gain at a distance of 1 m, in dB. Either this or frequency_hz.",
-        examples=[0.0],
+    reference_gain_db: Decibels | None = optional(
+        "Path gain at a distance of 1 m, in dB. Either this or frequency_hz.", 0.0
     )
-    frequency_hz: Hertz | None = Field(
-        default=None,
-        description="Carrier frequency in Hz, from which the free-space path gain at 1 m follows. "
+    frequency_hz: Hertz | None = optional(
+        "Carrier frequency in Hz, from which the free-space path gain at 1 m follows. "
         "Either this or reference_gain_db.",
-        examples=[2.4e9],
+        2.4e9,
     )
     attitude_error_deg: ErrorDegrees = Field(
         default=0.0,
@@ -106,16 +99,8 @@ class Powered(Section):
 
     ways: ClassVar[tuple[Ways, ...]] = (POWER,)
 
-    power_w: Watts | None = Field(
-        default=None,
-        description="Transmit power in watts. Either this or power_dbm.",
-        examples=[1.0],
-    )
-    power_dbm: DecibelMilliwatts | None = Field(
-        default=None,
-        description="Transmit power in dBm. Either this or power_w.",
-        examples=[20.0],
-    )
+    power_w: Watts | None = optional("Transmit power in watts. Either this or power_dbm.", 1.0)
+    power_dbm: DecibelMilliwatts | None = optional("Transmit power in dBm. Either this or power_w.", 20.0)
 
     @property
     def transmit_power_w(self) -> float:

@@ -23,7 +23,7 @@ from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.rules import Choice, list_of_tables
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.toml_file import toml_text
 from nullpose.scenario.units import Label, Title, ratio_from_db
 from nullpose.scenario.ways import Ways
@@ -55,38 +55,32 @@ class Scenario(Section, PointArrays):
         + ".",
         examples=list(RECORDS),
     )
-    nodes_from: Label | None = Field(
-        default=None,
-        description="Name of a GeoJSON or CSV file that lists the nodes, relative to this file's folder. "
+    nodes_from: Label | None = optional(
+        "Name of a GeoJSON or CSV file that lists the nodes, relative to this file's folder. "
         "Either this or tables headed [[nodes]].",
-        examples=["nodes.geojson"],
+        "nodes.geojson",
     )
-    origin: Origin | None = Field(
-        default=None,
-        description="A table headed [origin]: the place on the Earth (WGS-84) where positions are [0, 0, 0]. "
-        "Left out: nowhere in particular.",
+    origin: Origin | None = optional(
+        "A table headed [origin]: the place on the Earth (WGS-84) where positions are [0, 0, 0]. "
+        "Left out: nowhere in particular."
     )
     airspace: Airspace = Field(description="A table headed [airspace]: where the vehicle may be, in metres.")
-    airframe: Airframe | None = Field(
-        default=None,
-        description="A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted. "
-        "Left out: every axis is reached.",
+    airframe: Airframe | None = optional(
+        "A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted. "
+        "Left out: every axis is reached."
     )
-    antenna: Antenna | None = Field(
-        default=None,
-        description="A table headed [antenna]: which antenna the drone carries. Left out: a short dipole.",
+    antenna: Antenna | None = optional(
+        "A table headed [antenna]: which antenna the drone carries. Left out: a short dipole."
     )
-    array: Array | None = Field(
-        default=None,
-        description="A table headed [array]: upright dipoles on a horizontal vehicle, in place of the one.",
+    array: Array | None = optional(
+        "A table headed [array]: upright dipoles on a horizontal vehicle, in place of the one."
     )
     receiver: Receiver = Field(
         description="A table headed [receiver]: noise power (W or dBm) and path gain at 1 m (dB, or from a "
         "frequency in Hz)."
     )
-    transmitter: Transmitter | None = Field(
-        default=None,
-        description="A table headed [transmitter]: the drone's own power (W or dBm), where it transmits.",
+    transmitter: Transmitter | None = optional(
+        "A table headed [transmitter]: the drone's own power (W or dBm), where it transmits."
     )
     nodes: Annotated[tuple[Node, ...], list_of_tables("nodes", fewest=1)] = Field(
         description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
@@ -95,8 +89,7 @@ class Scenario(Section, PointArrays):
         default=(), description="Tables headed [[jammers]], one for each jammer; none if left out."
     )
     eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
-        default=(),
-        description="Tables headed [[eavesdroppers]], one for each; where the drone transmits.",
+        default=(), description="Tables headed [[eavesdroppers]], one for each; where the drone transmits."
     )
 
     @classmethod

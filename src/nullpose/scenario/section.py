@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self, get_args
 from pydantic import (
     BaseModel,
     ConfigDict,
+    Field,
     SerializerFunctionWrapHandler,
     TypeAdapter,
     ValidationError,
@@ -183,6 +184,11 @@ class Section(BaseModel):
         return type(self) is type(other) and all(
             getattr(self, key) == getattr(other, key) for key in type(self).model_fields
         )
+
+
+def optional(description: str, *examples: object) -> Any:
+    """Make the field of a key that may be left out, and is None then."""
+    return Field(default=None, description=description, examples=list(examples) or None)
 
 
 @cache

@@ -8,12 +8,12 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema
+from pydantic import BeforeValidator, TypeAdapter, WithJsonSchema
 
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
 from nullpose.scenario.rules import Quantity
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import RollPitchYaw, SemiAxes
 from nullpose.scenario.wording import plain
 
@@ -50,17 +50,16 @@ class Uncertain(Section):
             east, north and up; rotated as a body is (``Rz(yaw) Ry(pitch) Rx(roll)``).
     """
 
-    uncertainty_m: Extent | None = Field(
-        default=None,
-        description="How far the true position may be from the stated one, in metres: the radius of a ball, "
+    uncertainty_m: Extent | None = optional(
+        "How far the true position may be from the stated one, in metres: the radius of a ball, "
         "or the three semi-axes [a, b, c] of an ellipsoid. Used by robust solving. Left out: exactly there.",
-        examples=[3.0, [10.0, 2.0, 1.0]],
+        3.0,
+        [10.0, 2.0, 1.0],
     )
-    uncertainty_attitude_deg: RollPitchYaw | None = Field(
-        default=None,
-        description="How the ellipsoid is rotated, in degrees: [roll, pitch, yaw] of its axes, which lie "
+    uncertainty_attitude_deg: RollPitchYaw | None = optional(
+        "How the ellipsoid is rotated, in degrees: [roll, pitch, yaw] of its axes, which lie "
         "east, north and up if this is left out. Only with three semi-axes.",
-        examples=[[0.0, 0.0, 30.0]],
+        [0.0, 0.0, 30.0],
     )
 
     @cached_property

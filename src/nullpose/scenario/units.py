@@ -99,13 +99,7 @@ Coefficient = Annotated[float, Quantity("a coefficient", -1e9, 1e9, "gains are l
 Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
 
 Latitude = Annotated[
-    float,
-    Quantity(
-        "a latitude in degrees",
-        -90.0,
-        90.0,
-        f"north of the equator is positive; {EXCHANGED}",
-    ),
+    float, Quantity("a latitude in degrees", -90.0, 90.0, f"north of the equator is positive; {EXCHANGED}")
 ]
 Longitude = Annotated[
     float, Quantity("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")
@@ -146,8 +140,7 @@ RollPitchYaw = Annotated[
     ListOf("a list of three angles in degrees [roll, pitch, yaw]", 3, 3),
 ]
 SemiAxes = Annotated[
-    tuple[ErrorMetres, ErrorMetres, ErrorMetres],
-    ListOf("a list of three semi-axes in m [a, b, c]", 3, 3),
+    tuple[ErrorMetres, ErrorMetres, ErrorMetres], ListOf("a list of three semi-axes in m [a, b, c]", 3, 3)
 ]
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, NoReturn, TypeAlias
 
 import numpy as np
@@ -30,31 +29,18 @@ Lines: TypeAlias = Sequence[tuple[int, str]]
 """Lines of a file that are not blank, with their numbers."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Block:
-    """The pattern of one frequency as a file has it, rows in any order.
+class Block(PatternTable):
+    """The pattern of one frequency as a file has it: a number for each of n rows, in any order.
 
-    Args:
-        theta_deg: (n,) polar angles, which may begin at -180.
-        phi_deg: (n,) azimuths, from -360 to 360.
-        gain: (n,) power gain, linear; None where only the field tells it.
-        field: (n, 2) complex parts along theta and phi, whose squares are the gain; None without phases.
-        lines: (n,) where in the file; empty where rows have no line of their own.
-        frequency_hz: None where the file does not say.
-        quantity: "gain", "realised gain", "directivity", or "field" where the file does not say its power.
-        notes: what a user should know, a sentence each.
-        caveat: why it is an estimate and not a pattern; empty if it is one.
+    Polar angles may begin at -180, azimuths go from -360 to 360; the quantity is "field" where the file does
+    not say its power.
     """
 
-    theta_deg: FloatArray
-    phi_deg: FloatArray
-    gain: FloatArray | None = None
-    field: NDArray[np.complex128] | None = None
-    lines: Sequence[int] = ()
-    frequency_hz: float | None = None
-    quantity: str = "gain"
-    notes: tuple[str, ...] = ()
-    caveat: str = ""
+
+def power_of(field: NDArray[np.complex128]) -> FloatArray:
+    """Return the gain of a field, the squares of whose parts it sums; infinite beyond all measure."""
+    with np.errstate(over="ignore"):
+        return np.asarray(np.sum(np.abs(field) ** 2, axis=-1))
 
 
 def refuse(message: str, line: int = 0) -> NoReturn:
@@ -172,13 +158,9 @@ def gridded(block: Block, source: str) -> PatternTable:
     field, gain = block.field, block.gain
     if field is not None:
         _refuse_row(block, np.any(np.abs(field) > _LARGEST, axis=1), "has a field beyond all measure")
-        field = field * np.where(back, -1.0, 1.0)[:, None]
-        stated_gain, gain = gain, np.sum(np.abs(field) ** 2, axis=1)
-        if stated_gain is not None:
-            least_apart = SAME_FIELD * stated_gain + 0.1 * _WEAK * np.max(stated_gain)
-            apart = np.abs(gain - stated_gain) > least_apart
-            _refuse_row(block, apart, "has a gain and fields that contradict each other")
-    assert gain is not None  # a block has the one or the other
+        field, gain = field * np.where(back, -1.0, 1.0)[:, None], power_of(field)
+        apart = np.abs(gain - block.gain) > SAME_FIELD * block.gain + 0.1 * _WEAK * np.max(block.gain)
+        _refuse_row(block, apart, "has a gain and fields that contradict each other")
     _refuse_row(block, gain < 0.0, "has a gain below 0; is a column in decibels read as linear?")
     pole = (rows == 0) | (rows == len(thetas) - 1)
     other = gain[first[rows, np.where(pole, 0, columns)]]
@@ -197,7 +179,7 @@ def gridded(block: Block, source: str) -> PatternTable:
         source=source,
         notes=(*block.notes, *([f"Estimate: {block.caveat}."] if block.caveat else [])),
         caveat=block.caveat,
-        lines=np.asarray(block.lines)[first] if len(block.lines) else None,
+        lines=None if block.lines is None else block.lines[first],
     )
 
 
@@ -221,7 +203,7 @@ def _turned(field: NDArray[np.complex128], turn_rad: FloatArray) -> NDArray[np.c
 def _refuse_row(block: Block, bad: NDArray[np.bool_], why: str) -> None:
     """Refuse the first of the rows that are bad, if any is."""
     for at in np.flatnonzero(bad)[:1]:
-        line = block.lines[at] if len(block.lines) else 0
+        line = 0 if block.lines is None else int(block.lines[at])
         refuse(f"theta = {block.theta_deg[at]:g}, phi = {block.phi_deg[at]:g} degrees {why}", line)
 
 

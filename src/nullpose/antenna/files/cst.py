@@ -15,6 +15,7 @@ from nullpose.antenna.files.block import (
     Lines,
     from_db,
     numbers,
+    power_of,
     require,
     rows_of,
 )
@@ -74,11 +75,13 @@ def read_ffs(lines: Lines) -> Iterator[Block]:
             "be more than 0, each at most the next",
             lines[found["power"][0]][0],
         )
+        field = (values[:, 2::2] + 1j * values[:, 3::2]) / np.sqrt(_OHM * power[1])
         yield Block(
             theta_deg=values[:, 1],
             phi_deg=values[:, 0],
-            field=(values[:, 2::2] + 1j * values[:, 3::2]) / np.sqrt(_OHM * power[1]),
-            lines=[line for line, _ in lines[start : start + len(values)]],
+            gain=power_of(field),
+            field=field,
+            lines=np.array([line for line, _ in lines[start : start + len(values)]]),
             frequency_hz=float(power[3]),
         )
 
@@ -127,7 +130,7 @@ def read_cst(lines: Lines) -> Iterator[Block]:
         phi_deg=values[:, columns["phi"]],
         gain=power[total],
         field=field,
-        lines=[line for line, _ in rows],
+        lines=np.array([line for line, _ in rows]),
         quantity=quantity,
         notes=notes,
     )

@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, require
+from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, power_of, require
 
 _PROFILE = ("angle_deg", "gain_dbi")
 _FIELDS = (("re_theta", "im_theta"), ("re_phi", "im_phi"))
@@ -49,14 +49,15 @@ def read_csv(lines: Lines) -> Iterator[Block]:
     for frequency_hz in np.unique(of_hz):
         rows = np.flatnonzero(of_hz == frequency_hz)
         part = {name: column[rows] for name, column in columns.items()}
-        gain = from_db(part[total]) if total.startswith(_IN_DB) else part.get(total)
-        fields = [] if total else [part[real] + 1j * part[imaginary] for real, imaginary in _FIELDS]
+        parts = [] if total else [part[real] + 1j * part[imaginary] for real, imaginary in _FIELDS]
+        field = np.stack(parts, axis=1) if parts else None
+        gain = part[total] if field is None else power_of(field)
         yield Block(
             theta_deg=part["theta_deg"],
             phi_deg=part["phi_deg"],
-            gain=gain,
-            field=np.stack(fields, axis=1) if fields else None,
-            lines=[lines[1 + row][0] for row in rows.tolist()],
+            gain=from_db(gain) if total.startswith(_IN_DB) else gain,
+            field=field,
+            lines=np.array([lines[1 + row][0] for row in rows.tolist()]),
             frequency_hz=float(frequency_hz),
             quantity=_GAINS.get(total, "gain"),
         )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, Lines, numbers, require, rows_of
+from nullpose.antenna.files.block import Block, Lines, numbers, power_of, require, rows_of
 
 _MOST_ANGLES = 3601  # steps of .1 degrees
 
@@ -40,11 +40,13 @@ def read_ffd(lines: Lines) -> Iterator[Block]:
         values = rows_of(
             lines, at, theta.size, 4, "real and imaginary part of the fields along theta and phi"
         )
+        field = values[:, ::2] + 1j * values[:, 1::2]
         yield Block(
             theta_deg=theta.ravel(),
             phi_deg=phi.ravel(),
-            field=values[:, ::2] + 1j * values[:, 1::2],
-            lines=[line for line, _ in lines[at : at + len(values)]],
+            gain=power_of(field),
+            field=field,
+            lines=np.array([line for line, _ in lines[at : at + len(values)]]),
             frequency_hz=frequency_hz,
             quantity="field",
         )

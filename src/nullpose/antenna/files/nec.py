@@ -55,7 +55,7 @@ def read_nec(lines: Lines) -> Iterator[Block]:
             phi_deg=values[:, 1],
             gain=gain,
             field=size * np.exp(1j * np.radians(values[:, [8, 10]])) * np.sqrt(scale),
-            lines=[number for number, _ in rows],
+            lines=np.array([number for number, _ in rows]),
             frequency_hz=frequency_hz,
             quantity="directivity" if "DIRECTIVE" in heading else "gain",
         )
