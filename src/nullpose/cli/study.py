@@ -126,7 +126,7 @@ def show(
 
 
 def words_of(status: StudyStatus) -> str:
-    """Return how far a study is, in a few lines."""
+    """Write the progress of a study in a few lines."""
     state = f"running: {status.running}" if status.running else "not running"
     state = "complete" if status.complete else state
     lines = [

@@ -67,6 +67,6 @@ def report(
 
 
 def _words(written: StudyReport) -> str:
-    """Return the answer, after a note if the study is not finished, and the paths of what was written."""
-    told = (*written.notes[: not written.summary.is_complete], written.answer)
-    return "\n".join([*(f"{line}\n" for line in told), *map(str, written.files)])
+    """Write the answer, after a note if the study is not finished, and the paths of the files."""
+    lines = (*written.notes[: not written.summary.is_complete], written.answer)
+    return "\n".join([*(f"{line}\n" for line in lines), *map(str, written.files)])

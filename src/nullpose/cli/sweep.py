@@ -68,8 +68,9 @@ def sweep(
 
     varied = [setting.strip() for setting in settings if "=" not in setting]
     if len(varied) != 1:
-        given = ", ".join(settings)
-        raise UsageError(f"--set: exactly one path to vary is needed, without a value; given {given}")
+        raise UsageError(
+            f"--set: exactly one path to vary is needed, without a value; given {', '.join(settings)}"
+        )
     fixed = [setting for setting in settings if "=" in setting]
     scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside)
     scenario = scene.read()

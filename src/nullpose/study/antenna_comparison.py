@@ -9,7 +9,7 @@ from typing import Any, Unpack
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Antenna, Scenario
-from nullpose.solver import solve
+from nullpose.solver import Result, solve
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.result import provenance
 from nullpose.study.case import Case
@@ -46,20 +46,21 @@ def compare_antennas(
             "antenna: every antenna is the paper's, a dipole with a perfect null on the drone and isotropic "
             "ones on the ground; state [antenna] null_depth_db, or antenna at a node or a jammer"
         )
-    promised = solve(with_antennas(scenario, drone=False, ground=False), **options)
-    if on_progress is not None:
-        on_progress(1, 2)
-    possible = solve(scenario, **options | {"certify": solve_options.certify and not promised.interrupted})
-    if on_progress is not None:
-        on_progress(2, 2)
+    results: dict[str, Result] = {}
+    scenes = {"promised": with_antennas(scenario, drone=False, ground=False), "possible": scenario}
+    for done, (name, scene) in enumerate(scenes.items(), start=1):
+        results[name] = solve(scene, **options)
+        options["certify"] = solve_options.certify and not results[name].interrupted
+        if on_progress is not None:
+            on_progress(done, len(scenes))
     flown = {
         "received": scenario,
         "with_ground": with_antennas(scenario, drone=False, ground=True),
         "with_null": with_antennas(scenario, drone=True, ground=False),
     }
-    results = {"promised": promised}
-    results |= {name: evaluated(promised, scene, promised.pose) for name, scene in flown.items()}
-    results["possible"] = possible
+    promised = results["promised"]
+    evaluations = {name: evaluated(promised, scene, promised.pose) for name, scene in flown.items()}
+    results = {"promised": promised, **evaluations, "possible": results["possible"]}
     rows = (ResultRow.of(math.nan, result, Case(name=name)) for name, result in results.items())
     settings = MappingProxyType(provenance(solve_options.seed) | solve_options.settings)
     return ResultTable("", tuple(rows), scenario=scenario, provenance=settings)

@@ -213,14 +213,14 @@ class Case(Section):
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Returns the raw table without ``robust = false``; scenes that choose it for a best mount."""
+        """Drop ``robust = false``; add the number of scenes that choose a best mount."""
         vehicle = data.get("airframe")
         if isinstance(vehicle, Mapping) and vehicle.get("mount_deg") == "best":
             data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the fault that something is asked of a proof where there is none."""
+        """Yield keys of a proof where there is none."""
         if self.mount_scenes is not None and self.airframe is None:
             yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'
         for key in ("certify", "gap", "time_limit_s"):

@@ -117,9 +117,9 @@ class ResultRow(Result):
         """Return the row as plain data, angles in radians."""
         objective, guaranteed = self.objective, self.guaranteed
         vehicle = {
-            key: stated.to_dict()
-            for key, stated in (("airframe", self.case.airframe), ("array", self.case.array))
-            if stated is not None
+            key: section.to_dict()
+            for key, section in (("airframe", self.case.airframe), ("array", self.case.array))
+            if section is not None
         }
         return {
             "case": self.name,

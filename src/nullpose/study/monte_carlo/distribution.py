@@ -102,14 +102,14 @@ class Drawn(Rule):
     quantity: Quantity
 
     def read(self, value: object) -> object:
-        """Returns the distribution of a number, or the raw table of one."""
+        """Make the distribution of a number; leave the raw table of one."""
         value = plain(value)
         if isinstance(value, Mapping | Distribution):
             return value
         return Distribution(fixed=self.quantity.read(value))
 
     def judge(self, value: Distribution) -> Distribution:
-        """Returns the distribution, or raises the fault that it draws what is not allowed."""
+        """Refuse a distribution that draws a number which is not allowed."""
         ((key, numbers),) = value.to_dict().items()
         message = (
             self._normal_fault(numbers[1]) if key == "normal" else self._fault(key, np.atleast_1d(numbers))

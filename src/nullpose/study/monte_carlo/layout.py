@@ -162,7 +162,7 @@ class Points(Section):
     )
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between the layout and the keys that place its points."""
+        """Yield the faults between the layout and the keys that place its points."""
         if self.layout is None:
             return
         may = {*_NEEDED[self.layout]}

@@ -83,11 +83,11 @@ class SceneBase(Section):
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Returns the raw table with the positions of points that are stated by latitude and longitude."""
+        """Fill in the positions of points that are stated by latitude and longitude."""
         return located(data)
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns what is missing, or stated twice."""
+        """Yield tables that are missing, or stated twice."""
         tables = [key for key in _TABLES if raw.get(key)]
         if self.file or self.files or self.scenarios:
             message = "given together with a file, which states it; remove one, or state it in the file"

@@ -99,7 +99,7 @@ class StudySpec(Section):
     )
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
-        """Returns the faults between the parts of the spec, those that are None being at fault."""
+        """Yield the faults between the parts of the spec, those that are None being at fault."""
         if self.scenes is None and self.scene is not None and not self.scene.files:
             yield ("scenes",), "missing; it must be given: how many scenes"
         cases = [(("cases", index), case) for index, case in enumerate(self.cases or ()) if case is not None]
@@ -116,7 +116,7 @@ class StudySpec(Section):
                     )
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
+        """Write plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
         values = super().to_dict()
         values["sweep"] = {path: list(numbers) for path, numbers in self.sweep}
         return values

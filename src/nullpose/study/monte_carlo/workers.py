@@ -52,15 +52,15 @@ class Workers:
     """An executor, and what may happen to it.
 
     Args:
-        executor: where work is submitted.
         place: in messages.
         on_look: called with the number of workers.
     """
 
     deaths: tuple[type[Exception], ...] = ()
+    _executor: Executor
 
-    def __init__(self, executor: Executor, place: str, on_look: OnLook) -> None:
-        self._executor, self._place, self._on_look = executor, place, on_look
+    def __init__(self, place: str, on_look: OnLook) -> None:
+        self._place, self._on_look = place, on_look
         self.count = 1
 
     @property
@@ -115,22 +115,18 @@ class Workers:
         )
 
 
-class _InThisProcess(Executor):
-    """An executor that works at once."""
+class _Alone(Workers):
+    """This process alone, which works at once."""
 
-    def submit(self, function: Callable[..., Answer], /, *args: object, **kwargs: object) -> Future[Answer]:
+    in_flight = 1
+
+    def submit(self, function: Callable[..., Answer], *arguments: object) -> Future[Answer]:
         future: Future[Answer] = Future()
         try:
-            future.set_result(function(*args, **kwargs))
+            future.set_result(function(*arguments))
         except Exception as error:
             future.set_exception(error)
         return future
-
-
-class _Alone(Workers):
-    """This process alone."""
-
-    in_flight = 1
 
 
 class _Pool(Workers):
@@ -141,8 +137,8 @@ class _Pool(Workers):
     def __init__(self, count: int, on_look: OnLook) -> None:
         self._size = count
         self._watched, self._lifeline = get_context("spawn").Pipe(duplex=False)
-        super().__init__(self._started(), "this machine", on_look)
-        self.count = count
+        super().__init__("this machine", on_look)
+        self._executor, self.count = self._started(), count
 
     def _started(self) -> Executor:
         # forked processes would share the locks of numba's threads
@@ -176,7 +172,8 @@ class _Cluster(Workers):
     def __init__(self, client: Client, place: str, on_look: OnLook) -> None:
         from distributed import KilledWorker
 
-        super().__init__(client.get_executor(pure=False), place, on_look)
+        super().__init__(place, on_look)
+        self._executor = client.get_executor(pure=False)
         self.deaths = (KilledWorker,)
         self._client, self.count, self._looked_s = client, -1, -LOOK_S
         self.look()
@@ -217,7 +214,7 @@ def workers_of(scheduler: str | None, workers: int | None, on_look: OnLook) -> I
         with _quiet(), _connected(scheduler) as client:
             yield _Cluster(client, scheduler, on_look)
     elif workers == 0:
-        yield _Alone(_InThisProcess(), "this machine", on_look)
+        yield _Alone("this machine", on_look)
     else:
         pool = _Pool(workers or processors(), on_look)
         try:
