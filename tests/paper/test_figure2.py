@@ -3,7 +3,6 @@
 import itertools
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +10,9 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
-from nullpose import Scenario
 from nullpose.paper.figure2 import draw_figure2
 from nullpose.paper.reproduce import Reproduction
+from nullpose.paper.scene import paper_scenario
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES
 from nullpose.study import ResultTable
@@ -26,15 +25,9 @@ def share_near(picture: np.ndarray, colour: str) -> float:
     return float(np.mean(np.all(np.abs(picture[..., :3] - to_rgb(colour)) < 0.08, axis=-1)))
 
 
-@pytest.fixture(scope="module")
-def folder(reproduction: Reproduction) -> Path:
-    """Where the reproduction's files are."""
-    return reproduction.files[0].parent
-
-
-def test_figure2_shows_every_curve_in_its_colour(folder: Path) -> None:
+def test_figure2_shows_every_curve_in_its_colour(reproduction: Reproduction) -> None:
     """Blue, black, red and magenta are on the picture, and the printed form."""
-    picture = imread(folder / "figure2.png")
+    picture = imread(reproduction.files[0].with_name("figure2.png"))
     assert picture.shape[1] >= 1200
     assert picture[..., :3].std() > 0.05
     for colour in (*(curve.colour for curve in CURVES.values()), PRINTED_COLOUR):
@@ -67,10 +60,10 @@ def test_figure2_says_what_is_certified(reproduction: Reproduction) -> None:
     assert "not reached at 1 of 19 points" in figure.get_supxlabel()
 
 
-def test_poses_are_drawn_to_scale(reproduction: Reproduction, paper: Scenario) -> None:
+def test_poses_are_drawn_to_scale(reproduction: Reproduction) -> None:
     """One metre is as long along each axis, and the panels' titles tell level, value and angle."""
     rows = [row for row in reproduction.table.of("optimum") if row.value in (1.0, 100.0)]
-    figure = draw_poses(paper, rows)
+    figure = draw_poses(paper_scenario(), rows)
     assert len(figure.axes) == 2
     for axes in figure.axes:
         sides = np.array([np.diff(axes.get_xlim3d()), np.diff(axes.get_ylim3d()), np.diff(axes.get_zlim3d())])

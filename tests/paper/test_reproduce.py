@@ -1,12 +1,14 @@
 """The reproduction as a whole: its files agree with each other and with what it returns."""
 
 import csv
+from pathlib import Path
 
 import pytest
 
+from nullpose import load
 from nullpose.paper.printed import sinr_as_printed
 from nullpose.paper.reproduce import Reproduction
-from nullpose.paper.scene import JAMMER_POWER, paper_scenario
+from nullpose.paper.scene import JAMMER_POWER, JAMMING_LEVELS, POSE_LEVELS, PRINTED_LEVELS, paper_scenario
 from nullpose.physics import min_sinr, to_db
 from nullpose.scenario import Override, apply_overrides
 
@@ -57,3 +59,12 @@ def test_rows_are_what_physics_says(reproduction: Reproduction) -> None:
         scene = apply_overrides(paper_scenario(), [Override(JAMMER_POWER, row.value)])
         assert row.min_sinr == pytest.approx(min_sinr(scene, row.pose), rel=1e-12)
         assert row.min_sinr_db == pytest.approx(float(to_db(row.min_sinr)))
+
+
+def test_the_scene_is_the_example_and_levels_cover_the_figure() -> None:
+    """Both curves go from 1e-3 to 1e6, and the poses are drawn at levels that the sweep has."""
+    assert paper_scenario() == load(Path(__file__).parents[2] / "examples" / "paper.toml")
+    for levels in (JAMMING_LEVELS, PRINTED_LEVELS):
+        assert (levels[0], levels[-1]) == (1e-3, 1e6)
+        assert list(levels) == sorted(set(levels))
+    assert {*POSE_LEVELS, *PRINTED_LEVELS} <= set(JAMMING_LEVELS)
