@@ -13,9 +13,7 @@ DATA = Path(__file__).parents[1] / "antenna" / "data"
 HALF = DATA / "alone_half_5deg.out.gz"
 
 
-@pytest.mark.parametrize(
-    "words", [("antenna", HALF), ("antenna", "show", HALF), ("antenna", "--format", "nec", HALF)]
-)
+@pytest.mark.parametrize("words", [("antenna", HALF), ("antenna", "show", "--format", "nec", HALF)])
 def test_the_table(run: Run, words: tuple[object, ...]) -> None:
     """What was read, whether the word show is there or not, and options before the file or after."""
     result = run(*words)
@@ -31,26 +29,19 @@ def test_the_table(run: Run, words: tuple[object, ...]) -> None:
         assert told in result.stdout
 
 
-def test_json(run: Run) -> None:
-    """One object with every number of the table; an infinite depth is null."""
-    result = run("antenna", HALF, "--json")
-    assert result.exit_code == 0
-    data = json.loads(result.stdout)
-    assert {"source", "quantity", "notes", "peak_rad", "null_rad", "degree", "step_rad"} <= set(data)
-    assert data["peak_dbi"] == pytest.approx(2.14, abs=0.005)
-    assert data["null_db"] is None
-    assert data["peak_rad"] == pytest.approx([math.pi / 2.0, 0.0])
-
-
-def test_the_figure(run: Run, tmp_path: Path) -> None:
-    """It is written where it was asked for, and named."""
+def test_the_figure_and_json(run: Run, tmp_path: Path) -> None:
+    """The figure is written where it was asked for, never over the pattern; JSON has every number."""
     figure = tmp_path / "deeper" / "pattern.png"
     result = run("antenna", HALF, "--figure", figure)
     assert result.exit_code == 0
     assert figure.read_bytes().startswith(b"\x89PNG")
     assert result.stdout.endswith(f"Wrote {figure}\n")
-    told = json.loads(run("antenna", HALF, "--figure", figure, "--json").stdout)
-    assert told["files"] == [str(figure)]
+    data = json.loads(run("antenna", HALF, "--figure", figure, "--json").stdout)
+    assert data["files"] == [str(figure)]
+    assert {"source", "quantity", "notes", "peak_rad", "null_rad", "degree", "step_rad"} <= set(data)
+    assert data["peak_dbi"] == pytest.approx(2.14, abs=0.005)
+    assert data["null_db"] is None  # of an exact null
+    assert data["peak_rad"] == pytest.approx([math.pi / 2.0, 0.0])
     pattern = tmp_path / "pattern.svg"
     pattern.write_bytes(HALF.read_bytes())
     refused = run("antenna", pattern, "--figure", pattern)

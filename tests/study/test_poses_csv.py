@@ -77,9 +77,3 @@ def test_faults_have_their_place(text: str, told: str, tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match=r"poses\.csv: ") as caught:
         poses_from_csv(_file(tmp_path, text))
     assert told in str(caught.value)
-
-
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
-    """Is told with its name."""
-    with pytest.raises(ScenarioError, match=r"none\.csv: 1 fault\n +there is no such file"):
-        poses_from_csv(tmp_path / "none.csv")

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose.errors import UsageError
 from nullpose.physics import objective_value, to_db
 from nullpose.scenario import Airframe, Scenario, apply_overrides
 from nullpose.solver import best_axis, solve
@@ -57,12 +56,3 @@ def test_the_table_has_a_line_for_each_point(paper: Scenario, tmp_path: Path) ->
     np.testing.assert_array_equal(np.reshape(numbers, field.values.shape), field.values)
     assert 0 < sum(map(math.isnan, numbers)) < len(numbers)
     assert field.to_dict()["best"]["value"] == max(filter(math.isfinite, numbers))
-
-
-@pytest.mark.parametrize(
-    ("given", "told"), [({"altitude_m": 99.0}, "altitude: given 99 m"), ({"cells": 1}, "cells")]
-)
-def test_what_makes_no_map_is_refused(paper: Scenario, given: dict, told: str) -> None:
-    """With what is allowed."""
-    with pytest.raises(UsageError, match=told):
-        value_map(solve(paper, certify=False), **given)

@@ -156,16 +156,12 @@ def test_points_that_meet_the_vehicle_are_drawn_again(spec: Spec) -> None:
 
 
 def test_a_star_sets_every_point_of_a_kind(spec: Spec) -> None:
-    """A swept path with a star reaches all, however many there are; none is no fault."""
+    """A swept path with a star reaches all, however many; a key takes the place of its other unit."""
     drawn = spec(scenes=50, jammers__count=[0, 3], sweep={"jammers.*.power_w": [7.0]})
     for index in range(50):
         assert {jammer.power_w for jammer in scene_at(drawn, index, 0).jammers} <= {7.0}
-
-
-def test_a_swept_key_takes_the_place_of_its_other_unit(spec: Spec) -> None:
-    """Sweeping the power of what draws in dBm drops the one in W."""
-    scene = scene_at(spec(sweep={"jammers.power_dbm": [20.0]}), 0, 0)
-    assert (scene.jammers[0].power_w, scene.jammers[0].power_dbm) == (None, 20.0)
+    (jammer,) = scene_at(spec(sweep={"jammers.power_dbm": [20.0]}), 0, 0).jammers
+    assert (jammer.power_w, jammer.power_dbm) == (None, 20.0)
 
 
 def test_files_take_turns(spec: Spec, paper: Scenario) -> None:

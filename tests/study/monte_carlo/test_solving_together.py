@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from nullpose.physics import Pose, antenna_gain
-from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario import Scenario
 from nullpose.solver import solve_many
 from nullpose.study.monte_carlo import StudySpec, solving
 from nullpose.study.monte_carlo.chunk import rows_of
@@ -73,23 +73,3 @@ def test_one_at_fault(spec: Spec, monkeypatch: pytest.MonkeyPatch) -> None:
             assert (after["status"], after["reason"]) == ("failed", "ZeroDivisionError: division by zero")
         else:
             assert after == before
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"jammers.M.power_w": 3.0},
-        {"jammers[0].power_dbm": 33.0, "nodes.S2.power_w": 0.5},
-        {"jammers.*.power_w": 3.0},
-        {"nodes[1].power_dbm": 3.0, "receiver.noise_w": 1e-5},
-    ],
-)
-def test_powers_are_set_as_by_override(spec: Spec, changes: dict[str, float]) -> None:
-    """The quick way to set a power gives the scene of the usual one."""
-    study = spec(sweep={path: [value] for path, value in changes.items()})
-    draws = Draws(study)
-    overrides = [Override(path.replace("*", "M"), value) for path, value in changes.items()]
-    expected = apply_overrides(draws.base(0), overrides)
-    assert draws.at(0, 0) == expected
-    assert draws.at(0, 0).to_dict() == expected.to_dict()
-    assert draws.at(0, 0).jammer_powers_w.tolist() == expected.jammer_powers_w.tolist()
