@@ -133,6 +133,14 @@ WRITERS: dict[str, Callable[[Path, list[Feature]], None]] = {
 }
 
 
+def zones(
+    folder: Path, features: list[Feature], ending: str = ".geojson", here: tuple[float, float] = HERE
+) -> tuple[Scenario, list[str]]:
+    """Return the scenario with these zones, and the notes of loading them from a file."""
+    WRITERS[ending](folder / f"z{ending}", features)
+    return zones_of(folder, f"z{ending}", here)
+
+
 def kept_out(scenario: Scenario) -> Any:
     """Return what the zones of a scenario cover, in metres."""
     return shapely.union_all([shapely.Polygon(zone.polygon_m) for zone in scenario.airspace.no_fly])

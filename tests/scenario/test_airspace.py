@@ -17,29 +17,17 @@ FENCED = Airspace(
 
 
 @pytest.mark.parametrize(
-    ("position", "allowed"),
+    ("allowed", "positions"),
     [
-        ([0, 0, 8], True),
-        ([0, 0, 7.99], False),
-        ([0, 0, 30], True),
-        ([0, 0, 30.01], False),
-        ([50, 0, 10], True),
-        ([55, 0, 10], False),  # inside the fence, outside the box
-        ([0, 20, 10], True),  # a vertex of the fence
-        ([0, 21, 10], False),
-        ([17, 15, 10], False),
-        ([22, 15, 10], True),
-        ([21.99, 15, 10], False),
-        ([-15, 5, 10], False),
-        ([-15, 5, 8], False),  # the zone covers the airspace's floor
-        ([-15, 5, 15], True),
-        ([-15, 5, 16], True),
-        ([-10, 5, 10], True),
+        (True, [[0, 0, 8], [0, 0, 30], [50, 0, 10], [0, 20, 10]]),  # the last is a vertex of the fence
+        (False, [[0, 0, 7.99], [0, 0, 30.01], [55, 0, 10], [0, 21, 10]]),  # inside the fence or the box
+        (True, [[22, 15, 10], [-15, 5, 15], [-15, 5, 16], [-10, 5, 10]]),
+        (False, [[17, 15, 10], [21.99, 15, 10], [-15, 5, 10], [-15, 5, 8]]),  # a zone covers the floor
     ],
 )
-def test_what_is_allowed(position: list[float], allowed: bool) -> None:
+def test_what_is_allowed(allowed: bool, positions: list[list[float]]) -> None:
     """Inside the box and the fence and outside the zones; their borders are allowed."""
-    assert FENCED.allows(position) == allowed
+    assert FENCED.allows(positions).tolist() == [allowed] * 4
 
 
 @pytest.mark.parametrize("margin_m", [0.0, 2.0])

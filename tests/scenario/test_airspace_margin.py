@@ -91,26 +91,16 @@ def test_beside_an_edge_the_distance_is_the_margin() -> None:
 
 
 @pytest.mark.parametrize(
-    ("position_m", "allowed"),
+    ("allowed", "positions_m"),
     [
-        ([12.99, 5.0, 20.0], False),
-        ([13.01, 5.0, 20.0], True),
-        ([12.99, 12.99, 20.0], False),  # a right angle stays one
-        ([5.0, 5.0, 33.01], True),
-        ([5.0, 5.0, 32.99], False),
-        ([12.9, 5.0, 32.9], False),  # beside and above: the larger solid has edges too
-        ([46.99, 0.0, 20.0], True),
-        ([47.01, 0.0, 20.0], False),
-        ([0.0, 30.0, 46.99], True),
-        ([0.0, 30.0, 47.01], False),  # a zone that begins at the highest altitude
-        ([0.0, 30.0, 10.0], True),  # the airspace's own ranges have no margin
-        ([-39.99, 40.0, 20.0], True),
-        ([-30.0, -19.0, 20.0], False),  # a wall of no thickness has two sides
-        ([-30.0, -16.99, 20.0], True),
+        (True, [[13.01, 5, 20], [5, 5, 33.01], [46.99, 0, 20], [0, 30, 46.99], [-39.99, 40, 20]]),
+        (False, [[12.99, 5, 20], [5, 5, 32.99], [47.01, 0, 20], [0, 30, 47.01], [-30, -19, 20]]),
+        (False, [[12.99, 12.99, 20], [12.9, 5, 32.9]]),  # a right angle stays one, above too
+        (True, [[0, 30, 10], [-30, -16.99, 20]]),  # ranges have no margin, a wall has two sides
     ],
 )
 @pytest.mark.parametrize("shape", ["box", "polygon"])
-def test_what_is_allowed(position_m: list[float], allowed: bool, shape: str) -> None:
+def test_what_is_allowed(allowed: bool, positions_m: list[list[float]], shape: str) -> None:
     """Sideways, above and below, for zones of two shapes that cover the same."""
     corners = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]
     block = {"x_m": [0.0, 10.0], "y_m": [0.0, 10.0]} if shape == "box" else {"polygon_m": corners}
@@ -120,7 +110,7 @@ def test_what_is_allowed(position_m: list[float], allowed: bool, shape: str) -> 
         {"x_m": [-40.0, -20.0], "y_m": [-20.0, -20.0]},
     ]
     scenario = scene(margin_m=3.0, x_m=[-40.0, 60.0], geofence_m=FENCE, no_fly=zones)
-    assert scenario.airspace.allows(position_m) == allowed
+    assert np.all(scenario.airspace.allows(positions_m) == allowed)
     family = build_family(scenario)  # the solver's zones are the same, the wall among them
     assert len(family.zone_kind) == 4
 

@@ -25,6 +25,7 @@ from geo_files import (
     write_gdal,
     write_geojson,
     write_kml,
+    zones,
     zones_of,
 )
 
@@ -46,15 +47,14 @@ def test_what_is_kept_out_is_shapelys_union(ending: str, seed: int, tmp_path: Pa
                 [shapely.Point(HERE), shapely.MultiPolygon([parts[0]]), *parts[1:]]
             )
         features.append((whole, {"name": f"zone {index // 2}"}))
-    WRITERS[ending](tmp_path / f"zones{ending}", features)
-    scenario, notes = zones_of(tmp_path, f"zones{ending}")
+    scenario, notes = zones(tmp_path, features, ending)
     areas = [
         in_metres(filled(shapely.union_all([part for part in _leaves(shape) if part.geom_type == "Polygon"])))
         for shape, _ in features
     ]
     expected = shapely.union_all(areas)
     assert kept_out(scenario).symmetric_difference(expected).area <= 1e-6 * expected.area
-    assert notes[0].startswith(f"zones{ending}: zones: 8 of 8 in reach (")
+    assert notes[0].startswith(f"z{ending}: zones: 8 of 8 in reach (")
     low, high = np.array(expected.bounds[:2]) - 50.0, np.array(expected.bounds[2:]) + 50.0
     positions_m = np.column_stack([rng.uniform(low, high, (2000, 2)), np.full(2000, 60.0)])
     clear = shapely.distance(expected.boundary, shapely.points(positions_m[:, :2])) > 1e-3
@@ -86,8 +86,7 @@ def test_every_feature_is_accounted_for(ending: str, tmp_path: Path) -> None:
         (wall, {"name": "wall"}),
         (far, {"name": "far"}),
     ]
-    WRITERS[ending](tmp_path / f"z{ending}", features)
-    scenario, notes = zones_of(tmp_path, f"z{ending}")
+    scenario, notes = zones(tmp_path, features, ending)
     assert sorted(zone.name for zone in scenario.airspace.no_fly) == ["7", "A", "A 2", "mast"]
     assert notes == [
         f"z{ending}: zones: 4 of 5 in reach (3 polygons, 1 cylinder); passed over: 1 point, 1 line, 1 wall; "
@@ -136,8 +135,7 @@ LAYER = {"lowerReference": "AGL", "upperReference": "AGL", "uom": "m"}
 )  # fmt: skip
 def test_altitudes_are_read(properties: dict[str, Any], expected: tuple[Any, float], tmp_path: Path) -> None:
     """Own keys, ED-318's layer and openAIP's ceilings, over ground, sea and standard pressure."""
-    write_geojson(tmp_path / "z.geojson", [(SQUARE, {"name": "A", **properties})])
-    scenario, notes = zones_of(tmp_path, "z.geojson")
+    scenario, notes = zones(tmp_path, [(SQUARE, {"name": "A", **properties})])
     low_m, high_m = scenario.airspace.no_fly[0].altitude_m or (0.0, 0.0)
     assert high_m == pytest.approx(expected[1])
     assert low_m == pytest.approx(expected[0]) if expected[0] is not None else low_m < -1e5
@@ -146,14 +144,13 @@ def test_altitudes_are_read(properties: dict[str, Any], expected: tuple[Any, flo
 
 def test_limits_that_are_not_read_are_said(tmp_path: Path) -> None:
     """A property that looks like a limit or a time, under a name that is not known."""
-    write_geojson(
-        tmp_path / "z.geojson",
-        [(SQUARE, {"name": "X", "upper_limit": 500}), (SQUARE, {"name": "Y", "limitedApplicability": [1]})],
+    scenario, notes = zones(
+        tmp_path,
+        [(SQUARE, {"name": "X", "upper_limit": 5}), (SQUARE, {"name": "Y", "schedule": 1})],
     )
-    scenario, notes = zones_of(tmp_path, "z.geojson")
     assert all(zone.altitude_m is None for zone in scenario.airspace.no_fly)
     assert 'z.geojson: "X" counts at all altitudes; not read: upper_limit' in notes
-    assert any('"Y" counts at all times; not read: limitedApplicability' in note for note in notes)
+    assert any('"Y" counts at all times; not read: schedule' in note for note in notes)
 
 
 def test_altitudes_over_different_things_need_an_origin_that_states_both(tmp_path: Path) -> None:
@@ -197,8 +194,7 @@ def test_an_area_may_cross_the_antimeridian(split: bool, lon: float, tmp_path: P
         [shapely.box(179.998, 10.001, 180.0, 10.003), shapely.box(-180.0, 10.001, -179.998, 10.003)]
     )
     ring = shapely.Polygon([(179.998, 10.001), (-179.998, 10.001), (-179.998, 10.003), (179.998, 10.003)])
-    write_geojson(tmp_path / "z.geojson", [(parts if split else ring, {"name": "A"})])
-    scenario, _ = zones_of(tmp_path, "z.geojson", here)
+    scenario, _ = zones(tmp_path, [(parts if split else ring, {"name": "A"})], here=here)
     expected = in_metres(crossing, here)
     assert kept_out(scenario).symmetric_difference(expected).area < 1e-6 * expected.area
     assert (
@@ -217,8 +213,7 @@ def test_doubled_corners_and_spikes_are_no_faults(tmp_path: Path) -> None:
     """Corners under a centimetre apart are one, a spike has no area; a crossing is refused by name."""
     corners = [(14.502, 50.002), (14.502, 50.002), (14.504, 50.002), (14.5045, 50.0015), (14.504, 50.002)]
     corners += [(14.504, 50.004), (14.504 + 5e-8, 50.004), (14.502, 50.004)]
-    write_geojson(tmp_path / "z.geojson", [(shapely.Polygon(corners), {"name": "A"})])
-    scenario, _ = zones_of(tmp_path, "z.geojson")
+    scenario, _ = zones(tmp_path, [(shapely.Polygon(corners), {"name": "A"})])
     expected = in_metres(SQUARE)
     assert kept_out(scenario).symmetric_difference(expected).area < 1e-6 * expected.area
     bow = shapely.Polygon([(14.502, 50.002), (14.504, 50.004), (14.504, 50.002), (14.502, 50.004)])

@@ -26,6 +26,7 @@ from geo_files import (
     star,
     write_gdal,
     write_geojson,
+    zones,
     zones_of,
 )
 from shapely.geometry import mapping
@@ -97,8 +98,7 @@ def test_a_country_loads_quickly(tmp_path: Path) -> None:
 def test_a_zone_may_cover_a_country(lat: float, tmp_path: Path) -> None:
     """What lies beyond the reach of the origin is cut off, however far north a degree is narrow."""
     country = shapely.box(HERE[0] - 40.0, lat - 5.0, HERE[0] + 40.0, lat + 5.0)
-    write_geojson(tmp_path / "z.geojson", [(country, {"name": "country"})])
-    scenario, notes = zones_of(tmp_path, "z.geojson", (HERE[0], lat))
+    scenario, notes = zones(tmp_path, [(country, {"name": "country"})], here=(HERE[0], lat))
     assert notes == ["z.geojson: zones: 1 of 1 in reach (1 polygon)"]
     assert kept_out(scenario).contains(shapely.box(-6e4, -6e4, 6e4, 6e4))
 
@@ -109,21 +109,48 @@ def test_the_edge_at_which_a_zone_is_cut_crosses_no_other(tmp_path: Path) -> Non
     country = shapely.box(x - 2.0, y - 2.0, x + 2.0, y + 2.0)
     for tip in np.linspace(y - 0.556, y - 0.536, 21):
         bay = shapely.Polygon([(x, tip), (x + 0.01, y + 2.1), (x - 0.01, y + 2.1)])
-        write_geojson(tmp_path / "z.geojson", [(country - bay, {})])
-        scenario, _ = zones_of(tmp_path, "z.geojson")
+        scenario, _ = zones(tmp_path, [(country - bay, {})])
         assert kept_out(scenario).area > 0.9 * 1.2e5**2
 
 
-def test_a_file_without_a_zone_in_reach_is_no_fault(tmp_path: Path) -> None:
-    """The account says that there is none."""
-    write_geojson(tmp_path / "far.geojson", [(shapely.Point(0.0, 0.0).buffer(0.1), {})])
-    write_geojson(tmp_path / "points.geojson", [(shapely.Point(HERE), {})])
-    assert zones_of(tmp_path, "far.geojson")[1] == [
-        "far.geojson: zones: 0 of 1 in reach; are latitude and longitude exchanged?"
-    ]
-    scenario, notes = zones_of(tmp_path, "points.geojson")
-    assert notes == ["points.geojson: zones: 0 of 0 in reach; passed over: 1 point"]
-    assert not scenario.airspace.no_fly
+SQUARE = shapely.Point(HERE).buffer(0.01, quad_segs=1)
+POINT = shapely.Point(HERE)
+WALLS = [(shapely.LineString([HERE] * 4), {}), (shapely.Polygon([HERE] * 4), {})]
+HOLED = shapely.Polygon(SQUARE.exterior, [[HERE] * 4])  # a hole of one place takes nothing away
+
+
+@pytest.mark.parametrize(
+    ("features", "area", "notes"),
+    [
+        (
+            [(shapely.Point(0.0, 0.0).buffer(0.1), {})],
+            0.0,
+            ["zones: 0 of 1 in reach; are latitude and longitude exchanged?"],
+        ),
+        ([(POINT, {})], 0.0, ["zones: 0 of 0 in reach; passed over: 1 point"]),
+        (
+            [(POINT, {"Bufferzone": 150, "name": "station"})],
+            0.0,
+            [
+                "zones: 0 of 0 in reach; passed over: 1 point",
+                "of points Bufferzone is not read; a radius is radius_m",
+            ],
+        ),
+        (
+            [*WALLS, (HOLED, {})],
+            in_metres(SQUARE).area,
+            ["zones: 1 of 1 in reach (1 polygon); passed over: 2 walls"],
+        ),
+    ],
+    ids=["far", "point", "radius", "walls"],
+)
+def test_the_account_says_what_became_of_each(
+    features: list[Feature], area: float, notes: list[str], tmp_path: Path
+) -> None:
+    """No zone in reach is no fault; a point may be a zone under another key; what has no area is a wall."""
+    scenario, found = zones(tmp_path, features)
+    assert found == [f"z.geojson: {note}" for note in notes]
+    assert kept_out(scenario).area == pytest.approx(area, rel=1e-6)
 
 
 def test_no_node_lies_where_zones_do_not_count(tmp_path: Path) -> None:
@@ -140,22 +167,10 @@ def test_no_node_lies_where_zones_do_not_count(tmp_path: Path) -> None:
         load(path)
 
 
-def test_what_looks_like_a_radius_is_said(tmp_path: Path) -> None:
-    """A point that is passed over may be a zone under another key."""
-    write_geojson(tmp_path / "z.geojson", [(shapely.Point(HERE), {"Bufferzone": 150, "name": "station"})])
-    assert zones_of(tmp_path, "z.geojson")[1] == [
-        "z.geojson: zones: 0 of 0 in reach; passed over: 1 point",
-        "z.geojson: of points Bufferzone is not read; a radius is radius_m",
-    ]
-
-
 def test_zones_with_too_many_corners_are_cut_once(tmp_path: Path) -> None:
     """One line says to what, and remarks are on the zones that are left."""
     near, far = (shapely.Point(HERE[0] + x, HERE[1]).buffer(0.01, quad_segs=1200) for x in (0.03, 0.5))
-    write_geojson(
-        tmp_path / "z.geojson", [(near, {"name": "near", "upper": 1}), (far, {"name": "far", "upper": 1})]
-    )
-    _, notes = zones_of(tmp_path, "z.geojson")
+    _, notes = zones(tmp_path, [(near, {"name": "near", "upper": 1}), (far, {"name": "far", "upper": 1})])
     assert notes == [
         "z.geojson: zones: 1 of 2 in reach (1 polygon)",
         "z.geojson: they are cut to x_m = [-30000.0, 30000.0] and y_m = [-30000.0, 30000.0], since all have "
@@ -180,8 +195,7 @@ def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> Non
     corners = [(x - 0.01, y), (x - 0.01, y - 0.01), (x, y - 0.01), (x, y - 0.005)]
     twice = shapely.Polygon(corners * 2)
     features: list[Feature] = [(shapely.Polygon(looped), {"name": "loop"}), (swapped, {}), (twice, {})]
-    write_geojson(tmp_path / "z.geojson", features)
-    scenario, notes = zones_of(tmp_path, "z.geojson")
+    scenario, notes = zones(tmp_path, features)
     assert notes == [
         "z.geojson: zones: 3 of 3 in reach (4 polygons); borders that cross, all inside counts: 3"
     ]
@@ -197,21 +211,6 @@ def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> Non
     write_geojson(tmp_path / "bow.geojson", [(bow, {})])
     with pytest.raises(ScenarioError, match="its border crosses itself"):
         zones_of(tmp_path, "bow.geojson")
-
-
-def test_shapes_of_one_place_are_walls(tmp_path: Path) -> None:
-    """As the track of a receiver that stands still; a hole of one place takes nothing away."""
-    square = shapely.Point(HERE).buffer(0.01, quad_segs=1)
-    holed = shapely.Polygon(square.exterior, [[HERE] * 4])
-    features: list[Feature] = [
-        (shapely.LineString([HERE] * 4), {}),
-        (shapely.Polygon([HERE] * 4), {}),
-        (holed, {}),
-    ]
-    write_geojson(tmp_path / "z.geojson", features)
-    scenario, notes = zones_of(tmp_path, "z.geojson")
-    assert notes == ["z.geojson: zones: 1 of 1 in reach (1 polygon); passed over: 2 walls"]
-    assert kept_out(scenario).area == pytest.approx(in_metres(square).area, rel=1e-6)
 
 
 def test_kmz_that_is_damaged_or_holds_two_documents_is_refused(tmp_path: Path) -> None:

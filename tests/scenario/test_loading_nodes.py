@@ -113,8 +113,8 @@ def test_the_same_nodes_whichever_the_file(tmp_path: Path) -> None:
 GEOJSON_CASES = [
     ("[1]", "", "got a list of one value, must be a FeatureCollection"),
     ("{", ": line 1, column 2", "this is not JSON"),
-    ('{"type": 1, "type": 2}', "", 'the key "type" is given twice'),
-    ('{"features": [0, {"id": 1, "id": 2}]}', "", 'the key "id" is given twice'),
+    ('{"type": 1, "type": 2}', ": line 1, column 22", 'the key "type" is given twice'),
+    ('{"features": [0, {"id": 1, "id": 2}]}', ": line 1, column 35", 'the key "id" is given twice'),
     ("[" * 100_000, "", "nested too deeply"),
     (f'{{"a": {"9" * 5000}}}', "", "too many digits"),
     ('{"type": "Topology"}', ": type", 'got the text "Topology", must be "FeatureCollection"'),
