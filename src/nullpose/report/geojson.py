@@ -70,7 +70,18 @@ def write_geojson(solution: Result, path: Path) -> Path:
 def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
     """Yield the pose, the nodes, the jammers and the eavesdroppers: position in metres, and properties."""
     scenario, binding = solution.scenario, binding_nodes(solution)
-    yield solution.pose.position_m, _pose_properties(solution)
+    objective = solution.objective
+    properties: _Feature = {
+        "kind": "pose",
+        "name": solution.label,
+        "status": solution.status.value,
+        "rigour": solution.rigour.value,
+        "objective": objective.name,
+        "value": objective.value,
+        "value_db": objective.value_db,
+        "upper_bound": objective.upper_bound,
+    }
+    yield solution.pose.position_m, properties | _angles(scenario, solution.pose)
     if isinstance(solution.details, RobustDetails):
         nominal = solution.details.nominal
         named = {"kind": "pose-as-stated", "name": "best pose as stated", "guaranteed": nominal.guaranteed}
@@ -84,21 +95,6 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
     for point in scenario.eavesdroppers:
         reach = {"uncertainty_m": point.uncertainty_reach_m}
         yield point.position_m, {"kind": "eavesdropper", "name": point.name, **reach}
-
-
-def _pose_properties(solution: Result) -> dict[str, object]:
-    objective = solution.objective
-    return {
-        "kind": "pose",
-        "name": solution.label,
-        "status": solution.status.value,
-        "rigour": solution.rigour.value,
-        "objective": objective.name,
-        "value": objective.value,
-        "value_db": objective.value_db,
-        "upper_bound": objective.upper_bound,
-        **_angles(solution.scenario, solution.pose),
-    }
 
 
 def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.collections import PathCollection
 
 from nullpose.report.study.figures import figures_of, step_curve
 from nullpose.report.study.statistics import band_half_width
@@ -36,8 +37,8 @@ def test_gains_stand_at_their_medians(summed: Summed, ladder: Ladder) -> None:
     figure = figures_of(summed(ladder(40, 1.0, 2.5)))["gain"]
     (axes,) = figure.axes
     assert [label.get_text() for label in axes.get_yticklabels()] == ["tilt-10", "omnidirectional"]
-    discs = [float(line.get_xdata()[0]) for line in axes.lines if line.get_marker() == "o"]
-    assert discs == pytest.approx([1.0, 2.5])
+    discs, _ = (one for one in axes.collections if isinstance(one, PathCollection))
+    assert discs.get_offsets()[:, 0].tolist() == pytest.approx([1.0, 2.5])
     assert "over level-vertical  (dB)" in figure.get_supxlabel()
 
 

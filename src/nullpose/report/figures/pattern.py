@@ -27,7 +27,6 @@ _DOWN, _RINGS, _AROUND = 61, 91, 241  # steps of a dipole's and of a beam's: lob
 _RANGE_DB, _TOP_STEP_DB, _RING_DB = 40.0, 5.0, 10.0
 _LINE, _COLOURS = "#0a3fd6", colormaps["viridis"]
 _SPOKES_DEG = np.arange(0, 360, 45)
-_PLACES = ((0.06, 0.53), (0.56, 0.53), (0.06, 0.04))
 _LARGEST = 91  # rows and columns of the surface; finer ones look the same
 
 
@@ -118,10 +117,10 @@ def draw_pattern(table: PatternTable) -> Figure:
         whole = np.concatenate([gain_dbi[:, near], gain_dbi[-2:0:-1, far]])
         cuts.append((title, -1, np.concatenate([theta, 360.0 - theta[-2:0:-1]]), whole))
     with house_style():
-        figure = Figure(figsize=(8.4, 8.6))
-        figure.text(0.5, 0.965, f"{table.source}: {table.quantity} in dBi", ha="center", fontsize=11.0)
-        for (title, turn, at_deg, values_dbi), place in zip(cuts, _PLACES, strict=True):
-            axes: Any = figure.add_axes((*place, 0.38, 0.36), polar=True)
+        figure = Figure(figsize=(8.4, 8.6), layout="constrained")
+        figure.suptitle(f"{table.source}: {table.quantity} in dBi", fontsize=11.0, parse_math=False)
+        for place, (title, turn, at_deg, values_dbi) in enumerate(cuts, start=1):
+            axes: Any = figure.add_subplot(2, 2, place, polar=True)
             axes.set_title(title, fontsize=9.5, pad=12.0)
             _draw_cut(axes, turn, at_deg, np.maximum(values_dbi, top_dbi - _RANGE_DB), top_dbi)
         _draw_surface(figure, table, gain_dbi, [(level, x), (level, y), (0, 0)])
@@ -151,7 +150,7 @@ def _draw_surface(
     figure: Figure, table: PatternTable, gain_dbi: FloatArray, ends: Sequence[tuple[int, int]]
 ) -> None:
     """Draw how far the gain in dB is above the range's end as a distance, body axes and a bar of colours."""
-    axes: Any = figure.add_axes((0.50, 0.01, 0.42, 0.44), projection="3d")
+    axes: Any = figure.add_subplot(2, 2, 4, projection="3d")
     peak_dbi = float(np.max(gain_dbi))
     around = np.append(np.arange(len(table.phi_deg)), 0)  # closed
     far = np.maximum((gain_dbi - peak_dbi) / _RANGE_DB + 1.0, 0.0)
@@ -166,6 +165,6 @@ def _draw_surface(
     axes.set(xlim=(-0.8, 0.8), ylim=(-0.8, 0.8), zlim=(-0.8, 0.8), box_aspect=(1.0, 1.0, 1.0))
     axes.view_init(elev=25.0, azim=35.0)
     axes.set_axis_off()
-    bar = figure.colorbar(ScalarMappable(norm, _COLOURS), cax=figure.add_axes((0.92, 0.10, 0.014, 0.26)))
+    bar = figure.colorbar(ScalarMappable(norm, _COLOURS), ax=axes, shrink=0.6)
     bar.ax.set_title("dBi", fontsize=8.5)
     bar.ax.grid(False)

@@ -31,18 +31,18 @@ def quantity_of(table: ResultTable) -> Quantity:
     return table.rows[0].objective.quantity
 
 
-def _in_unit(rows: Iterable[ResultRow], name: str) -> FloatArray:
-    """Convert values or bounds to their unit; NaN, which Matplotlib draws as a gap, for no number."""
-    numbers = [(row.objective.quantity, getattr(row.objective, name)) for row in rows]
-    found = [math.nan if number is None else quantity.in_unit(number) for quantity, number in numbers]
-    return np.where(np.isfinite(found), found, math.nan)
+def _numbers(rows: Iterable[ResultRow]) -> FloatArray:
+    """List values and bounds in their unit, (2, n); NaN, which Matplotlib draws as a gap, for no number."""
+    pairs = [(row.objective.quantity, row.objective.value, row.objective.upper_bound) for row in rows]
+    found = [[math.nan if x is None else unit.in_unit(x) for x in pair] for unit, *pair in pairs]
+    return np.where(np.isfinite(found), found, math.nan).T
 
 
 def draw_curves(axes: Axes, table: ResultTable) -> bool:
     """Draw curves and bounds; return whether bounds can be seen apart from their values."""
     apart = _VISIBLE
     if quantity_of(table).is_rate:
-        apart = 0.01 * float(np.max(_in_unit(table.rows, "value")))
+        apart = 0.01 * float(np.max(_numbers(table.rows)[0]))
     seen = [_draw_scheme(axes, table, scheme, apart) for scheme in table.names]
     return any(seen)
 
@@ -50,7 +50,7 @@ def draw_curves(axes: Axes, table: ResultTable) -> bool:
 def _draw_scheme(axes: Axes, table: ResultTable, scheme: str, apart: float) -> bool:
     """Draw a curve with a band up to its bounds; return whether they can be seen apart."""
     look, rows = curve_of(scheme), table.of(scheme)
-    values, bounds = _in_unit(rows, "value"), _in_unit(rows, "upper_bound")
+    values, bounds = _numbers(rows)
     levels = [row.value for row in rows]
     first = [*CURVES, scheme].index(scheme)  # staggered, so that curves which coincide both stay visible
     step = math.ceil(len(rows) / _MARKERS)
@@ -71,7 +71,7 @@ def draw_caption(figure: Figure, lines: Iterable[str]) -> None:
 
 def _keep_curves_large(axes: Axes, table: ResultTable) -> None:
     """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
-    values, bounds = _in_unit(table.rows, "value"), _in_unit(table.rows, "upper_bound")
+    values, bounds = _numbers(table.rows)
     low, high = np.fmin.reduce(values), np.fmax.reduce(values)  # unlike the maximum, they pass over NaN
     least = max(0.5 * high, 1e-3) if quantity_of(table).is_rate else _FREE
     free = max(least, high - low)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import cycle
@@ -97,22 +96,19 @@ def _range(summary: Summary, points: Sequence[int]) -> tuple[float, float]:
 
 def _gains(summary: Summary, points: Sequence[int]) -> Figure:
     compared = summary.compared
-    colours = {look.label: look.colour for look in _looks(summary.cases)}
+    looks = {look.label: look.colour for look in _looks(summary.cases)}
+    colours, places = [looks[case] for case in compared], np.arange(len(compared))
 
     def draw(axes: Axes, point: int) -> None:
-        for place, case in enumerate(compared):
-            row, colour = summary.row(point, case), colours[case]
-            ends = row["gain_worst_tenth"], row["gain_best_tenth"]
-            if all(map(math.isfinite, ends)):
-                axes.plot(ends, [place - 0.14] * 2, color=colour, zorder=2.0, linewidth=5.0, alpha=0.3)
-            for name, marker, below in (("gain_median", "o", -0.14), ("shift_worst_tenth", "D", 0.2)):
-                interval = row[f"{name}_low"], row[f"{name}_high"]
-                if all(map(math.isfinite, interval)):
-                    axes.plot(interval, [place + below] * 2, color=INK, linewidth=1.1, zorder=2.6)
-                if math.isfinite(row[name]):
-                    axes.plot([row[name]], [place + below], marker, color=colour, markersize=4.5, zorder=3.0)
+        rows = summary.at(point).loc[compared]
+        low, high = _finite(rows["gain_worst_tenth"]), _finite(rows["gain_best_tenth"])
+        axes.hlines(places - 0.14, low, high, color=colours, zorder=2.0, linewidth=5.0, alpha=0.3)
+        for name, marker, below in (("gain_median", "o", -0.14), ("shift_worst_tenth", "D", 0.2)):
+            value, low, high = (_finite(rows[f"{name}{end}"]) for end in ("", "_low", "_high"))
+            axes.hlines(places + below, low, high, color=INK, linewidth=1.1, zorder=2.6)
+            axes.scatter(value, places + below, marker=marker, c=colours, s=20.0, zorder=3.0)
         axes.axvline(0.0, color=INK, linewidth=0.8, zorder=1.4)
-        axes.set_yticks(range(len(compared)), compared)
+        axes.set_yticks(places, compared)
         axes.set_ylim(len(compared) - 0.4, -0.6)
         axes.grid(visible=False, axis="y")
 
@@ -124,6 +120,10 @@ def _gains(summary: Summary, points: Sequence[int]) -> Figure:
     )
     height = 0.6 + 0.27 * len(compared)
     return _panels(summary, points, draw, across=across, note=note, height=height)
+
+
+def _finite(numbers: pd.Series) -> FloatArray:
+    return np.where(np.isfinite(numbers), numbers, np.nan)
 
 
 def _looks(cases: pd.DataFrame) -> list[Curve]:

@@ -72,9 +72,14 @@ class Summary:
         """The names of the cases that are compared with another."""
         return [str(name) for name, case in self.cases.iterrows() if case["against"] != name]
 
+    def at(self, point: int) -> pd.DataFrame:
+        """Look up the statistics at a combination of swept values, by case."""
+        point %= len(self.spec.points)
+        return self.frame[self.frame["point"] == point].set_index("case")
+
     def row(self, point: int, case: str) -> pd.Series:
         """Look up the statistics of a case at a combination of swept values."""
-        return self.frame.iloc[point * len(self.cases) + self.cases.index.get_loc(case)]
+        return self.at(point).loc[case]
 
     def table(self) -> pd.DataFrame:
         """Put units into the names of the columns, for a file."""
