@@ -53,13 +53,6 @@ def test_the_needle_over_the_jammer_is_found(scene: Callable) -> None:
             np.testing.assert_allclose(found.position_m, [*jammer[:2], 8.0], atol=1e-3)
 
 
-def test_a_domain_without_a_value_is_said(scene: Callable) -> None:
-    """Where the only position has the node in the null, there is nothing to find, and that is said."""
-    point = scene([(0, 0, 0)], x_m=(0.0, 0.0), y_m=(0.0, 0.0), altitude_m=(8.0, 8.0))
-    with pytest.raises(SolveError, match="widen the airspace or reduce keep_out_m"):
-        multistart(build_family(point), VERTICAL, seed=0)
-
-
 def rectangle(west: float, east: float, south: float, north: float) -> dict[str, object]:
     """Returns a no-fly zone as a polygon."""
     return {"polygon_m": [(west, south), (east, south), (east, north), (west, north)]}

@@ -11,7 +11,6 @@ from nullpose.physics import sinr
 from nullpose.scenario import Scenario
 from nullpose.solver import Scheme, solve
 from nullpose.solver.kernels.axis import best_axis, best_axis_of_forms
-from nullpose.solver.kernels.symmetric import top_eigenvector
 
 UP = np.array([0.0, 0.0, 1.0])
 BOXED = {
@@ -192,14 +191,6 @@ def test_a_huge_form_does_not_spoil_the_others():
         cross = np.sum(np.cross(other, points) ** 2, axis=1)
         worst = max(worst, float(np.min(weights * cross / square**2)) / value - 1.0)
     assert worst < 1e-9
-
-
-def test_the_top_eigenvector_of_a_double_eigenvalue():
-    """Where the top eigenvalue is double any vector of its plane will do, and no other."""
-    v = np.empty(3)
-    for form, null in (([1.0, 1.0, 0.0, 0.0, 0.0, 0.0], UP), ([2.0, 2.0, 0.0, 0.0, 0.0, 0.0], UP)):
-        top_eigenvector(np.array(form), v)
-        assert abs(v @ null) < 1e-9
 
 
 def test_a_solution_can_be_copied_and_pickled(paper):

@@ -13,7 +13,7 @@ from nullpose.solver.kernels import node
 from nullpose.solver.kernels.axis import best_axis
 from nullpose.solver.kernels.links import min_log_ratio
 from nullpose.solver.multistart import multistart
-from nullpose.solver.options import SolveOptions, default_gap
+from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import Proof, prove
 
 PAPER = "examples/paper.toml"
@@ -135,12 +135,6 @@ def test_progress_is_told(random_scene: Callable) -> None:
     gaps, nodes = zip(*seen, strict=True)
     assert list(nodes) == sorted(nodes)
     assert all(later <= earlier * (1 + 1e-9) for earlier, later in pairwise(gaps))
-
-
-def test_default_gaps_loosen_with_size() -> None:
-    """More nodes are asked for a wider gap."""
-    gaps = [default_gap(n) for n in (1, 2, 3, 4, 20, 21, 100)]
-    assert gaps == sorted(gaps)
 
 
 def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:

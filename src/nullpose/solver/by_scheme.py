@@ -16,7 +16,7 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.schemes import Scheme, SchemeRecord
 from nullpose.scenario import Scenario
-from nullpose.solver.incumbent import Incumbent
+from nullpose.solver.multistart import Incumbent
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.position_search import PositionSearch
 from nullpose.solver.result import Answer, Stats

@@ -131,9 +131,9 @@ def compile_search(dipoles: bool) -> None:
         dipoles: whether for ratios of points with dipoles.
     """
     from nullpose.solver.kernels.links import min_log_ratio
-    from nullpose.solver.kernels.multistart import search_and_climb
     from nullpose.solver.kernels.node import COLUMNS, keep_largest
     from nullpose.solver.kernels.root import fill_root
+    from nullpose.solver.kernels.search import search_and_climb
     from nullpose.solver.multistart import climb
 
     if _is_compiled(search_and_climb, dipoles):

@@ -74,7 +74,7 @@ class LocalSearch(ABC):
         Returns:
             The best value that a climb ended at.
         """
-        from nullpose.solver.kernels.search import push_out
+        from nullpose.solver.kernels.domain import push_out
 
         points_m, ends = self.family.points_m, [-math.inf]
         around_m = float(np.max(np.ptp(points_m, axis=0))) + 10.0 * self.family.keep_out_m

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cache
 from itertools import permutations
 from typing import NamedTuple
@@ -14,7 +15,6 @@ from nullpose.objectives import FloatArray
 from nullpose.problem.airspace import loosened
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
-from nullpose.solver.incumbent import Incumbent
 
 BORDER_M = 4e-10
 """How far borders are moved where what is allowed is of no width [m]: less than what counts as on them."""
@@ -31,6 +31,27 @@ _CLIMBS = (1e-4, 1e-5, 1e-6, 1e-4, 1e-6)
 _CLIMB_STEPS = 300
 _ALL = 1_000_000  # landmarks
 _PAIRED = 4  # interferers whose lines are looked at
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Incumbent:
+    """A pose found by a search.
+
+    Args:
+        position_m: (3,) metres.
+        axis: (3,) antenna axis, of any length.
+        log_value: the logarithm of the smallest ratio there, as the search saw it.
+        multipliers: (r,) multipliers of the ratios at the optimum, summing to one; equal where not known.
+        starts: local searches run.
+        evaluations: poses evaluated.
+    """
+
+    position_m: FloatArray
+    axis: FloatArray
+    log_value: float
+    multipliers: FloatArray
+    starts: int
+    evaluations: int
 
 
 class SearchSettings(NamedTuple):
@@ -165,7 +186,7 @@ def _run(
     pose: tuple[FloatArray, FloatArray] | None = None,
 ) -> Incumbent:
     from nullpose.solver.kernels.jit import entry_of
-    from nullpose.solver.kernels.multistart import search_and_climb
+    from nullpose.solver.kernels.search import search_and_climb
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
     ratios = family.arrays

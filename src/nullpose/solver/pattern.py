@@ -16,8 +16,7 @@ from nullpose.problem.records import Reach
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INSIDE, INTERRUPT, MOST_LEAVES, BranchAndBound
 from nullpose.solver.compiling import limit_clock
-from nullpose.solver.incumbent import Incumbent
-from nullpose.solver.multistart import NO_POSITION
+from nullpose.solver.multistart import NO_POSITION, Incumbent
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.pattern_search import PatternSearch
 from nullpose.solver.proof import Proof
@@ -80,7 +79,7 @@ class PatternRun(BranchAndBound):
         self.family, self.antenna, self.reach = family, antenna, reach
         self.search = PatternSearch(family, antenna, reach, options.seed)
         self.rounding = _ROUNDING
-        self.leaves: FloatArray | None = None
+        self.leaves = np.empty((0, 0))
         self.root = np.zeros((2, 3))
 
     def outcome(self) -> Outcome:
@@ -95,9 +94,7 @@ class PatternRun(BranchAndBound):
         self.thorough = not self.search.search(light=self.limits.certify)
         if not math.isfinite(self.search.best):
             raise SolveError(NO_POSITION)
-        reason = ""
-        if self.limits.certify:
-            reason = self._proved(began)
+        reason = self._proved(began) if self.limits.certify else ""
         position_m, rotation = self.search.pose
         found = Incumbent(
             position_m=position_m,
@@ -110,8 +107,6 @@ class PatternRun(BranchAndBound):
         if not self.limits.certify:
             return Outcome(incumbent=found)
         bound = float(bound_above(self.value, self.proved))
-        if self.leaves is None:
-            return Outcome(incumbent=found, upper_bound=bound, reason=reason, cells=self.nodes)
         proof = Proof(
             incumbent=found,
             upper_bound=bound,
@@ -121,7 +116,9 @@ class PatternRun(BranchAndBound):
             nodes=self.nodes,
             is_even=self.reach.even,
         )
-        return Outcome(incumbent=found, upper_bound=bound, reason=reason, proofs=(proof,))
+        proofs = (proof,) if len(self.leaves) else ()
+        cells = 0 if proofs else self.nodes
+        return Outcome(incumbent=found, upper_bound=bound, reason=reason, proofs=proofs, cells=cells)
 
     @property
     def value(self) -> float:
@@ -154,7 +151,7 @@ class PatternRun(BranchAndBound):
         bound = self.value * (1.0 + gap)
         if not reason and bound < self.proved:
             self.proved, self.root = bound, root
-            self.leaves = workers.leaves() if self.keeps_leaves else None
+            self.leaves = workers.leaves() if self.keeps_leaves else np.empty((0, 0))
         return reason
 
     def has_space(self, workers: WorkerPool) -> bool:
@@ -169,12 +166,8 @@ class PatternRun(BranchAndBound):
     def search_thoroughly(self) -> None:
         """Search as without a proof, once."""
         if not self.thorough:
-            self.thorough, light = True, self.search
-            self.search = PatternSearch(self.family, self.antenna, self.reach, self.limits.seed)
+            self.thorough = True
             self.search.search(light=False)
-            self.search.take(light.state)
-            self.search.starts += light.starts
-            self.search.evaluations += light.evaluations
 
     def excluding(self, gap: float) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``."""

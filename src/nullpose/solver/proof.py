@@ -15,8 +15,7 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.branch_and_bound import INSIDE, INTERRUPT, MOST_LEAVES, BranchAndBound
 from nullpose.solver.compiling import limit_clock
-from nullpose.solver.incumbent import Incumbent
-from nullpose.solver.multistart import climb
+from nullpose.solver.multistart import Incumbent, climb
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.rigour import bound_above
 from nullpose.solver.worker_pool import Kernel, WorkerPool

@@ -308,7 +308,7 @@ def _on_cones(scenario: Scenario, pose: Pose, away_m: FloatArray, reach_m: float
         away_m: (k, 3) from each jammer to the drone.
         reach_m: how far jammers move.
     """
-    if scenario.array is None:
+    if scenario.array is None or not len(away_m):
         return np.zeros((len(away_m), 0), complex)
     heading = np.exp(1j * pose.yaw_rad)
     nodes_m = scenario.node_positions_m - pose.position_m

@@ -10,8 +10,7 @@ from functools import partial
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.compiling import compile_search, limit_clock, precompile
-from nullpose.solver.incumbent import Incumbent
-from nullpose.solver.multistart import multistart, search_settings
+from nullpose.solver.multistart import Incumbent, multistart, search_settings
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import Proof, prove
 

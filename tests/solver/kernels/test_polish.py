@@ -158,25 +158,6 @@ def hundred_ends(family: Family) -> np.ndarray:
     return np.array(ends)
 
 
-def test_multipliers_prove_the_end(random_scene: Callable) -> None:
-    """The multipliers that come back are those of active ratios, and mix their gradients to mere pushes."""
-    rng = np.random.default_rng(29)
-    for start in range(100):
-        family = build_family(random_scene(rng, 5, start % 3, 10.0))
-        p, u = rng.uniform([0.0, 0.0, 8.1], [100.0, 100.0, 29.9]), np.empty(3)
-        best_axis(family.arrays, p, u)
-        _, multipliers = run(family, AxisField.free(), p, u)
-        logs, slopes = log_ratio_slopes(family, p, u)
-        assert np.all(logs[multipliers > 1e-6] - logs.min() < 1e-8)
-        mixture = multipliers @ slopes
-        length = float(np.min(np.linalg.norm(family.points_m - p, axis=1)))
-        np.testing.assert_allclose(length * mixture[:2], 0.0, atol=1e-6)  # no face holds x and y
-        on_floor, on_ceiling = p[2] - 8.0 < 1e-7, 30.0 - p[2] < 1e-7
-        assert length * mixture[2] < 1e-6 or on_ceiling
-        assert length * mixture[2] > -1e-6 or on_floor
-        np.testing.assert_allclose(mixture[3:] - (mixture[3:] @ u) * u, 0.0, atol=1e-6)
-
-
 def test_a_fixed_position_leaves_the_axis(paper: Callable) -> None:
     """Where nothing but the axis is free, the polish finds the best axis of that position."""
     family = build_family(paper(10.0, altitude_m=(9.0, 9.0), x_m=(1.0, 1.0), y_m=(21.0, 21.0)))

@@ -3,16 +3,14 @@
 from collections.abc import Callable
 
 import numpy as np
-import pytest
 from hypothesis import given, settings, strategies as st
 
-from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.axis import best_axis
+from nullpose.solver.kernels.domain import push_out
 from nullpose.solver.kernels.links import min_log_ratio
-from nullpose.solver.kernels.search import cut_box, push_out, search
-from nullpose.solver.multistart import SearchSettings
+from nullpose.solver.kernels.search import cut_box
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -22,16 +20,6 @@ def box_of(family: Family, level: float) -> tuple[np.ndarray, np.ndarray]:
     low, high = np.empty(3), np.empty(3)
     cut_box(family.arrays, family.low_m, family.high_m, level, low, high)
     return low, high
-
-
-def run(family: Family, landmarks: np.ndarray, shift: np.ndarray) -> tuple:
-    """Returns value, starts, evaluations, position, axis and multipliers of a short search, the axis free."""
-    p, u, z = np.zeros(3), np.zeros(3), np.zeros(len(family.numerator_point))
-    settings = SearchSettings(coarse=32, polished=8, rounds=4, patience=2)
-    counts = search(
-        family.arrays, family.domain, AxisField.free().arrays, landmarks, shift, settings, p, u, z
-    )
-    return *counts, p, u, z
 
 
 @settings(max_examples=40)
@@ -112,18 +100,3 @@ def test_a_box_inside_a_ball_has_no_way_out() -> None:
     """Where a ball holds the whole box, the push says that it failed."""
     p = np.array([0.5, 0.5, 1.0])
     assert not push_out(p, domain(np.zeros(3), np.ones(3), np.array([[0.5, 0.5, 0.5]]), 5.0))
-
-
-def test_a_search_repeats_itself(paper: Callable) -> None:
-    """The same shift gives the same pose to the last bit, and another the same value to 1e-12."""
-    family = build_family(paper(10.0))
-    landmarks = np.array([[10.0, 10.0, 8.0]])
-    first = run(family, landmarks, np.array([0.1, 0.2, 0.3]))
-    second = run(family, landmarks, np.array([0.1, 0.2, 0.3]))
-    other = run(family, landmarks, np.array([0.7, 0.9, 0.4]))
-    for a, b in zip(first, second, strict=True):
-        np.testing.assert_array_equal(a, b)
-    assert other[0] == pytest.approx(first[0], abs=1e-12)
-    logs, out = np.empty(1), np.empty(2)
-    assert min_log_ratio(family.arrays, first[3], first[4], logs, out) == first[0]
-    assert np.sum(first[5]) == pytest.approx(1.0, abs=1e-12)

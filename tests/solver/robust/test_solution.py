@@ -1,12 +1,10 @@
 """What a robust solve hands back."""
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 
-from nullpose.objectives import Quantity
 from nullpose.solver import Result
 
 
@@ -50,10 +48,3 @@ def test_the_answer_cannot_be_changed(solved: Result) -> None:
         solved.details.robust.guarantee.position_m[0] = 0.0
     with pytest.raises(ValueError, match="read-only"):
         solved.details.robust.guarantee.case.jammer_offsets_m[0] = 0.0
-
-
-def test_ratios_are_worth_a_rate_with_secrecy(paper: Callable, listened: Callable) -> None:
-    """A ratio is worth itself, or with secrecy rates its logarithm to base 2, never below zero."""
-    assert Quantity.of(paper(1.0)).of_ratio(0.25) == 0.25
-    assert Quantity.of(listened(paper(1.0))).of_ratio(8.0) == 3.0
-    assert Quantity.of(listened(paper(1.0))).of_ratio(0.5) == 0.0

@@ -12,18 +12,18 @@ import math
 import numpy as np
 
 from nullpose.problem.records import AFFINE_AXIS
+from nullpose.solver.kernels.domain import push_out
 from nullpose.solver.kernels.dual import dual_multipliers
 from nullpose.solver.kernels.forms import congruence, fill_forms, inverse_factor
 from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 from nullpose.solver.kernels.links import min_log_ratio
-from nullpose.solver.kernels.local_coordinates import axis_at, choose_sides, clamp_axis, side_slack
+from nullpose.solver.kernels.local_coordinates import axis_at, clamp_axis
 from nullpose.solver.kernels.polish import polish
 from nullpose.solver.kernels.scratch import scratch, zeroed
 from nullpose.solver.kernels.symmetric import (
     add_scaled,
     copy_into,
     normalise,
-    squared_distance,
     top_eigenvector,
 )
 from nullpose.solver.kernels.vectors import dot
@@ -31,11 +31,8 @@ from nullpose.solver.kernels.vectors import dot
 _MU_START = 0.1
 _MAX_STEPS = 100
 _LEAST_GAIN = 1e-9
+_LEAST_CLIMB = 1e-12
 _ROUGH = 1e-2
-_STEP = 1e-3  # m beyond a forbidden piece's side
-_SPARE = 1e-2  # beyond a keep-out ball's radius, as a share of it
-_FINER = (1.0, 1e-2, 3e-4, 1e-7)  # shares of both, and the most laps: where what is allowed is a sliver
-_LAPS = (8, 32, 32, 32)
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -53,75 +50,6 @@ def cut_box(family, low, high, level, box_low, box_high):
             for i in range(3):
                 box_low[i] = max(box_low[i], points[npt[k], i] - reach)
                 box_high[i] = min(box_high[i], points[npt[k], i] + reach)
-
-
-@inner_kernel
-def push_away(centre, n, reach, fallback, p):
-    """Move a position to a distance from a centre in its first n coordinates; from the centre along one."""
-    away = 0.0
-    for i in range(n):
-        away += (p[i] - centre[i]) ** 2
-    away = math.sqrt(away)
-    for i in range(n):
-        outwards = (p[i] - centre[i]) / away if away > 1e-9 else (1.0 if i == fallback else 0.0)
-        p[i] = centre[i] + reach * outwards
-
-
-@inner_kernel
-def step_outside(p, domain, step, chosen):
-    """Move a position to the outside of the forbidden pieces that it is in; return whether it was in none."""
-    low, high, sides, q, best = domain.low_m, domain.high_m, domain.piece_sides, scratch(3), scratch(3)
-    clear = True
-    choose_sides(domain, p, chosen)
-    for c in range(chosen.shape[0]):
-        if side_slack(sides[chosen[c]], p) > 0.0:
-            continue
-        clear, least = False, math.inf
-        copy_into(p, best)
-        for s in range(domain.piece_start[c], domain.piece_start[c + 1]):  # beyond the nearest
-            copy_into(p, q)
-            if sides[s, 0] == 0.0:
-                add_scaled(step - side_slack(sides[s], p), sides[s, 1:4], q)
-            else:
-                push_away(sides[s, 1:3], np.int64(2), sides[s, 4] + step, 0, q)
-            moved = squared_distance(q, p)
-            for i in range(3):
-                moved = moved if low[i] <= q[i] <= high[i] else math.inf
-            if moved < least:
-                least = moved
-                copy_into(q, best)
-        copy_into(best, p)
-    return clear
-
-
-@heap_kernel
-def push_out(p, domain):
-    """Move a position into the box and out of keep-out balls and forbidden pieces; return whether it is."""
-    start = p.copy()
-    chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
-    for attempt in range(len(_FINER)):
-        copy_into(start, p)
-        if push_by(p, domain, _FINER[attempt], _LAPS[attempt], chosen):
-            return True
-    return False
-
-
-@inner_kernel
-def push_by(p, domain, share, laps, chosen):
-    """Do what ``push_out`` does, by a share of the usual steps; return whether it came to an end."""
-    margin = (1.0 + share * _SPARE) * domain.keep_out_m
-    for _ in range(laps):
-        for i in range(3):
-            p[i] = min(max(p[i], domain.low_m[i]), domain.high_m[i])
-        clear = step_outside(p, domain, share * _STEP, chosen)
-        for point in domain.keep_out_points_m:
-            if squared_distance(p, point) < margin * margin:
-                clear = False
-                upwards = 2 if domain.high_m[2] - point[2] > margin else 0
-                push_away(point, np.int64(3), (1.0 + 2.0 * share * _SPARE) * margin, upwards, p)
-        if clear:
-            return True
-    return False
 
 
 @heap_kernel
@@ -263,3 +191,39 @@ def search(family, domain, axis_field, landmarks, shift, settings, best_p, best_
             if idle >= settings.patience:
                 break
     return best, starts, evaluations
+
+
+@heap_kernel
+def search_and_climb(
+    family, domain, axis_field, landmarks, shift, settings, climbs, most_steps, best_p, best_u, best_z
+):
+    """Fill the best pose of a search and of climbs from it; return its value, the starts and the evaluations.
+
+    Along a flat, curved ridge the search's own steps may not suffice.
+
+    Args:
+        family: the ratios.
+        domain: the positions.
+        axis_field: the axes.
+        landmarks: (m, 3) positions polished first, each after being moved into the domain.
+        shift: (3,) offset in [0, 1) of the low-discrepancy sequence: the seed.
+        settings: how hard the search tries; with fewer than no rounds it is left out, and the pose that is
+            given is climbed from.
+        climbs: first barrier weights of the climbs, in units of the log ratio.
+        most_steps: of each climb.
+        best_p: (3,) in and out.
+        best_u: (3,) in and out.
+        best_z: output, (ratios,): the ratios' multipliers at that pose.
+    """
+    value, starts, evaluations = search(
+        family, domain, axis_field, landmarks, shift, settings, best_p, best_u, best_z
+    )
+    if settings.rounds >= 0 and not math.isfinite(value):
+        return value, starts, evaluations
+    for mu in climbs:
+        before = value
+        value, steps = polish(family, domain, axis_field, best_p, best_u, mu, most_steps, best_z)
+        evaluations += steps
+        if steps < most_steps and value <= before + _LEAST_CLIMB:
+            break
+    return value, starts, evaluations

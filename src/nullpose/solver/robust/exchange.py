@@ -20,8 +20,7 @@ from nullpose.problem.robust import BindingCase, build_robust_family
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.compiling import limit_clock, precompile
-from nullpose.solver.incumbent import Incumbent
-from nullpose.solver.multistart import SearchSettings, climb, multistart, search_settings
+from nullpose.solver.multistart import Incumbent, SearchSettings, climb, multistart, search_settings
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import prove
 from nullpose.solver.result import Answer, Stats
