@@ -91,9 +91,7 @@ def lines(
     """
     points, colours = np.asarray(segments_m, dtype=np.float32), np.asarray(colour, dtype=np.uint8)
     width = {"thickness": thickness, "thickness_units": units}
-    return Shape(
-        "line_segments", {"points": points, "colors": np.broadcast_to(colours, points.shape), **width}
-    )
+    return Shape("line_segments", {"points": points, "colors": colours, **width})
 
 
 def label(text: str, position_m: ArrayLike, scale: float = 0.9, anchor: str = "bottom-center") -> Shape:

@@ -122,16 +122,16 @@ def readout_html(state: State) -> str:
     return str(macros().readout(state, _difference(state)))
 
 
-def _difference(state: State) -> str:
-    """Set the values of two cases beside each other, once what each is worth is known."""
+def _difference(state: State) -> tuple[str, str] | None:
+    """Set the values of two cases beside each other, once what each is worth is known, with what differs."""
     answers = [answer for answer in map(state.current, state.cases) if answer is not None]
     if len(answers) < 2 or any(answer.case.robust and answer.guarded is None for answer in answers):
-        return ""
+        return None
     first, second, unlike = *answers, ""
     if first.case.robust != second.case.robust:
         robust, other = "AB" if first.case.robust else "BA"
         unlike = f" ({robust} guaranteed, {other} without errors)"
-    return f"A over B: {signed(first.shown_value - second.shown_value)} {first.unit}{unlike}"
+    return f"A over B: {signed(first.shown_value - second.shown_value)} {first.unit}", unlike
 
 
 def failure_html(error: ScenarioError | None, name: str = "") -> str:
