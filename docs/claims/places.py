@@ -18,7 +18,7 @@ from claims.study import (
 )
 from nullpose.physics import received_power_w, to_db
 from nullpose.problem.schemes import Scheme
-from nullpose.report.geometry import distance_m, null_angle_rad
+from nullpose.report.geometry import axis_angle_rad, distance_m
 from nullpose.report.numbers import rounded_up
 
 POINTED_DEG = 1.0
@@ -93,7 +93,7 @@ def _row(study: JammingStudy, scheme: Scheme, level: float) -> dict[str, Any]:
     )
     return {
         RATIO: level,
-        _ANGLE: math.degrees(null_angle_rad(row.pose, places_m[0])),
+        _ANGLE: math.degrees(axis_angle_rad(row.pose, places_m[0])),
         _AWAY: math.hypot(*(position_m - places_m[0])[:2]),
         "jamming_to_noise_db": float(to_db(received_w.sum() / scenario.receiver.noise_power_w)),
         "position_m": position_m.tolist(),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from nullpose import Pose
-from nullpose.report.geometry import azimuth_rad, null_angle_rad, tilt_rad
+from nullpose.report.geometry import axis_angle_rad, azimuth_rad, tilt_rad
 
 UNIT = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: math.hypot(*v) > 0.1)
 
@@ -19,7 +19,7 @@ def test_null_angle_ignores_the_sign_of_the_axis(
     """The angle lies in [0, pi/2], its sine squared is the antenna's gain, and -u is the same antenna."""
     position = np.array([1.0, 2.0, 3.0])
     point = position + 5.0 * np.array(towards)
-    angles = [null_angle_rad(Pose.from_axis(position, sign * np.array(axis)), point) for sign in (1, -1)]
+    angles = [axis_angle_rad(Pose.from_axis(position, sign * np.array(axis)), point) for sign in (1, -1)]
     cosine = abs(np.dot(axis, towards)) / (np.linalg.norm(axis) * np.linalg.norm(towards))
     assert angles[0] == pytest.approx(angles[1], abs=1e-12)
     assert 0.0 <= angles[0] <= math.pi / 2
@@ -29,7 +29,7 @@ def test_null_angle_ignores_the_sign_of_the_axis(
 def test_a_null_on_the_point_keeps_its_digits() -> None:
     """A microradian is told as one, where an arc cosine would give zero."""
     pose = Pose(np.zeros(3), roll_rad=0.0, pitch_rad=1e-6)
-    assert null_angle_rad(pose, [0.0, 0.0, -7.0]) == pytest.approx(1e-6, rel=1e-9)
+    assert axis_angle_rad(pose, [0.0, 0.0, -7.0]) == pytest.approx(1e-6, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -49,3 +49,15 @@ def test_tilt_and_azimuth_of_the_upper_end(
     pose = Pose.from_axis(np.zeros(3), axis)
     assert math.degrees(tilt_rad(pose)) == pytest.approx(tilt_deg, abs=1e-3)
     assert math.degrees(azimuth_rad(pose)) == pytest.approx(azimuth_deg, abs=1e-9)
+
+
+def test_the_axis_of_an_antenna_with_one_lobe_has_a_sign() -> None:
+    """Seen from below, it leans beyond the horizontal, and a point behind it is at an obtuse angle."""
+    pose = Pose.from_axis([0.0, 0.0, 10.0], np.array([0.6, 0.0, 0.8]))
+    pose = Pose(pose.position_m, pose.roll_rad, pose.pitch_rad + np.pi, pose.yaw_rad)
+    assert tilt_rad(pose, is_even=False) == pytest.approx(np.pi - tilt_rad(pose))
+    assert azimuth_rad(pose, is_even=False) == pytest.approx(np.pi)
+    assert azimuth_rad(pose) == pytest.approx(0.0, abs=1e-12)
+    above = pose.position_m + np.array([0.6, 0.0, 0.8])
+    assert axis_angle_rad(pose, above, is_even=False) == pytest.approx(np.pi)
+    assert axis_angle_rad(pose, above) == pytest.approx(0.0, abs=1e-7)

@@ -54,6 +54,11 @@ class PatternAntenna:
         """Whether the gain is the same all round the z axis."""
         return self.harmonics.is_axisymmetric
 
+    @property
+    def is_even(self) -> bool:
+        """Whether opposite directions have the same gain, so that the axis has no sign."""
+        return self.harmonics.is_even
+
     def gain(self, directions: ArrayLike) -> FloatArray:
         """Return the power gain in each direction, (...).
 

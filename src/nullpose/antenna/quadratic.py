@@ -22,6 +22,7 @@ class QuadraticAntenna:
 
     is_quadratic: ClassVar[Literal[True]] = True
     is_axisymmetric: ClassVar[bool] = True
+    is_even: ClassVar[bool] = True
     has_polarisation: ClassVar[bool] = True
     peak: ClassVar[float] = 1.0
 

@@ -11,7 +11,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import Row, View, beside, document, grouped, head, rows, table
-from nullpose.report.geometry import null_angle_rad
+from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import bound_text, capitalised, rounded_up, with_unit
 from nullpose.report.results import pose_cells, work_words
@@ -34,7 +34,9 @@ def comparison_view(comparison: ResultTable) -> View:
     """Set the schemes of a scenario: values, poses and links, and what is to be said of them below."""
     found = comparison.rows
     quantity, best = found[0].objective.quantity, max(found, key=lambda row: row.objective.value)
-    details: list[Row] = beside({row.label: pose_cells(row.pose) | _null_cells(row) for row in found})
+    details: list[Row] = beside(
+        {row.label: pose_cells(row.scenario, row.pose) | _null_cells(row) for row in found}
+    )
     details += [{}, *beside({row.label: _link_cells(row) for row in found})]
     starts, boxes = (sum(getattr(row.stats, name) for row in found) for name in ("starts", "boxes"))
     labelled = [(row.label, row) for row in found]
@@ -120,7 +122,10 @@ def antennas_view(comparison: ResultTable) -> View:
         head(scenario.name),
         "",
         _values([row[name] for name in names], row["promised"], "antennas", list(names.values())),
-        table("Best poses", beside({label: pose_cells(each.pose) for label, each in best.items()})),
+        table(
+            "Best poses",
+            beside({label: pose_cells(each.scenario, each.pose) for label, each in best.items()}),
+        ),
         "Difference: from row 1.",
         "Isotropic ground antennas lose nothing to polarisation.",
         *_proof_lines(comparison),
@@ -190,7 +195,8 @@ def _null_cells(row: ResultRow) -> dict[str, str]:
     points: list[Jammer | Eavesdropper] = [*row.scenario.eavesdroppers]
     if not row.objective.quantity.is_rate:
         points += row.scenario.jammers
-    angles_rad = [(point.name, null_angle_rad(row.pose, point.position_m)) for point in points]
+    is_even = row.scenario.antenna_record.is_even
+    angles_rad = [(point.name, axis_angle_rad(row.pose, point.position_m, is_even)) for point in points]
     return {f"axis to {name} (deg)": f"{math.degrees(angle_rad):.2f}" for name, angle_rad in angles_rad}
 
 

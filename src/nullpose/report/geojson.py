@@ -99,7 +99,7 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
 
 def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
     """Convert the attitude to the frames of other programs, and the antenna's axis to two angles."""
-    frames = pose_frames(scenario, pose)
+    frames, is_even = pose_frames(scenario, pose), scenario.antenna_record.is_even
     return {
         **{
             f"{name}_{angle}_deg": math.degrees(getattr(frame, f"{angle}_rad"))
@@ -108,8 +108,8 @@ def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
         },
         "enu_quaternion_wxyz": list(frames.enu.quaternion_wxyz),
         "ned_quaternion_wxyz": list(frames.ned.quaternion_wxyz),
-        "antenna_tilt_deg": math.degrees(tilt_rad(pose)),
-        "antenna_bearing_deg": (90.0 - math.degrees(azimuth_rad(pose))) % 360.0,
+        "antenna_tilt_deg": math.degrees(tilt_rad(pose, is_even)),
+        "antenna_bearing_deg": (90.0 - math.degrees(azimuth_rad(pose, is_even))) % 360.0,
     }
 
 

@@ -14,15 +14,15 @@ from nullpose.scenario import NoFlyZone
 _SIDES = 72  # of the polygon that stands for a cylinder; 0.1 % of the radius larger at most
 
 
-def null_angle_rad(pose: Pose, point_m: ArrayLike) -> float:
-    """Measure the angle between the antenna's axis, where its null is, and the direction to a point.
+def axis_angle_rad(pose: Pose, point_m: ArrayLike, is_even: bool = True) -> float:
+    """Measure the angle between the antenna's axis and the direction to a point.
 
-    Between 0 (the null is on the point) and pi/2 (the point is broadside), the axis having no sign. It is
-    ``atan2(|u x r|, |u . r|)``, which keeps its digits at both ends.
+    It is ``atan2(|u x r|, u . r)``, which keeps its digits at both ends: from 0 to pi, or, for an antenna
+    whose opposite directions have the same gain, to pi/2, the axis having no sign.
     """
     to_point = np.asarray(point_m, dtype=float) - pose.position_m
-    across = float(np.linalg.norm(np.cross(pose.antenna_axis, to_point)))
-    return math.atan2(across, abs(float(pose.antenna_axis @ to_point)))
+    across, along = np.linalg.norm(np.cross(pose.antenna_axis, to_point)), pose.antenna_axis @ to_point
+    return math.atan2(across, abs(along) if is_even else along)
 
 
 def distance_m(pose: Pose, point_m: ArrayLike) -> float:
@@ -30,19 +30,19 @@ def distance_m(pose: Pose, point_m: ArrayLike) -> float:
     return float(np.linalg.norm(np.asarray(point_m, dtype=float) - pose.position_m))
 
 
-def tilt_rad(pose: Pose) -> float:
-    """Measure the angle between the antenna's axis and the vertical, from 0 to pi/2."""
+def tilt_rad(pose: Pose, is_even: bool = True) -> float:
+    """Measure the angle between the antenna's axis and the vertical, from 0 to pi, or pi/2 without a sign."""
     east, north, up = pose.antenna_axis
-    return math.atan2(math.hypot(east, north), abs(up))
+    return math.atan2(math.hypot(east, north), abs(up) if is_even else up)
 
 
-def azimuth_rad(pose: Pose) -> float:
-    """Measure the direction in which the upper end of the axis leans, from x (east) towards y (north).
+def azimuth_rad(pose: Pose, is_even: bool = True) -> float:
+    """Measure the direction in which the axis leans, from x (east) towards y (north).
 
-    In (-pi, pi]; 0 for a vertical axis, which leans nowhere.
+    That is its upper end where it has no sign. In (-pi, pi]; 0 for a vertical axis, which leans nowhere.
     """
     east, north, up = (float(component) for component in pose.antenna_axis)
-    sign = -1.0 if up < 0.0 else 1.0
+    sign = -1.0 if is_even and up < 0.0 else 1.0
     return math.atan2(sign * north, sign * east) if math.hypot(east, north) > 0.0 else 0.0
 
 

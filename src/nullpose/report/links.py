@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from nullpose.physics import Pose, antenna_gain, eavesdropper_snr, link_gain, received_power_w, to_db
 from nullpose.report.document import View, cell, rows, table
-from nullpose.report.geometry import distance_m, null_angle_rad
+from nullpose.report.geometry import axis_angle_rad, distance_m
 from nullpose.scenario import Scenario
 from nullpose.solver import Result
 
@@ -75,7 +75,8 @@ def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
         link = (pose.position_m, orientation, points, powers_w, scenario.reference_gain)
         antennas = (scenario.antenna_record, scenario.jammer_antennas)
         ratios = received_power_w(*link, *antennas) / scenario.receiver.noise_power_w
-    angles_deg = [math.degrees(null_angle_rad(pose, point_m)) for point_m in points]
+    is_even = scenario.antenna_record.is_even
+    angles_deg = [math.degrees(axis_angle_rad(pose, point_m, is_even)) for point_m in points]
     columns = {
         noun: names,
         f"axis to {noun} (deg)": [f"{angle_deg:.4f}" for angle_deg in angles_deg],

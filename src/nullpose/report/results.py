@@ -31,19 +31,20 @@ def work_words(starts: int, boxes: int) -> str:
     return f"search: {starts:,} starts{f'; proof: {boxes:,} boxes examined' if boxes else ''}"
 
 
-def azimuth_text(pose: Pose) -> str:
+def azimuth_text(pose: Pose, is_even: bool = True) -> str:
     """Write the azimuth of the antenna's axis in degrees, a dash for an upright one."""
-    return "-" if tilt_rad(pose) < _UPRIGHT_RAD else f"{math.degrees(azimuth_rad(pose)):z.2f}"
+    return "-" if tilt_rad(pose) < _UPRIGHT_RAD else f"{math.degrees(azimuth_rad(pose, is_even)):z.2f}"
 
 
-def pose_cells(pose: Pose) -> dict[str, str]:
+def pose_cells(scenario: Scenario, pose: Pose) -> dict[str, str]:
     """Write position, attitude and axis of a pose as cells of a column."""
+    is_even = scenario.antenna_record.is_even
     angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
-    angles |= {"vehicle's tilt": pose.tilt_rad, "axis tilt": tilt_rad(pose)}
+    angles |= {"vehicle's tilt": pose.tilt_rad, "axis tilt": tilt_rad(pose, is_even)}
     return {
         **{f"{axis} (m)": f"{x:z.3f}" for axis, x in zip("xyz", pose.position_m, strict=True)},
         **{f"{name} (deg)": f"{math.degrees(angle_rad):z.2f}" for name, angle_rad in angles.items()},
-        "axis azimuth (deg)": azimuth_text(pose),
+        "axis azimuth (deg)": azimuth_text(pose, is_even),
     }
 
 
@@ -170,11 +171,12 @@ def _pose_rows(pose: Pose) -> list[tuple[str, str | None]]:
 
 
 def _antenna_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:
-    tilt = f"{math.degrees(tilt_rad(pose)):z.3f} deg from vertical"
+    is_even = scenario.antenna_record.is_even
+    tilt = f"{math.degrees(tilt_rad(pose, is_even)):z.3f} deg from vertical"
     airframe = scenario.airframe
     return [
         ("airframe", None if airframe is None else airframe_words(airframe, pose.tilt_rad)),
-        ("antenna axis", f"{tilt}, azimuth {azimuth_text(pose)} deg (0 east, 90 north)"),
+        ("antenna axis", f"{tilt}, azimuth {azimuth_text(pose, is_even)} deg (0 east, 90 north)"),
         ("", _in_brackets(pose.antenna_axis)),
     ]
 

@@ -112,7 +112,7 @@ def scenario_view(scenario: Scenario) -> View:
     numbers, rate = summarise(scenario), Quantity.of(scenario).is_rate
     best = (
         "Nearest, highest: the drone as near as the airspace and the keep-out radius (around every point) "
-        f"allow, zones and fence ignored, the dipole broadside{'' if rate else '; SNR without jamming'}."
+        f"allow, zones and fence ignored, at the largest gain{'' if rate else '; SNR without jamming'}."
     )
     notes = [
         f"Node {node.name} requires more than the highest ratio of its link."

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import Antenna
 from nullpose.physics import rotation_world_from_body
-from nullpose.report.geometry import null_angle_rad
+from nullpose.report.geometry import axis_angle_rad
 from nullpose.solver import Result
 from nullpose.studio.drawing import Shape, Shapes, coloured_mesh, frame, label, lines, mesh
 from nullpose.studio.look import Look, linear_colours, scale_colours
@@ -108,7 +108,7 @@ def _null(
     }
     if has_angle:
         jammers = result.scenario.jammers
-        angles = [(null_angle_rad(result.pose, jammer.position_m), jammer.name) for jammer in jammers]
+        angles = [(axis_angle_rad(result.pose, jammer.position_m), jammer.name) for jammer in jammers]
         angle_rad, name = min(angles, default=(0.0, ""))
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""
         shapes["angle"] = label(f"null{off}", 0.35 * place_m + 0.65 * ends[1], 0.9, "center-left")

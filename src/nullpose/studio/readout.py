@@ -11,7 +11,7 @@ import numpy as np
 
 from nullpose.errors import ScenarioError
 from nullpose.physics import Pose
-from nullpose.report.geometry import null_angle_rad
+from nullpose.report.geometry import axis_angle_rad
 from nullpose.solver import Result
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.look import DARK, LIGHT, css, either
@@ -107,7 +107,7 @@ def null_words(result: Result) -> str:
         result: of a case.
     """
     angles = ", ".join(
-        f"{math.degrees(null_angle_rad(result.pose, jammer.position_m)):.1f}\u00b0 off {jammer.name}"
+        f"{math.degrees(axis_angle_rad(result.pose, jammer.position_m)):.1f}\u00b0 off {jammer.name}"
         for jammer in result.scenario.jammers[:_MOST_NULLS]
     )
     return f"null {angles}" if angles and result.scenario.antenna_record.is_quadratic else ""

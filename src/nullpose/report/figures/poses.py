@@ -22,7 +22,7 @@ from nullpose.report.figures.pattern import beam_surface_m, draw_surface, patter
 from nullpose.report.figures.scene import draw_line
 from nullpose.report.figures.stage import ALONE, AXIS, DRONE, PAIR, PANELS, SURFACE, Stage
 from nullpose.report.figures.style import INK
-from nullpose.report.geometry import null_angle_rad
+from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
 from nullpose.report.words import error_words
@@ -95,7 +95,7 @@ def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
     """Write the value at a pose, and how far a dipole's null is off the jammers, or the eavesdroppers."""
     quantity = objective.quantity
     points: tuple[Jammer | Eavesdropper, ...] = scenario.eavesdroppers or scenario.jammers
-    angles_deg = [math.degrees(null_angle_rad(pose, point.position_m)) for point in points]
+    angles_deg = [math.degrees(axis_angle_rad(pose, point.position_m)) for point in points]
     nulls = [f"{angle:.1f}° off {point.name}" for angle, point in zip(angles_deg, points, strict=True)]
     value = f"{quantity.smallest} {with_unit(quantity.in_unit(objective.value), quantity)}"
     is_dipole = scenario.antenna_record.is_quadratic
