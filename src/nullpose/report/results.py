@@ -56,9 +56,14 @@ def result_view(result: Result) -> View:
     array = scenario.array
     antenna = _antenna_rows(scenario, pose) if array is None else [("array", array_words(array))]
     note = "Jamming does not depend on the pose. It is part of the nodes' noise."
+    searches, place = result.stats.searches or 0, zip("xyz", pose.position_m, strict=True)
+    agreement = f"{result.stats.agreeing} of {searches} local searches ended at this value"
+    more = (requirement_words(result), result.note, agreement if searches > 1 else "")
+    position = ", ".join(f"{axis} {x:z.4f} m" for axis, x in place)
+    at = [("position", position), ("attitude", _attitude_words(pose))]
     return document(
-        _head(result, capitalised(result.label), requirement_words(result), result.note, _agreement(result)),
-        pairs("", [*_pose_rows(pose), *antenna, *frame_rows(scenario, pose)]),
+        _head(result, capitalised(result.label), *more),
+        pairs("", [*at, *antenna, *frame_rows(scenario, pose)]),
         links_table(result, gain_columns(scenario, pose) if array is None else {}),
         nulls_table(scenario, pose) if array is None else None,
         note if scenario.jammers and result.objective.quantity.is_rate else None,
@@ -118,12 +123,6 @@ def _head(result: Result, label: str, *more: str) -> View:
     return head(result.scenario.name, label, f"{objective.quantity.smallest} {value_words(objective)}", lines)
 
 
-def _agreement(result: Result) -> str:
-    """Say how many of several independent searches ended at the value."""
-    searches = result.stats.searches or 0
-    return f"{result.stats.agreeing} of {searches} local searches ended at this value" if searches > 1 else ""
-
-
 def _robust_view(result: Result, details: RobustDetails) -> View:
     """Set a robust pose as tables: the guarantee, its bound, and the best pose without errors beside it."""
     robust, nominal, scenario = details.robust, details.nominal, result.scenario
@@ -163,11 +162,6 @@ def _guarded_cells(objective: Objective, guarded: GuardedPose) -> dict[str, str]
         "axis azimuth (deg)": azimuth_text(pose),
         "worst node": guarded.binding_node,
     }
-
-
-def _pose_rows(pose: Pose) -> list[tuple[str, str | None]]:
-    place = ", ".join(f"{axis} {x:z.4f} m" for axis, x in zip("xyz", pose.position_m, strict=True))
-    return [("position", place), ("attitude", _attitude_words(pose))]
 
 
 def _antenna_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:

@@ -272,7 +272,11 @@ class Case(Section):
             return f"the {self.scheme.label.lower()} pose"
         if self.airframe is None and not self.usual:
             return f"the case {self.name}"
-        phrase = _USUAL[self.usual][3] if self.usual else _mounted(self.airframe or Airframe(tilt_max_deg=0))
+        phrase = _USUAL[self.usual][3] if self.usual else ""
+        if self.airframe is not None and not phrase:
+            tilt = _degrees(self.airframe.tilt_max_rad)
+            vehicle = f"a {tilt} degree tilt" if self.airframe.tilt_max_rad else "a level vehicle"
+            phrase = f"{vehicle} with the dipole mounted at {self.airframe.mount_deg:g} degrees"
         if self.name == FILE_VEHICLE:
             phrase = f"the file's vehicle ({phrase})"
         chosen = f" (the best mount tried, on up to {self.mount_scenes} scenes)" if self.mount_scenes else ""
@@ -324,12 +328,6 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
         return vehicles
     sized = (array.model_copy(update={"elements": size}) for size in sorted({*ARRAY_SIZES, array.elements}))
     return (*vehicles, *(Case(name=f"array-{each.elements}-digital", array=each) for each in sized))
-
-
-def _mounted(airframe: Airframe) -> str:
-    tilt = _degrees(airframe.tilt_max_rad)
-    vehicle = f"a {tilt} degree tilt" if airframe.tilt_max_rad else "a level vehicle"
-    return f"{vehicle} with the dipole mounted at {airframe.mount_deg:g} degrees"
 
 
 def _degrees(angle_rad: float) -> str:

@@ -238,15 +238,13 @@ class ResultTable:
         span = f"{values[0]:g} to {values[-1]:g}, {len(values)} values of " if values else ""
         title = self.path if self.scenario is None else repr(self.scenario.name)
         names = ", ".join(self.names if len(self.names) < 5 else [*self.names[:4], "..."])
-        return "; ".join([f"ResultTable({title}: {span}{names}", *self._absent()]) + ")"
+        absent = [f"left out: {name} ({reason})" for name, reason in self.left_out.items()]
+        return "; ".join([f"ResultTable({title}: {span}{names}", *absent]) + ")"
 
     def _repr_html_(self) -> str | None:
         return html_table(
             [{self.path: row.value} | row.row() if self.path else row.row() for row in self.rows]
         )
-
-    def _absent(self) -> list[str]:
-        return [f"left out: {name} ({reason})" for name, reason in self.left_out.items()]
 
     def _records(self) -> list[dict[str, Any]]:
         """List the rows with every column, numbers as such; None for no number."""
