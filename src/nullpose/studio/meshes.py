@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import Antenna
 
+_SAME_AXES = np.eye(3)
+
 
 class Mesh(NamedTuple):
     """A surface of triangles.
@@ -24,7 +26,7 @@ class Mesh(NamedTuple):
     vertices: NDArray[np.float64]
     faces: NDArray[np.int64]
 
-    def placed(self, matrix: ArrayLike, offset_m: ArrayLike = 0.0) -> Mesh:
+    def placed(self, matrix: ArrayLike = _SAME_AXES, offset_m: ArrayLike = 0.0) -> Mesh:
         """Return the shape with ``A v + b`` in place of each vertex.
 
         Args:
@@ -183,10 +185,6 @@ def _tube(radius_m: float, bottom_m: float, top_m: float, around: int = 16) -> M
     return revolved_mesh([0.0, radius_m, radius_m, 0.0], [bottom_m, bottom_m, top_m, top_m], around)
 
 
-def _moved(mesh: Mesh, *offset_m: float) -> Mesh:
-    return mesh.placed(np.eye(3), offset_m)
-
-
 def _four(mesh: Mesh) -> list[Mesh]:
     """Repeat a mesh along the x axis at the four arms, half-way between the axes."""
     return [mesh.placed(turn_about_z(math.radians(angle))) for angle in (45.0, 135.0, 225.0, 315.0)]
@@ -204,13 +202,13 @@ _ARM = prism_mesh([[0.0, -0.05], [1.0, -0.05], [1.0, 0.05], [0.0, 0.05]], -0.02,
 BODY = merged(
     [
         prism_mesh([[0.42, 0.0], [0.2, 0.26], [-0.34, 0.26], [-0.34, -0.26], [0.2, -0.26]], -0.08, 0.12),
-        *_four(merged([_ARM, _moved(_tube(0.09, -0.05, 0.16), 1.0, 0.0, 0.0)])),
-        *(_moved(_tube(0.03, -0.42, -0.05, 8), 0.0, y, 0.0) for y in (-0.3, 0.3)),
+        *_four(merged([_ARM, _tube(0.09, -0.05, 0.16).placed(offset_m=[1.0, 0.0, 0.0])])),
+        *(_tube(0.03, -0.42, -0.05, 8).placed(offset_m=[0.0, y, 0.0]) for y in (-0.3, 0.3)),
     ]
 )
 """A multirotor's hull, four arms, motors and legs, x forward and z up; one from its middle to a motor."""
 
-ROTORS = merged(_four(_moved(_tube(0.52, 0.17, 0.19, 28), 1.0, 0.0, 0.0)))
+ROTORS = merged(_four(_tube(0.52, 0.17, 0.19, 28).placed(offset_m=[1.0, 0.0, 0.0])))
 """The four rotors' discs of the same body."""
 
 ROD = _tube(0.022, -0.5, 0.5, 12)

@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from nullpose.objectives import Quantity
-from nullpose.scenario import Scenario
-from nullpose.solver import Result, Rigour, Scheme, Status, default_gap_of, solve
+from nullpose.solver import Rigour, Scheme, Status, default_gap_of, solve
 from nullpose.solver.robust import ROBUST_GAP
 from nullpose.studio.answer import Answer, PowerCurve, answer_of, with_errors
 from nullpose.studio.case import OPTIMUM, Case
@@ -42,18 +41,15 @@ def quick_answers(state: State, case: Case) -> Iterator[Answer]:
     Raises:
         NullposeError: there is no pose, or the case has no meaning here.
     """
-    found = _quick_result(case.on(state.scenario), case.scheme)
+    scenario = case.on(state.scenario)
+    if len(scenario.nodes) <= _QUICKLY_PROVED and _proved.is_set():
+        found = solve(scenario, case.scheme, gap=_QUICK_GAP, node_limit=_QUICK_BOXES, threads=1)
+    else:
+        found = solve(scenario, case.scheme, certify=False)
     unproved = replace(found.objective, upper_bound=None, relative_gap=None, rigour=Rigour.NONE)
     result = replace(found, status=Status.BEST_FOUND, objective=unproved, proofs=(), reason="")
     answer = answer_of(state.version, case, result)
     yield replace(answer, note=_QUICK_ROBUST) if case.robust else answer
-
-
-def _quick_result(scenario: Scenario, scheme: Scheme) -> Result:
-    """Return a rough proof's pose where that is quick, else that of a search which needs none."""
-    if len(scenario.nodes) <= _QUICKLY_PROVED and _proved.is_set():
-        return solve(scenario, scheme, gap=_QUICK_GAP, node_limit=_QUICK_BOXES, threads=1)
-    return solve(scenario, scheme, certify=False)
 
 
 def proved_answers(state: State, case: Case, on_progress: Callable[[float, int], None]) -> Iterator[Answer]:
