@@ -128,7 +128,7 @@ def test_another_optimiser_finds_nothing_better(random_scene: Callable) -> None:
     sides = list(zip(*search.box(math.log(solution.objective.value)), strict=True))
 
     def cost(state: np.ndarray) -> float:
-        return min(-float(search.judged(state[None].copy())[0]), 1e3)
+        return min(-float(search.judge(state[None].copy())[0]), 1e3)
 
     other = differential_evolution(
         cost, [*sides, (-math.pi, math.pi)], seed=0, maxiter=150, popsize=12, tol=1e-8
@@ -230,7 +230,7 @@ def test_turning_by_the_symmetry_changes_nothing(random_scene: Callable) -> None
         search = search_of(random_scene(rng, 3, 2, 10.0), elements, layout)
         state = np.append(rng.uniform([0, 0, 9], [99, 99, 29]), rng.uniform(-3.0, 3.0))
         turned = state + np.array([0.0, 0.0, 0.0, 2.0 * math.pi / search.symmetry])
-        assert search.judged(turned[None]) == pytest.approx(search.judged(state[None]), abs=1e-9)
+        assert search.judge(turned[None]) == pytest.approx(search.judge(state[None]), abs=1e-9)
 
 
 def test_nothing_out_of_reach_is_as_good(random_scene: Callable) -> None:
@@ -239,7 +239,7 @@ def test_nothing_out_of_reach_is_as_good(random_scene: Callable) -> None:
     for _ in range(10):
         search = search_of(random_scene(rng, 3, 1, jamming_w=1e-3), 4)
         states = rng.uniform([-200, -200, 8, 0], [300, 300, 30, 6], (30, 4))
-        for state, value in zip(states, search.judged(states), strict=True):
+        for state, value in zip(states, search.judge(states), strict=True):
             low_m, high_m = search.box(value)
             assert np.all((low_m <= state[:3]) & (state[:3] <= high_m))
 
@@ -254,7 +254,7 @@ def test_no_state_exceeds_the_bound(
     rng = np.random.default_rng(1)
     search = search_of(random_scene(rng, 2, 2, jamming_w), 3, layout, 0.7)
     states = rng.uniform([0.0, 0.0, 8.0, -math.pi], [100.0, 100.0, 12.0, math.pi], (3000, 4))
-    search.best = float(np.max(search.judged(states)))
+    search.best = float(np.max(search.judge(states)))
     assert search.best <= math.log(array_bound(search, gap=1e-2).value)
 
 
@@ -276,9 +276,9 @@ def test_a_climb_ends_at_a_local_optimum(random_scene: Callable) -> None:
         search = search_of(random_scene(rng, 3, 1), 4, "circular")
         start = rng.uniform([0.0, 0.0, 9.0, 0.0], [99.0, 99.0, 29.0, 6.0])
         value = search.climb(start)
-        assert value == search.judged(search.state[None])[0] >= search.judged(start[None])[0]
+        assert value == search.judge(search.state[None])[0] >= search.judge(start[None])[0]
         near = 10.0 ** rng.uniform(-6.0, -3.0, (300, 1)) * rng.normal(size=(300, 4))
-        assert np.max(search.judged(search.state + near)) <= value + 1e-7
+        assert np.max(search.judge(search.state + near)) <= value + 1e-7
 
 
 def test_a_climb_ends_inside(random_scene: Callable) -> None:
@@ -300,7 +300,7 @@ def test_a_fixed_position_stays(paper: Callable) -> None:
     """Where the airspace is one point only the yaw moves."""
     search = search_of(paper(1.0, x_m=(3.0, 3.0), y_m=(20.0, 20.0), altitude_m=(9.0, 9.0)), 4, "circular")
     start = np.array([3.0, 20.0, 9.0, 2.0])
-    assert search.climb(start) > search.judged(start[None])[0]
+    assert search.climb(start) > search.judge(start[None])[0]
     np.testing.assert_array_equal(search.state[:3], [3.0, 20.0, 9.0])
 
 

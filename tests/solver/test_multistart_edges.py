@@ -8,54 +8,35 @@ import numpy as np
 import pytest
 
 from nullpose.physics import sinr
-from nullpose.scenario import Scenario
 from nullpose.solver import Scheme, solve
 from nullpose.solver.kernels.axis import best_axis, best_axis_of_forms
 
 UP = np.array([0.0, 0.0, 1.0])
-BOXED = {
-    "airspace": {
-        "altitude_m": [7.875724513239802, 26.246129615861957],
-        "x_m": [10.0, 60.0],
-        "y_m": [20.0, 50.0],
-        "keep_out_m": 5.0,
-    },
-    "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-    "nodes": [
-        {
-            "position_m": [4.724219251587646, 16.826489327014936, 1.4474452193399703],
-            "power_w": 0.8313905882820154,
-        },
-        {
-            "position_m": [74.94273208285371, 91.6491778551929, 3.145625860156505],
-            "power_w": 0.5062265169360516,
-        },
-        {
-            "position_m": [57.47711859212824, 49.30355744308964, 4.621282713829039],
-            "power_w": 1.1407000660926088,
-        },
-    ],
-    "jammers": [
-        {
-            "position_m": [41.842589413857326, 75.58457629204456, 5.966141907410598],
-            "power_w": 3284.399253746447,
-        },
-        {
-            "position_m": [84.67641708351915, 44.19888762937053, 0.4407412417912093],
-            "power_w": 3284.399253746447,
-        },
-        {
-            "position_m": [12.261118887216737, 74.33663238973104, 2.1890912679829566],
-            "power_w": 3284.399253746447,
-        },
-    ],
-}
+BOXED_NODES = [
+    (4.724219251587646, 16.826489327014936, 1.4474452193399703),
+    (74.94273208285371, 91.6491778551929, 3.145625860156505),
+    (57.47711859212824, 49.30355744308964, 4.621282713829039),
+]
+BOXED_JAMMERS = [
+    (41.842589413857326, 75.58457629204456, 5.966141907410598),
+    (84.67641708351915, 44.19888762937053, 0.4407412417912093),
+    (12.261118887216737, 74.33663238973104, 2.1890912679829566),
+]
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_the_last_climb_keeps_the_incumbent(seed):
+def test_the_last_climb_keeps_the_incumbent(seed, scene):
     """The pose is outside the keep-outs and as good as SLSQP's, where a face and a ball both bind."""
-    one = Scenario.from_dict(BOXED)
+    one = scene(
+        BOXED_NODES,
+        BOXED_JAMMERS,
+        node_powers_w=[0.8313905882820154, 0.5062265169360516, 1.1407000660926088],
+        jammer_powers_w=3284.399253746447,
+        altitude_m=(7.875724513239802, 26.246129615861957),
+        x_m=(10.0, 60.0),
+        y_m=(20.0, 50.0),
+        keep_out_m=5.0,
+    )
     solution = solve(one, seed=seed)
     p = solution.pose.position_m
     assert np.min(np.linalg.norm(one.node_positions_m - p, axis=1)) >= 5.0 * (1 - 1e-12)

@@ -81,7 +81,7 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
             "under which the drone receives; arrays are not there for others"
         )
     search = ArraySearch(scenario, array, options.seed)
-    bound = _solved(search, options)
+    bound = _search_and_prove(search, options)
     yaw_rad = math.remainder(search.state[3], 2.0 * math.pi)
     pose = Pose(search.state[:3], 0.0, 0.0, yaw_rad)
     places = placed_elements(scenario, pose)
@@ -109,7 +109,7 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
     )
 
 
-def _solved(search: ArraySearch, options: SolveOptions) -> ArrayBound | None:
+def _search_and_prove(search: ArraySearch, options: SolveOptions) -> ArrayBound | None:
     """Search, and prove what is found if that is asked for.
 
     One search and a proof, then more searches, and another proof, where that does not get there; what turns

@@ -66,12 +66,12 @@ class ArraySearch(EpigraphSearch):
         while len(self.ends) < _MOST and self.agreeing < _ENOUGH:
             self.search()
 
-    def oriented(self, positions_m: FloatArray) -> FloatArray:
+    def orient(self, positions_m: FloatArray) -> FloatArray:
         """Draw a state at each of some positions."""
         yaws = self.rng.uniform(-math.pi, math.pi, (len(positions_m), 1))
         return np.hstack([positions_m, yaws])
 
-    def judged(self, states: FloatArray) -> FloatArray:
+    def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the smallest log ratio of states."""
         from nullpose.solver.kernels.array_response import judge_array
 
@@ -80,7 +80,7 @@ class ArraySearch(EpigraphSearch):
         self.evaluations += len(states)
         return values
 
-    def moved(self, state: FloatArray, step: FloatArray) -> FloatArray:
+    def move(self, state: FloatArray, step: FloatArray) -> FloatArray:
         """Move a state by a step."""
         return np.asarray(state + np.append(self.unit_m(state) * step[:3], step[3]))
 
@@ -89,7 +89,7 @@ class ArraySearch(EpigraphSearch):
         from nullpose.solver.kernels.array_response import respond
 
         logs, slopes = np.empty(self.problem.nodes), np.empty((self.problem.nodes, 4))
-        respond(self.problem, self.moved(state, step), logs, slopes)
+        respond(self.problem, self.move(state, step), logs, slopes)
         self.evaluations += 1
         slopes[:, :3] *= self.unit_m(state)
         return logs, slopes

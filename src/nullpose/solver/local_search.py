@@ -45,11 +45,11 @@ class LocalSearch(ABC):
         self.starts = self.evaluations = 0
 
     @abstractmethod
-    def oriented(self, positions_m: FloatArray) -> FloatArray:
+    def orient(self, positions_m: FloatArray) -> FloatArray:
         """Draw a state at each of some positions, (n, 3)."""
 
     @abstractmethod
-    def judged(self, states: FloatArray) -> FloatArray:
+    def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the smallest log ratio of states, (n,), minus infinity where a position is not allowed."""
 
     @abstractmethod
@@ -86,13 +86,13 @@ class LocalSearch(ABC):
             positions_m = low_m + (high_m - low_m) * self.rng.uniform(size=(drawn, 3))
             positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
             positions_m[: len(places_m)] = places_m[:drawn] or positions_m[:0]
-            states = self.oriented(positions_m)
-            values = self.judged(states)
+            states = self.orient(positions_m)
+            values = self.judge(states)
             if not np.any(values > -math.inf):  # a narrow airspace: begin where a dipole would be
                 positions_m[:] = multistart(self.family, AxisField.free(), seed=0).position_m
                 self.family = loosened(self.family, BORDER_M)
-                states = self.oriented(positions_m)
-                values = self.judged(states)
+                states = self.orient(positions_m)
+                values = self.judge(states)
             best = np.argsort(-values)[: min(climbed, np.count_nonzero(values > -math.inf))]
             ends += [self.climb(states[k]) for k in best]
         before = -math.inf
@@ -103,14 +103,14 @@ class LocalSearch(ABC):
 
     def take(self, state: FloatArray) -> float:
         """Bring a state into the domain, and keep it if it is the best so far; return its value."""
-        repaired = state.copy()
-        repaired[:3] = self._repaired(state[:3])
-        value = float(self.judged(repaired[None])[0])
+        inside = state.copy()
+        inside[:3] = self._repair(state[:3])
+        value = float(self.judge(inside[None])[0])
         if value > self.best:
-            self.best, self.state = value, repaired
+            self.best, self.state = value, inside
         return value
 
-    def _repaired(self, position_m: FloatArray) -> FloatArray:
+    def _repair(self, position_m: FloatArray) -> FloatArray:
         """Move a position into the domain if it is a little outside."""
         from nullpose.solver.kernels.domain import walls
 
@@ -135,7 +135,7 @@ class EpigraphSearch(LocalSearch):
     angles: int  # of a step
 
     @abstractmethod
-    def moved(self, state: FloatArray, step: FloatArray) -> FloatArray:
+    def move(self, state: FloatArray, step: FloatArray) -> FloatArray:
         """Move a state by a step."""
 
     @abstractmethod
@@ -183,5 +183,5 @@ class EpigraphSearch(LocalSearch):
         )
         self.starts += 1
         if np.all(np.isfinite(found.x)):
-            value = max(value, self.take(self.moved(state, found.x[:size])))
+            value = max(value, self.take(self.move(state, found.x[:size])))
         return value

@@ -60,16 +60,16 @@ class PatternSearch(EpigraphSearch):
             rotation: (3, 3) to the world from the antenna's axes.
         """
         before = self.best
-        self.climb(np.append(position_m, self._reached(rotation)))
+        self.climb(np.append(position_m, self._bring_within_reach(rotation)))
         return self.best > before
 
-    def oriented(self, positions_m: FloatArray) -> FloatArray:
+    def orient(self, positions_m: FloatArray) -> FloatArray:
         """Draw a state at each of some positions."""
-        rotations = self._attitudes(len(positions_m))
-        rotations[1::2] = self._nulled(positions_m[1::2])
-        return np.hstack([positions_m, self._reached(rotations).reshape(-1, 9)])
+        rotations = self._draw_attitudes(len(positions_m))
+        rotations[1::2] = self._aim_nulls(positions_m[1::2])
+        return np.hstack([positions_m, self._bring_within_reach(rotations).reshape(-1, 9)])
 
-    def judged(self, states: FloatArray) -> FloatArray:
+    def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the smallest log ratio of states."""
         from nullpose.solver.kernels.pattern_search import judge
 
@@ -78,7 +78,7 @@ class PatternSearch(EpigraphSearch):
         self.evaluations += len(states)
         return values
 
-    def moved(self, state: FloatArray, step: FloatArray) -> FloatArray:
+    def move(self, state: FloatArray, step: FloatArray) -> FloatArray:
         """Move a state by a step."""
         from nullpose.solver.kernels.pattern_search import move
 
@@ -120,7 +120,7 @@ class PatternSearch(EpigraphSearch):
         squares = np.sum((self.family.points_m - self.state[:3]) ** 2, axis=1)
         return int(np.argmax(weight / squares))
 
-    def _attitudes(self, count: int) -> FloatArray:
+    def _draw_attitudes(self, count: int) -> FloatArray:
         """Draw rotations that the airframe reaches, (count, 3, 3)."""
         tilt_max_rad = self.reach.tilt_max_rad
         if tilt_max_rad >= math.pi:
@@ -130,7 +130,7 @@ class PatternSearch(EpigraphSearch):
         body = Rotation.from_euler("ZYZ", np.stack([towards, tilt, yaw - towards], axis=1)).as_matrix()
         return np.asarray(body @ Rotation.from_euler("y", self.reach.mount_rad).as_matrix())
 
-    def _nulled(self, positions_m: FloatArray) -> FloatArray:
+    def _aim_nulls(self, positions_m: FloatArray) -> FloatArray:
         """Draw rotations that have the strongest interferer, or the first point, where the gain is low."""
         weights = self.family.denominator_weight
         strongest = self.family.denominator_point[np.argmax(weights)] if len(weights) else 0
@@ -140,7 +140,7 @@ class PatternSearch(EpigraphSearch):
         chosen = self.lowest[self.rng.integers(len(self.lowest), size=len(to_strongest_m))]
         return np.asarray(_frames(to_strongest_m) @ spins @ _frames(chosen).transpose(0, 2, 1))
 
-    def _reached(self, rotations: FloatArray) -> FloatArray:
+    def _bring_within_reach(self, rotations: FloatArray) -> FloatArray:
         """Turn rotations, (..., 3, 3), to the nearest that the airframe reaches, exact to rounding."""
         from nullpose.solver.kernels.pattern_search import bring_within_reach
 

@@ -45,11 +45,11 @@ class PositionSearch(LocalSearch):
         if not self.run(_DRAWN, _CLIMBED) > -math.inf:
             raise SolveError(NOT_RECEIVED)
 
-    def oriented(self, positions_m: FloatArray) -> FloatArray:
+    def orient(self, positions_m: FloatArray) -> FloatArray:
         """Return the positions, which are the states."""
         return positions_m
 
-    def judged(self, states: FloatArray) -> FloatArray:
+    def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the objective at positions."""
         from nullpose.solver.kernels.domain import contains
 
@@ -68,7 +68,7 @@ class PositionSearch(LocalSearch):
         for _ in range(_RESTARTS):
             corners_m = state + np.vstack([np.zeros(3), size_m * np.eye(3)])
             found = minimize(
-                lambda position_m: -self.judged(position_m[None])[0],
+                lambda position_m: -self.judge(position_m[None])[0],
                 state,
                 method="Nelder-Mead",
                 bounds=list(zip(low_m, high_m, strict=True)),

@@ -28,7 +28,7 @@ def _task(scenario: Scenario) -> ArraySearch:
 def _sampled(task: ArraySearch, rng: np.random.Generator) -> float:
     states = rng.uniform(LOW, HIGH, (20_000, 4))
     states[::2, 2] = LOW[2]
-    return float(np.max(task.judged(states)))
+    return float(np.max(task.judge(states)))
 
 
 def test_the_bound_is_that_of_the_box(scene: Callable) -> None:

@@ -1,13 +1,13 @@
 """Newton's method for multipliers: what it returns is the dual's optimum, and an axis that reaches it."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.scenario import Scenario
 from nullpose.solver.kernels.ascent import POOL, Pool, ascend
 from nullpose.solver.kernels.dual import dual_multipliers
 from nullpose.solver.kernels.forms import congruence, fill_forms, inverse_factor
@@ -30,25 +30,6 @@ def ascended(family, row, mean, back, weights, v):
     return top, followed
 
 
-def family_of(rng: np.random.Generator, nodes: int, jammers: int) -> Family:
-    """Returns the ratios of a random field."""
-    return build_family(
-        Scenario.from_dict(
-            {
-                "airspace": {"altitude_m": [8.0, 30.0]},
-                "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-                "nodes": [
-                    {"position_m": [*rng.uniform(0.0, 100.0, 2), 0.0], "power_w": 1.0} for _ in range(nodes)
-                ],
-                "jammers": [
-                    {"position_m": [*rng.uniform(0.0, 100.0, 2), 0.0], "power_w": 10.0 ** rng.uniform(-2, 2)}
-                    for _ in range(jammers)
-                ],
-            }
-        )
-    )
-
-
 def whitened(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns every ratio's whitened form at a position, and what whitens."""
     ratios = len(family.numerator_point)
@@ -68,12 +49,13 @@ def value(form: np.ndarray, v: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("start", ["equal", "none"])
-def test_it_agrees_with_the_interior_point(start: str) -> None:
+def test_it_agrees_with_the_interior_point(start: str, random_scene: Callable) -> None:
     """Where it converges, from equal multipliers or from none: same value, reached by the axis."""
     rng = np.random.default_rng(5)
     converged = 0
     for number in range(120):
-        family = family_of(rng, 2 + number % 7, 1 + number % 3)
+        scene = random_scene(rng, 2 + number % 7, 1 + number % 3, 10.0 ** rng.uniform(-2.0, 2.0))
+        family = build_family(scene)
         ratios = len(family.numerator_point)
         position_m = np.array([*rng.uniform(0.0, 100.0, 2), rng.uniform(8.0, 30.0)])
         forms, mean, back = whitened(family, position_m)
@@ -100,18 +82,10 @@ def test_it_agrees_with_the_interior_point(start: str) -> None:
     assert converged >= 60
 
 
-def test_where_there_is_a_duality_gap_it_says_so() -> None:
+def test_where_there_is_a_duality_gap_it_says_so(scene: Callable) -> None:
     """Four nodes around the position, in directions that no axis is across of: no axis reaches the dual."""
     places = [[10.0, 0.0, 0.0], [-5.0, 9.0, 0.0], [-5.0, -9.0, 0.0], [0.0, 0.0, -10.0]]
-    family = build_family(
-        Scenario.from_dict(
-            {
-                "airspace": {"altitude_m": [0.5, 30.0]},
-                "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-                "nodes": [{"position_m": place, "power_w": 1.0} for place in places],
-            }
-        )
-    )
+    family = build_family(scene(places, altitude_m=(0.5, 30.0)))
     position_m = np.array([0.0, 0.0, 0.0])
     forms, mean, back = whitened(family, position_m)
     row = np.zeros(COLUMNS)

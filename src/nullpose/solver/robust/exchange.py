@@ -73,11 +73,11 @@ def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
     try:
         while again:
             exchange.search(began + limits.time_limit_s)
-            robust = _guarded(scenario, exchange, robust)
+            robust = _prove_best(scenario, exchange, robust)
             again = limits.certify and exchange.prove(exchange.level(robust.guarantee.lower), began)
     except KeyboardInterrupt:
         exchange.reason = INTERRUPT
-    robust = _guarded(scenario, exchange, robust)
+    robust = _prove_best(scenario, exchange, robust)
     is_close = robust.guarantee.worst <= exchange.level(robust.guarantee.lower)
     unsettled = "error cases that the search did not settle" if is_close else _MOST_CELLS_REACHED
     without_errors = guarantee_of(inner, nominal.position_m, nominal.antenna_axis, exchange.accuracy())
@@ -101,7 +101,7 @@ def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
     )
 
 
-def _guarded(scenario: Scenario, exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
+def _prove_best(scenario: Scenario, exchange: Exchange, before: GuardedPose | None) -> GuardedPose:
     """Prove what the best pose so far guarantees, unless that is the one from before."""
     position_m, axis, _ = exchange.best
     if before is not None and np.allclose(
@@ -156,11 +156,7 @@ class Exchange:
         self.reason = ""
 
     def add(self, cases: Sequence[BindingCase]) -> bool:
-        """Add cases to the finite family; return whether any was not in it.
-
-        Args:
-            cases: the cases, those already there among them.
-        """
+        """Add cases to the finite family; tell whether any was not in it."""
         new = [each for each in cases if not any(each.is_same(other) for other in self.cases)]
         self.cases += new
         return bool(new)
@@ -171,12 +167,7 @@ class Exchange:
         return min(coarsest, max(finest, _FINER * self.limits.ratio_gap(self.best.worst)))
 
     def level(self, ratio: float, share: float = 1.0) -> float:
-        """Raise a ratio, at least 1 for a rate, by a share of the gap.
-
-        Args:
-            ratio: what is guaranteed.
-            share: of the gap.
-        """
+        """Raise a ratio, at least 1 for a rate, by a share of the gap."""
         if self.limits.of_rate:
             ratio = max(1.0, ratio)
         return ratio * (1.0 + replace(self.limits, gap=share * self.limits.target).ratio_gap(ratio))
@@ -229,13 +220,12 @@ class Exchange:
         with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
             anywhere = multistart(family, field, seed=self.limits.seed, settings=settings)
         near = climb(family, field, self.best.position_m, self.best.axis, mu=_CLIMB, steps=_CLIMB_STEPS)
-        ends = anywhere, near
         self.starts += anywhere.starts + 1
-        self.evaluations += sum(end.evaluations for end in ends)
-        return max(ends, key=lambda end: end.log_value)
+        self.evaluations += anywhere.evaluations + near.evaluations
+        return max(anywhere, near, key=lambda end: end.log_value)
 
     def prove(self, level: float, began: float) -> bool:
-        """Bound the finite family by a level; return whether to search on, since a better pose turned up.
+        """Bound the finite family by a level; tell whether to search on, since a better pose turned up.
 
         Args:
             level: the ratio that no pose is to exceed.
@@ -247,17 +237,13 @@ class Exchange:
             start = replace(start, log_value=max(0.0, start.log_value))
         value = math.exp(start.log_value)
         gap = level / value - 1.0
-        if not gap > _LEAST_GAP:  # the search was cut short
-            gap = self.limits.ratio_gap(value)
+        gap = gap if gap > _LEAST_GAP else self.limits.ratio_gap(value)  # the search was cut short
         target = replace(self.limits, of_rate=False, gap=min(_WIDEST_GAP, max(_LEAST_GAP, gap)))
         proof = prove(self.family, self.axis_field, start, target, began=began, nodes=self.boxes)
         self.boxes += proof.nodes
-        bound = proof.upper_bound
-        self.upper_bound = bound if self.upper_bound is None else min(self.upper_bound, bound)
-        self.reason = proof.reason
-        if not proof.incumbent.log_value > start.log_value + _ROUNDING:
+        self.upper_bound = min(proof.upper_bound, math.inf if self.upper_bound is None else self.upper_bound)
+        self.reason, found = proof.reason, proof.incumbent
+        if not found.log_value > start.log_value + _ROUNDING:
             return False
-        new = self.visit(
-            proof.incumbent.position_m, proof.incumbent.axis, math.exp(proof.incumbent.log_value)
-        )
+        new = self.visit(found.position_m, found.axis, math.exp(found.log_value))
         return self.add(new) and not proof.reason
