@@ -38,10 +38,7 @@ def _of_dipole(proof: Proof) -> Leaves:
     is_free = np.isin(test, (WORLD, TOWARDS))
     return Leaves(
         box=_parts(
-            proof.root[0],
-            proof.root[1],
-            rows[:, node.CENTRE : node.CENTRE + 3],
-            rows[:, node.HALF : node.HALF + 3],
+            proof.root[0], proof.root[1], rows[:, node.CENTRE : node.HALF], rows[:, node.HALF : node.LEVEL]
         ),
         cell=_cells(rows, node.FACE, node.CELL),
         test=test,
@@ -117,13 +114,10 @@ def _mixes(
     return mix, tuple(mixes)
 
 
-def _cells(rows: NDArray[np.float64], face: int, cell: int) -> NDArray[np.int64]:
-    on_face = rows[:, face] >= 0.0
-    out = np.zeros((len(rows), 5), dtype=np.int64)
-    out[:, 0] = rows[:, face]
-    for side in range(2):
-        low, high = rows[:, cell + 2 * side], rows[:, cell + 2 * side + 1]
-        width = np.where(on_face, high - low, 2.0)
-        out[:, 1 + 2 * side] = np.rint(np.log2(2.0 / width))
-        out[:, 2 + 2 * side] = np.where(on_face, np.rint((low + 1.0) / width), 0)
-    return out
+def _cells(rows: FloatArray, face: int, cell: int) -> IntArray:
+    """Locate cells of axes by their face, and depth and index along each side; the whole cube is face -1."""
+    on_face = rows[:, [face]] >= 0.0
+    low = np.where(on_face, rows[:, [cell, cell + 2]], -1.0)
+    high = np.where(on_face, rows[:, [cell + 1, cell + 3]], 1.0)
+    sides = _parts(-np.ones(2), np.ones(2), 0.5 * (low + high), 0.5 * (high - low))
+    return np.concatenate([rows[:, [face]].astype(np.int64), sides], axis=1)

@@ -26,7 +26,7 @@ from nullpose.solver.kernels.links import min_log_ratio
 from nullpose.solver.kernels.polynomial import real_roots
 from nullpose.solver.kernels.scratch import scratch, zeroed
 from nullpose.solver.kernels.symmetric import copy_into, eigen3, largest_eigenvalue, matrix_of, normalise
-from nullpose.solver.kernels.vectors import dot
+from nullpose.solver.kernels.vectors import dot, store, unit
 
 _MAX_CANDIDATES = 4000
 _FLAT = 1e-10
@@ -223,9 +223,7 @@ def best_axis(family, p, axis):
         for k in range(ratios):
             congruence(numerators[k], back, forms[k])
         best_axis_of_forms(forms, v)
-        for i in range(3):
-            axis[i] = dot(back[i], v)
-        normalise(axis)
+        store(unit((dot(back[0], v), dot(back[1], v), dot(back[2], v))), axis)
         return min_log_ratio(family, p, axis, logs, f)
     copy_into(v, axis)
     best = min_log_ratio(family, p, axis, logs, f)

@@ -12,23 +12,15 @@ import math
 import numpy as np
 
 from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, FREE_AXIS, Axes
-from nullpose.solver.kernels.constants import (
-    FORM_FALL,
-    FORM_RISE,
-    MIXED_FALL,
-    MIXED_RISE,
-    SWING_FALL,
-    SWING_RISE,
-)
 from nullpose.solver.kernels.curved import curved_multipliers, denominator_jet, excludes_curved, impact
 from nullpose.solver.kernels.denominators import expand_denominator
 from nullpose.solver.kernels.domain import contains
 from nullpose.solver.kernels.enclosure import JET, MOST, axis_clearance
 from nullpose.solver.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
-from nullpose.solver.kernels.expansion import frame_at, min_distance, min_square
+from nullpose.solver.kernels.expansion import best_frame, frame_at, min_square
 from nullpose.solver.kernels.forms import add_denominator
 from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
-from nullpose.solver.kernels.links import isotropic_share, min_log_ratio
+from nullpose.solver.kernels.links import min_log_ratio
 from nullpose.solver.kernels.multipliers import free_multipliers
 from nullpose.solver.kernels.node import (
     AFFINE,
@@ -52,10 +44,10 @@ from nullpose.solver.kernels.node import (
     split_axis,
     split_position,
 )
-from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD, Workspace
+from nullpose.solver.kernels.records import Workspace
 from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.symmetric import copy_into, squared_distance
-from nullpose.solver.kernels.vectors import cross, fill_affine, minus, norm, row as row_of
+from nullpose.solver.kernels.symmetric import copy_into
+from nullpose.solver.kernels.vectors import fill_affine, norm
 
 DONE, LIMIT, FULL = 0, 1, 2  # why a run over a stack ended; or BETTER
 EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes of a node
@@ -66,61 +58,6 @@ _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axe
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
-
-
-@inner_kernel
-def strongest_point(family, centre):
-    """Return the denominators' point that is received most strongly at the centre, or -1."""
-    strongest = 0.0
-    anchor = -1
-    for e in range(family.denominator_weight.shape[0]):
-        j, weight = family.denominator_point[e], family.denominator_weight[e]
-        d = squared_distance(family.points_m[j], centre)
-        if weight > strongest * d:
-            strongest, anchor = weight / d, j
-    return anchor
-
-
-@inner_kernel
-def dipole_sine(axes, j, away):
-    """Return the sine of the angle between point j's dipole and a direction."""
-    if axes is not None:
-        return norm(cross(axes[j], away)) / norm(away)
-    return 1.0
-
-
-@inner_kernel
-def best_frame(family, axis_field, row):
-    """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
-
-    A frame that turns spares us the remainder of the point that it turns towards, and makes all others
-    larger: worth it where one interferer outweighs the rest.
-    """
-    points, centre, half = family.points_m, row[CENTRE:HALF], row[HALF:LEVEL]
-    anchor = strongest_point(family, centre)
-    if anchor < 0 or family.turn.shape[0] > 0 or is_level(axis_field):
-        return WORLD, anchor
-    rho = min_distance(points, anchor, centre, half)
-    if isotropic_share(family.ground_leaks, anchor) < 1.0:
-        # the nearer to its own null, the faster its form turns
-        rho *= dipole_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
-        if not rho > 0.0:
-            return WORLD, anchor
-    still = turning = 0.0
-    for s in range(int(row[COUNT])):
-        k = int(row[INDEX + s])
-        square = min_square(points, family.numerator_point[k], centre, half)
-        a = math.sqrt(square)
-        scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
-        still += FORM_RISE * scale
-        turning += scale * (FORM_RISE + a / rho * (MIXED_RISE + SWING_RISE * a / rho))
-    for e in range(family.denominator_weight.shape[0]):
-        a = min_distance(points, family.denominator_point[e], centre, half)
-        scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
-        still += FORM_FALL * scale
-        if family.denominator_point[e] != anchor:
-            turning += scale * (FORM_FALL + a / rho * (MIXED_FALL + SWING_FALL * a / rho))
-    return (TOWARDS_POINT if turning < still else WORLD), anchor
 
 
 @inner_kernel
@@ -171,7 +108,7 @@ def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, a
     is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
-    kind, anchor = best_frame(family, axis_field, row)
+    kind, anchor = best_frame(family, is_level(axis_field), row)
     frame = frame_at(family, kind, anchor, centre, half, basis)
     denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)

@@ -30,10 +30,8 @@ _LESS = 0.25
 @inner_kernel
 def add_jet(weight, jet, total):
     """Add a weighted jet to another; radii add up whatever the sign."""
-    for m in range(RADIUS):
-        total[m] += weight * jet[m]
-    for m in range(RADIUS, LEAST):
-        total[m] += abs(weight) * jet[m]
+    add_scaled(weight, jet[:RADIUS], total[:RADIUS])
+    add_scaled(abs(weight), jet[RADIUS:LEAST], total[RADIUS:LEAST])
     total[LEAST] += weight * (jet[LEAST] if weight > 0.0 else jet[MOST])
     total[MOST] += weight * (jet[MOST] if weight > 0.0 else jet[LEAST])
 
@@ -121,24 +119,16 @@ def box_maximum(jet, half):
 
 @inner_kernel
 def excludes_curved(family, domain, axis_field, row, below, jet, total):
-    """Check whether the row's multipliers exclude its box; fill the jet of their sum.
+    """Check whether the row's multipliers exclude its box; fill its border's, and the jet of their sum.
 
-    Args:
-        family: arrays of the family.
-        domain: box, keep-out balls, forbidden pieces and zones.
-        axis_field: (1, offset, matrix).
-        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
-        below: (groups, JET) the jets of ``-t D_g``.
-        jet: room for a jet.
-        total: output, (JET,).
+    ``below`` has the jets of ``-t D_g``; ``jet`` is scratch.
     """
     if not row[COUNT] > 0.0:
         return False
     total[:] = 0.0
     for s in range(int(row[COUNT])):
-        minus = below[family.denominator_of[int(row[INDEX + s])]]
-        add_scaled(row[WEIGHT + s], minus, total)
-    size = -total[0]
+        add_scaled(row[WEIGHT + s], below[family.denominator_of[int(row[INDEX + s])]], total)
+    size = -total[0]  # of what numerators are set off against: that much is lost by rounding
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         j, isotropic = family.numerator_point[k], row[WEIGHT + s] * family.numerator_isotropic[k]
@@ -147,6 +137,7 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
         add_jet(row[WEIGHT + s] * family.numerator_weight[k], jet, total)
     total[0], total[MOST] = total[0] + ROUNDING * size, total[MOST] + ROUNDING * size
     row[NU] = 0.0
+    # plain bounds on every part are often enough, and cost nothing more
     if total[MOST] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
         return True
     return row[BALL] >= 0.0 and excludes_allowed(domain, row, total)
@@ -215,12 +206,12 @@ def curved_multipliers(family, axis_field, row, below, jet, workspace):
         for e in range(6):
             i, j = entry(e)
             radius = nw[k] * jet[RADIUS + e] + minus[RADIUS + e]
-            if i == j:
+            if i == j:  # concave along a side counts for nothing here: the mix is of linear functions
                 radius = max(0.0, radius + nw[k] * jet[BEND + e] + minus[BEND + e])
             values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
     lead = 0
+    weights[:ratios] = 0.0
     for k in range(ratios):
-        weights[k] = 0.0
         if linear_bound(values[k], gradients[k], half) < linear_bound(values[lead], gradients[lead], half):
             lead = k
     weights[lead] = 1.0

@@ -11,7 +11,7 @@ from nullpose.solver.kernels.jit import inner_kernel
 from nullpose.solver.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.records import TOWARDS_POINT
 from nullpose.solver.kernels.scratch import scratch
-from nullpose.solver.kernels.symmetric import add_identity, top_eigenvector
+from nullpose.solver.kernels.symmetric import add_identity, add_scaled as add_multiple, top_eigenvector
 from nullpose.solver.kernels.vectors import dot
 
 _LARGEST_SHARE = 0.5
@@ -20,10 +20,9 @@ _LARGEST_SHARE = 0.5
 @inner_kernel
 def add_scaled(weight, form, slopes, matrix, matrix_slopes):
     """Add a weighted form and its slopes to a matrix and its slopes."""
-    for m in range(6):
-        matrix[m] += weight * form[m]
-        for i in range(3):
-            matrix_slopes[i, m] += weight * slopes[i, m]
+    add_multiple(weight, form, matrix)
+    for i in range(3):
+        add_multiple(weight, slopes[i], matrix_slopes[i])
 
 
 @inner_kernel

@@ -213,16 +213,7 @@ def dipole_entry(matrix, r, v, half, u, c, dc, hc, hr):
 
 @kernel
 def link_jet(family, j, axis_field, centre, half, jet):
-    """Fill the jet of point j: value and gradient at the centre, midpoint and radius of the Hessian, bounds.
-
-    Args:
-        family: with its points.
-        j: which of them.
-        axis_field: (1, offset, matrix); not zero in the box.
-        centre: (3,) the box's centre.
-        half: (3,) its half sides; the point is outside the box.
-        jet: output, (JET,).
-    """
+    """Fill the jet of point j over a box that it is outside of; the axis field vanishes nowhere in it."""
     offset, matrix = scratch(3), scratch(3, 3)
     turned_field(axis_field, family.turn, j, offset, matrix)
     r, u, c = scratch(3), scratch(3), scratch(4)
@@ -260,18 +251,8 @@ def dipole_jet(leak, axes, j, matrix, r, half, u, c, dc, hc, hr, jet):
 def quotient_jet(matrix, r, u, half, count, power, c, dc, hc, hr, jet):
     """Fill the jet of ``n / (|u|^2 s^power)``, ``s = |r|^2``, n being the sum of the squares of entries.
 
-    Args:
-        matrix: (3, 3), the derivative of u; that of r is -I.
-        r: (3,) at the centre.
-        u: (3,) likewise.
-        half: (3,) the box's half sides.
-        count: how many entries there are.
-        power: 2 or 3.
-        c: (4,) the entries at the centre.
-        dc: (4, 3) their gradients.
-        hc: (4, 3, 3) their Hessians there.
-        hr: (4, 3, 3) how far these may be off in the box.
-        jet: output, (JET,).
+    At the centre stand r, u with its derivative (that of r is -I), and so many entries c with their gradients
+    dc and Hessians hc, which may be off by hr in the box.
     """
     # |r|^2 and |u|^2, at the centre and over the box, and their gradients over themselves
     s, b, swing = dot(r, r), dot(u, u), scratch(3)

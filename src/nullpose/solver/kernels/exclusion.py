@@ -46,7 +46,7 @@ from nullpose.solver.kernels.node import (
     cell_side,
 )
 from nullpose.solver.kernels.records import WORLD
-from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
+from nullpose.solver.kernels.scratch import scratch, scratch_int
 from nullpose.solver.kernels.symmetric import (
     add_identity,
     add_scaled,
@@ -55,10 +55,11 @@ from nullpose.solver.kernels.symmetric import (
     form_product,
     top_eigenvector,
 )
-from nullpose.solver.kernels.vectors import dot
+from nullpose.solver.kernels.vectors import corner_of, dot, minus
 from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
 
 _HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
+_CENTRE = (0.0, 0.0, 0.0)
 _DEFINITE = 1e-13  # minors, relative to the products that they are made of
 
 
@@ -69,8 +70,9 @@ def is_level(axis_field):
 
 
 @inner_kernel
-def negative_at(matrix, slopes, x, y, z, level_axes):
+def negative_at(matrix, slopes, step, level_axes):
     """Check whether the linear matrix is negative definite at a step from the centre."""
+    x, y, z = step
     a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
     a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
     a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
@@ -91,10 +93,7 @@ def negative_at(matrix, slopes, x, y, z, level_axes):
 def failing_corner(matrix, slopes, middle, half, level_axes):
     """Return the first corner of a box at which the linear matrix is not negative definite, or -1."""
     for corner in range(8):
-        x = middle[0] + (half[0] if corner & 1 else -half[0])
-        y = middle[1] + (half[1] if corner & 2 else -half[1])
-        z = middle[2] + (half[2] if corner & 4 else -half[2])
-        if not negative_at(matrix, slopes, x, y, z, level_axes):
+        if not negative_at(matrix, slopes, corner_of(middle, half, corner), level_axes):
             return corner
     return -1
 
@@ -105,24 +104,17 @@ def is_negative_without(matrix, slopes, half, corner, most, level_axes):
     less = scratch(6)
     copy_into(matrix, less)
     add_identity(-most, less)
-    x = half[0] if corner & 1 else -half[0]
-    y = half[1] if corner & 2 else -half[1]
-    z = half[2] if corner & 4 else -half[2]
-    return negative_at(less, slopes, x, y, z, level_axes)
+    return negative_at(less, slopes, corner_of(_CENTRE, half, corner), level_axes)
 
 
 @inner_kernel
 def will_fail(forecast, row, part, level_axes):
     """Check whether a part of a row's box will fail, by what its own multipliers come to there."""
-    middle, half, matrix = scratch(3), part[HALF:LEVEL], scratch(6)
+    half, whole, matrix = part[HALF:LEVEL], row[HALF:LEVEL], scratch(6)
     if forecast.rest[0] == math.inf:  # no multipliers exclude even the centre
         return True
-    whole = square = 0.0
-    for i in range(3):
-        middle[i] = part[CENTRE + i] - row[CENTRE + i]
-        whole += row[HALF + i] ** 2
-        square += half[i] ** 2
-    share = _HOPED * square / whole
+    middle = minus(part[CENTRE:HALF], row[CENTRE:HALF])
+    share = _HOPED * dot(half, half) / dot(whole, whole)  # remainders are of the second order
     copy_into(forecast.matrix, matrix)
     add_scaled(share, forecast.rest, matrix)
     return failing_corner(matrix, forecast.slopes, middle, half, level_axes) >= 0
@@ -144,12 +136,8 @@ def add_side(form, weight, frame, matrix, matrix_slopes):
         matrix_slopes[i, 3] += weight * (y * q[4] + x * q[5])
         matrix_slopes[i, 4] += weight * (x * (q[2] - q[0]) - y * q[3])
         matrix_slopes[i, 5] += weight * (y * (q[2] - q[1]) - x * q[3])
-    return (
-        weight
-        * CONSTANT_FORM_BEND
-        * math.sqrt(2.0 * form_product(q, q))
-        / (frame.least_radius_m * frame.least_radius_m)
-    )
+    size = math.sqrt(2.0 * form_product(q, q))
+    return weight * CONSTANT_FORM_BEND * size / (frame.least_radius_m * frame.least_radius_m)
 
 
 @inner_kernel
@@ -239,21 +227,13 @@ def constraint_of(axis_field, row, number, form):
 
 @inner_kernel
 def excludes(family, domain, axis_field, frame, row, below, forecast):
-    """Check whether the row's multipliers exclude its box and cell.
+    """Check whether the row's multipliers exclude its box and cell; fill its border's, and the forecast.
 
-    Args:
-        family: arrays of the family.
-        domain: box, keep-out balls, forbidden pieces and zones.
-        axis_field: kind, offset and matrix; a free axis, perhaps within a band.
-        frame: at the box's centre.
-        row: the node; if a keep-out ball reaches into its box, that constraint's multiplier is filled.
-        below: ``-t D``, its slopes and its remainders, from ``expand_denominator``, if there is one
-            denominator for all.
-        forecast: output: the sum, its slopes and its remainders, for ``will_fail``.
+    ``below`` is ``-t D``, its slopes and its remainders, where all ratios share a denominator.
     """
     if not row[COUNT] > 0.0:
         return False
-    matrix, slopes, still = scratch(6), forecast.slopes, zeroed(3)
+    matrix, slopes = scratch(6), forecast.slopes
     dipoles = family.ground_axes is not None
     row[NU] = below_rest = 0.0
     half, level_axes = row[HALF:LEVEL], is_level(axis_field)
@@ -261,12 +241,13 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
         add_dipole_sum(family, family.ground_axes, axis_field, frame, row, matrix, slopes, forecast.rest)
     else:
         below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
-    if row[BALL] < 0.0 and not negative_at(matrix, slopes, 0.0, 0.0, 0.0, level_axes):
+    # without a remainder, at the centre: what fails there fails in every box about it, however small
+    if row[BALL] < 0.0 and not negative_at(matrix, slopes, _CENTRE, level_axes):
         forecast.rest[0] = math.inf
         return False
     copy_into(matrix, forecast.matrix)
     add_scaled(1.0, forecast.rest, matrix)
-    corner = failing_corner(matrix, slopes, still, half, level_axes)
+    corner = failing_corner(matrix, slopes, _CENTRE, half, level_axes)
     if corner < 0:
         return True
     # sharper remainders cost as much as the test so far: only where none at all would let the corner pass
@@ -277,7 +258,7 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
         slopes = scratch(3, 6)
         copy_table(forecast.slopes, slopes)
         sharpen(family, frame, row, matrix, slopes)
-        if failing_corner(matrix, slopes, still, half, level_axes) < 0:
+        if failing_corner(matrix, slopes, _CENTRE, half, level_axes) < 0:
             return True
     return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
 
@@ -309,7 +290,7 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
             rest += 0.5 * border[4 + i] * half[i] ** 2
             add_identity(border[1 + i], bent_slopes[i])
         add_identity(rest, bent)
-        if failing_corner(bent, bent_slopes, zeroed(3), half, level_axes) >= 0:
+        if failing_corner(bent, bent_slopes, _CENTRE, half, level_axes) >= 0:
             return False
     if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
         row[NU] = 1.0  # a zone's multipliers are found again by the verifier

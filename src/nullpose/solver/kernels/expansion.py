@@ -26,10 +26,22 @@ from nullpose.solver.kernels.constants import (
 from nullpose.solver.kernels.forms import seen_from
 from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.links import isotropic_share
+from nullpose.solver.kernels.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solver.kernels.scratch import scratch
-from nullpose.solver.kernels.symmetric import tangents
-from nullpose.solver.kernels.vectors import along, dot, row, square_range, store, unit
+from nullpose.solver.kernels.symmetric import squared_distance, tangents
+from nullpose.solver.kernels.vectors import (
+    along,
+    cross,
+    dot,
+    minus,
+    norm,
+    over,
+    row as row_of,
+    square_range,
+    store,
+    unit,
+)
 
 
 @inner_kernel
@@ -48,7 +60,7 @@ def min_distance(points, j, centre, half):
 def turn_to_form(axes, j, c):
     """Put the direction along which point j's dipole is seen in place of that to the point."""
     if axes is not None:
-        v = row(axes, j)
+        v = row_of(axes, j)
         store(unit(along(v, -dot(v, c), c)), c)
 
 
@@ -65,9 +77,9 @@ def frame_at(family, kind, anchor, centre, half, basis):
                 basis[i, m] = 1.0 if i == m else 0.0
         return Frame(kind, anchor, basis, math.inf, math.inf)
     a, b, c = scratch(3), scratch(3), scratch(3)
-    x, y, z = points[anchor, 0] - centre[0], points[anchor, 1] - centre[1], points[anchor, 2] - centre[2]
-    rho = math.sqrt(x * x + y * y + z * z)
-    c[0], c[1], c[2] = x / rho, y / rho, z / rho
+    r = minus(row_of(points, anchor), centre)
+    rho = norm(r)
+    store(over(r, rho), c)
     if isotropic_share(family.ground_leaks, anchor) < 1.0:
         turn_to_form(family.ground_axes, anchor, c)
     tangents(c, a, b)
@@ -135,3 +147,58 @@ def expand_point(family, j, frame, centre, half, form, slopes):
     mixed = math.sqrt(beyond * swing)  # 1 / (a^3 rho), for a the distance and rho that of the anchor
     rise = FORM_RISE * beyond + MIXED_RISE * mixed + SWING_RISE * swing
     return rise, -(FORM_FALL * beyond + MIXED_FALL * mixed + SWING_FALL * swing)
+
+
+@inner_kernel
+def strongest_point(family, centre):
+    """Return the denominators' point that is received most strongly at the centre, or -1."""
+    strongest = 0.0
+    anchor = -1
+    for e in range(family.denominator_weight.shape[0]):
+        j, weight = family.denominator_point[e], family.denominator_weight[e]
+        d = squared_distance(family.points_m[j], centre)
+        if weight > strongest * d:
+            strongest, anchor = weight / d, j
+    return anchor
+
+
+@inner_kernel
+def dipole_sine(axes, j, away):
+    """Return the sine of the angle between point j's dipole and a direction."""
+    if axes is not None:
+        return norm(cross(axes[j], away)) / norm(away)
+    return 1.0
+
+
+@inner_kernel
+def best_frame(family, level_axes, row):
+    """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
+
+    A frame that turns spares us the remainder of the point that it turns towards, and makes all others
+    larger: worth it where one interferer outweighs the rest.
+    """
+    points, centre, half = family.points_m, row[CENTRE:HALF], row[HALF:LEVEL]
+    anchor = strongest_point(family, centre)
+    if anchor < 0 or family.turn.shape[0] > 0 or level_axes:
+        return WORLD, anchor
+    rho = min_distance(points, anchor, centre, half)
+    if isotropic_share(family.ground_leaks, anchor) < 1.0:
+        # the nearer to its own null, the faster its form turns
+        rho *= dipole_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
+        if not rho > 0.0:
+            return WORLD, anchor
+    still = turning = 0.0
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        square = min_square(points, family.numerator_point[k], centre, half)
+        a = math.sqrt(square)
+        scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
+        still += FORM_RISE * scale
+        turning += scale * (FORM_RISE + a / rho * (MIXED_RISE + SWING_RISE * a / rho))
+    for e in range(family.denominator_weight.shape[0]):
+        a = min_distance(points, family.denominator_point[e], centre, half)
+        scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
+        still += FORM_FALL * scale
+        if family.denominator_point[e] != anchor:
+            turning += scale * (FORM_FALL + a / rho * (MIXED_FALL + SWING_FALL * a / rho))
+    return (TOWARDS_POINT if turning < still else WORLD), anchor

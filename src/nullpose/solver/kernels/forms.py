@@ -8,7 +8,7 @@ from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.links import isotropic_share
 from nullpose.solver.kernels.scratch import scratch, zeroed
 from nullpose.solver.kernels.symmetric import add_identity
-from nullpose.solver.kernels.vectors import along, dot, scaled
+from nullpose.solver.kernels.vectors import along, dot, minus, row, scaled
 
 
 @inner_kernel
@@ -74,19 +74,6 @@ def inverse_factor(a, out):
 
 
 @inner_kernel
-def turned_back(turn, j, x, y, z):
-    """Return ``Q_j^T r``: the direction to point j in the coordinates of the axis before its turn."""
-    if turn.shape[0] == 0:
-        return x, y, z
-    q = turn[j]
-    return (
-        q[0, 0] * x + q[1, 0] * y + q[2, 0] * z,
-        q[0, 1] * x + q[1, 1] * y + q[2, 1] * z,
-        q[0, 2] * x + q[1, 2] * y + q[2, 2] * z,
-    )
-
-
-@inner_kernel
 def in_frame(basis, v):
     """Return a vector of the world in a frame."""
     return (
@@ -99,10 +86,7 @@ def in_frame(basis, v):
 @inner_kernel
 def seen_from(points, turn, j, p, basis):
     """Return the direction from p to point j in a frame; in its own coordinates if points are turned."""
-    x, y, z = points[j, 0] - p[0], points[j, 1] - p[1], points[j, 2] - p[2]
-    if turn.shape[0] > 0:
-        return turned_back(turn, j, x, y, z)
-    return in_frame(basis, (x, y, z))
+    return in_frame(turn[j] if turn.shape[0] > 0 else basis, minus(row(points, j), p))
 
 
 @inner_kernel
@@ -123,9 +107,7 @@ def add_form(x, y, z, leak, weight, isotropic, out):
 def add_dipole_form(family, axes, j, basis, r, weight, out):
     """Add ``weight`` times the form of point j's dipole with a perfect null; r is in the frame."""
     if axes is not None:
-        v = in_frame(basis, axes[j])
-        if family.turn.shape[0] > 0:
-            v = turned_back(family.turn, j, axes[j, 0], axes[j, 1], axes[j, 2])
+        v = in_frame(family.turn[j] if family.turn.shape[0] > 0 else basis, axes[j])
         rho2 = dot(r, r)
         a = along(scaled(rho2, v), -dot(v, r), r)
         s = weight / (rho2 * rho2 * rho2)

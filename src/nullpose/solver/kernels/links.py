@@ -15,7 +15,7 @@ import math
 
 from nullpose.solver.kernels.jit import inner_kernel, kernel
 from nullpose.solver.kernels.scratch import scratch, zeroed
-from nullpose.solver.kernels.vectors import cross, dot
+from nullpose.solver.kernels.vectors import along, cross, dot, minus, row, scaled, store
 
 
 @inner_kernel
@@ -23,12 +23,7 @@ def seen_axis(turn, j, u):
     """Return the axis that point j sees."""
     if turn.shape[0] == 0:
         return u[0], u[1], u[2]
-    q = turn[j]
-    return (
-        q[0, 0] * u[0] + q[0, 1] * u[1] + q[0, 2] * u[2],
-        q[1, 0] * u[0] + q[1, 1] * u[1] + q[1, 2] * u[2],
-        q[2, 0] * u[0] + q[2, 1] * u[1] + q[2, 2] * u[2],
-    )
+    return dot(turn[j, 0], u), dot(turn[j, 1], u), dot(turn[j, 2], u)
 
 
 @inner_kernel
@@ -55,18 +50,12 @@ def dipole_link(leak, axes, j, r, u):
 @kernel
 def link_form(family, j, p, u):
     """Return the link of point j, without cancellation beside the null."""
-    point = family.points_m[j]
-    rx, ry, rz = point[0] - p[0], point[1] - p[1], point[2] - p[2]
-    ux, uy, uz = seen_axis(family.turn, j, u)
-    ahead = ux * rx + uy * ry + uz * rz
-    cx = uy * rz - uz * ry
-    cy = uz * rx - ux * rz
-    cz = ux * ry - uy * rx
-    rho2 = rx * rx + ry * ry + rz * rz
-    link = (cx * cx + cy * cy + cz * cz + family.leak * ahead * ahead) / (rho2 * rho2)
+    r, seen = minus(row(family.points_m, j), p), seen_axis(family.turn, j, u)
+    ahead, side, square = dot(seen, r), cross(seen, r), dot(r, r)
+    link = (dot(side, side) + family.leak * ahead * ahead) / (square * square)
     share = isotropic_share(family.ground_leaks, j)
     if share < 1.0:
-        of_dipole = dipole_link(family.leak, family.ground_axes, j, (rx, ry, rz), (ux, uy, uz))
+        of_dipole = dipole_link(family.leak, family.ground_axes, j, r, seen)
         return share * link + (1.0 - share) * of_dipole
     return link
 
@@ -119,7 +108,7 @@ def add_form(family, j, weight, p, u, grad, hess, second):
         return add_parts(family, j, weight, p, u, grad, hess, second)
     q = turn[j]
     v, g, h = scratch(3), zeroed(6), zeroed(6, 6)
-    v[0], v[1], v[2] = seen_axis(turn, j, u)
+    store(seen_axis(turn, j, u), v)
     value = add_parts(family, j, weight, p, v, g, h, second)
     for i in range(3):
         grad[i] += g[i]
@@ -158,30 +147,17 @@ def add_seen_form(family, j, weight, p, u, grad, hess, second):
     """
     leak = family.leak
     bent = 1.0 - leak
-    r = scratch(3)
-    for i in range(3):
-        r[i] = family.points_m[j, i] - p[i]
-    rho2 = dot(r, r)
-    c = dot(u, r)
-    uu = dot(u, u)
-    cx = u[1] * r[2] - u[2] * r[1]
-    cy = u[2] * r[0] - u[0] * r[2]
-    cz = u[0] * r[1] - u[1] * r[0]
-    area = cx * cx + cy * cy + cz * cz + leak * c * c
+    r, ar, au = scratch(3), scratch(3), scratch(3)
+    store(minus(row(family.points_m, j), p), r)
+    rho2, c, uu, side = dot(r, r), dot(u, r), dot(u, u), cross(u, r)
+    area = dot(side, side) + leak * c * c
     i2 = 1.0 / rho2
     i4 = weight * i2 * i2
     i6 = i4 * i2
     i8 = i6 * i2
-    ar = scratch(3)
-    au = scratch(3)
     # (u.u) r - c u and (r.r) u - c r are double cross products: no cancellation beside the null
-    lc = leak * c
-    ar[0] = 2.0 * (cy * u[2] - cz * u[1] + lc * u[0])
-    ar[1] = 2.0 * (cz * u[0] - cx * u[2] + lc * u[1])
-    ar[2] = 2.0 * (cx * u[1] - cy * u[0] + lc * u[2])
-    au[0] = 2.0 * (r[1] * cz - r[2] * cy + lc * r[0])
-    au[1] = 2.0 * (r[2] * cx - r[0] * cz + lc * r[1])
-    au[2] = 2.0 * (r[0] * cy - r[1] * cx + lc * r[2])
+    store(scaled(2.0, along(cross(side, u), leak * c, u)), ar)
+    store(scaled(2.0, along(cross(r, side), leak * c, r)), au)
     for i in range(3):
         grad[i] -= ar[i] * i4 - 4.0 * area * i6 * r[i]
         grad[3 + i] += au[i] * i4
@@ -211,8 +187,7 @@ def add_dipole_form(family, axes, j, weight, p, u, grad, hess, second):
     """
     if axes is not None:
         leak, r, v = family.leak, scratch(3), axes[j]
-        for i in range(3):
-            r[i] = family.points_m[j, i] - p[i]
+        store(minus(row(family.points_m, j), p), r)
         s, uu = dot(r, r), dot(u, u)
         uv, ur, vr = dot(u, v), dot(u, r), dot(v, r)
         side, other = cross(u, r), cross(v, r)

@@ -26,12 +26,15 @@ from nullpose.solver.kernels.attitude import (
 )
 from nullpose.solver.kernels.harmonics import cap_bounds, gain_at, gain_jet
 from nullpose.solver.kernels.jit import inner_kernel
+from nullpose.solver.kernels.symmetric import copy_into
 from nullpose.solver.kernels.vectors import dot, norm, over, row as row_of, scaled, square_range, unit
 
 _WIDEST = 1.0  # radians: directions in wider caps are not expanded
 _HALVINGS = 14
 _PACE = 2.0
 _STEPS = 40
+
+LEAST, MOST, REST = 0, 1, 2  # columns of a point's bounds over a cell
 
 
 @inner_kernel
@@ -44,10 +47,10 @@ def vector_to(points, j, row):
 
 @inner_kernel
 def fill_points(family, pattern, row, space):
-    """Fill every point's value, its bounds over the cell and how wide the cap of its directions is.
+    """Fill every point's bounds over the cell.
 
-    ``room.value`` holds ``g / r^2`` at the middle and ``room.wide`` its bounds: least and largest over the
-    cell, and the bound on a sixth of the third derivative. Returns how far the whole may turn, radians.
+    Of ``g / r^2``: least and largest over the cell, and the bound on a sixth of the third derivative. Returns
+    how far the whole may turn, radians.
     """
     points = family.points_m
     anchor = int(row[ANCHOR])
@@ -64,15 +67,15 @@ def fill_points(family, pattern, row, space):
         width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
         cap_bounds(pattern, unit(a), min(width, math.pi), space.caps)
         least, most = -space.caps[0], space.caps[1]
-        space.wide[j, 0] = max(0.0, least) / far if least >= 0.0 else least / near
-        space.wide[j, 1] = most / near if most >= 0.0 else most / far
-        space.wide[j, 2] = math.inf
+        space.wide[j, LEAST] = max(0.0, least) / far if least >= 0.0 else least / near
+        space.wide[j, MOST] = most / near if most >= 0.0 else most / far
+        space.wide[j, REST] = math.inf
         if width < _WIDEST and e < 0.5:  # in wider cells the third derivative's bound is of no use
             turning = held if is_anchor else whole
             g0 = max(abs(least), abs(most))
             away = 0.0 if is_anchor else e
             rest = third(turning, width, e, away, g0, space.caps[2], space.caps[3], space.caps[4])
-            space.wide[j, 2] = rest / near
+            space.wide[j, REST] = rest / near
     return whole[0]
 
 
@@ -83,9 +86,9 @@ def weak_ratio(family, level, space):
         g = family.denominator_of[k]
         below = family.denominator_isotropic[g]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            below += family.denominator_weight[e] * space.wide[family.denominator_point[e], 0]
+            below += family.denominator_weight[e] * space.wide[family.denominator_point[e], LEAST]
         above = family.numerator_isotropic[k]
-        above += family.numerator_weight[k] * space.wide[family.numerator_point[k], 1]
+        above += family.numerator_weight[k] * space.wide[family.numerator_point[k], MOST]
         if above < level * below * (1.0 - 1e-12):
             return k
     return -1
@@ -107,12 +110,12 @@ def middle(family, pattern, level, row, space):
     for k in range(family.numerator_point.shape[0]):
         g, j = family.denominator_of[k], family.numerator_point[k]
         isotropic, weight = family.numerator_isotropic[k], family.numerator_weight[k]
-        above = isotropic + weight * min(space.wide[j, 1], space.value[j] + space.wide[j, 2])
+        above = isotropic + weight * min(space.wide[j, MOST], space.value[j] + space.wide[j, REST])
         value = isotropic + weight * space.value[j]
         below = base = family.denominator_isotropic[g]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
             j, weight = family.denominator_point[e], family.denominator_weight[e]
-            below += weight * max(space.wide[j, 0], space.value[j] - space.wide[j, 2])
+            below += weight * max(space.wide[j, LEAST], space.value[j] - space.wide[j, REST])
             base += weight * space.value[j]
         promising = promising or above < level * below
         least = min(least, value / base)
@@ -122,22 +125,19 @@ def middle(family, pattern, level, row, space):
 @inner_kernel
 def expand(family, pattern, row, space):
     """Fill value, gradient and Hessian of every point's ``g / r^2`` at a cell's middle."""
-    points, first = family.points_m, int(row[CHART])
+    points, first, stiff = family.points_m, int(row[CHART]), space.stiff
     for j in range(points.shape[0]):
         a = in_body(space.frame, vector_to(points, j, row))
         square = dot(a, a)
         length = math.sqrt(square)
         move(space.frame, a, space.firsts, space.seconds)
-        space.value[j] = gain_jet(pattern, over(a, length), space.pull, space.stiff) / square
+        space.value[j] = gain_jet(pattern, over(a, length), space.pull, stiff) / square
         p1, p2 = 1.0 / (square * length), 1.0 / (square * square)
-        pull = (p1 * space.pull[0], p1 * space.pull[1], p1 * space.pull[2])
+        pull = scaled(p1, space.pull)
         for m in range(6):
             i, f = (first + m) % 3 if m < 3 else m, row_of(space.firsts, m)
             space.slope[j, i] = dot(pull, f)
-            stiff = space.stiff
-            pushed = scaled(
-                p2, (dot(row_of(stiff, 0), f), dot(row_of(stiff, 1), f), dot(row_of(stiff, 2), f))
-            )
+            pushed = scaled(p2, (dot(stiff[0], f), dot(stiff[1], f), dot(stiff[2], f)))
             for n in range(m, 6):
                 k = (first + n) % 3 if n < 3 else n
                 bend = dot(pushed, row_of(space.firsts, n)) + dot(pull, row_of(space.seconds[m], n))
@@ -151,8 +151,8 @@ def add_point(space, k, j, weight):
 
     Where the bound over the cell alone is nearer than the expansion's remainder, it takes the place of both.
     """
-    value, limit = space.value[j], space.wide[j, 1] if weight > 0.0 else space.wide[j, 0]
-    rest = space.wide[j, 2]
+    value, limit = space.value[j], space.wide[j, MOST] if weight > 0.0 else space.wide[j, LEAST]
+    rest = space.wide[j, REST]
     if space.one_sided[j] and abs(limit - value) < rest:
         rest = abs(limit - value)
         for i in range(6):
@@ -297,14 +297,14 @@ def descended(family, level, half, multipliers, space):
         value = upper(family, level, half, multipliers, space)
         if value < 0.0:
             return True
+        # the slopes by the multipliers tell how far any others could lower a convex function
         low, high, mean = math.inf, -math.inf, 0.0
         for k in range(n):
             low, high = min(low, space.by_l[k]), max(high, space.by_l[k])
             mean += multipliers[k] * space.by_l[k]
         if value < least:
             least = value
-            for k in range(n):
-                space.best[k] = multipliers[k]
+            copy_into(multipliers, space.best)
         if value + low - mean > 0.0:
             break  # convex: no multipliers do better than this
         size, total = _PACE / ((high - low) * math.sqrt(1.0 + step)), 0.0
@@ -314,6 +314,5 @@ def descended(family, level, half, multipliers, space):
             total += multipliers[k]
         for k in range(n):
             multipliers[k] /= total
-    for k in range(n):
-        multipliers[k] = space.best[k]
+    copy_into(space.best, multipliers)
     return False

@@ -103,6 +103,19 @@ def combination(frame, a):
 
 
 @inner_kernel
+def signs(corner):
+    """Return on which sides of three coordinates a corner of a box lies."""
+    return 1.0 if corner & 1 else -1.0, 1.0 if corner & 2 else -1.0, 1.0 if corner & 4 else -1.0
+
+
+@inner_kernel
+def corner_of(centre, half, corner):
+    """Return a corner of a box."""
+    x, y, z = signs(corner)
+    return centre[0] + x * half[0], centre[1] + y * half[1], centre[2] + z * half[2]
+
+
+@inner_kernel
 def square_range(point, centre, half, axes):
     """Bound the squared distances from a point to a box along the first axes: the least and the largest."""
     least = most = 0.0

@@ -6,11 +6,13 @@ import numpy as np
 
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS
 from nullpose.solver.kernels.exclusion import is_level
-from nullpose.solver.kernels.forms import add_denominator, add_point, congruence, inverse_factor
+from nullpose.solver.kernels.forms import add_denominator, add_point, congruence, in_frame, inverse_factor
 from nullpose.solver.kernels.jit import inner_kernel
 from nullpose.solver.kernels.links import denominator_at, numerator_at
 from nullpose.solver.kernels.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
 from nullpose.solver.kernels.scratch import scratch
+from nullpose.solver.kernels.symmetric import smallest_of
+from nullpose.solver.kernels.vectors import dot, store
 
 _THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
 _STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
@@ -116,18 +118,13 @@ def fill_values(family, centre, level, axis, size, values):
         excess = level * (size - denominator_at(family, g, centre, axis))
         for k in range(ratios):
             values[k] += excess if family.denominator_of[k] == g else 0.0
-    smallest = values[0]
-    for k in range(1, ratios):
-        smallest = min(smallest, values[k])
-    return smallest
+    return smallest_of(values[:ratios])
 
 
 @inner_kernel
 def whiten_axis(basis, back, u, w):
     """Fill an axis of the world in whitened coordinates."""
-    v0 = basis[0, 0] * u[0] + basis[1, 0] * u[1] + basis[2, 0] * u[2]
-    v1 = basis[0, 1] * u[0] + basis[1, 1] * u[1] + basis[2, 1] * u[2]
-    v2 = basis[0, 2] * u[0] + basis[1, 2] * u[1] + basis[2, 2] * u[2]
+    v0, v1, v2 = in_frame(basis, u)
     # back is upper triangular: w solves back w = v
     w[2] = v2 / back[2, 2]
     w[1] = (v1 - back[1, 2] * w[2]) / back[1, 1]
@@ -137,8 +134,5 @@ def whiten_axis(basis, back, u, w):
 @inner_kernel
 def axis_of(basis, back, w, axis):
     """Fill the axis of the world, of any length, that whitened coordinates stand for."""
-    v = scratch(3)
-    for i in range(3):
-        v[i] = back[i, 0] * w[0] + back[i, 1] * w[1] + back[i, 2] * w[2]
-    for i in range(3):
-        axis[i] = basis[i, 0] * v[0] + basis[i, 1] * v[1] + basis[i, 2] * v[2]
+    v = dot(back[0], w), dot(back[1], w), dot(back[2], w)
+    store((dot(basis[0], v), dot(basis[1], v), dot(basis[2], v)), axis)

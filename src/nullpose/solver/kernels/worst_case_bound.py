@@ -18,7 +18,19 @@ import numpy as np
 from nullpose.solver.kernels.constants import VECTOR_BEND, VECTOR_SLOPE
 from nullpose.solver.kernels.jit import heap_kernel, inner_kernel
 from nullpose.solver.kernels.node import split_across
-from nullpose.solver.kernels.vectors import along, combination, cross, dot, minus, norm, row, scaled, store
+from nullpose.solver.kernels.vectors import (
+    along,
+    combination,
+    corner_of,
+    cross,
+    dot,
+    minus,
+    norm,
+    row,
+    scaled,
+    signs,
+    store,
+)
 from nullpose.solver.kernels.worst_case import (
     FloatArray,
     Vector,
@@ -77,19 +89,6 @@ def axis_at(errors, face, x):
     """Return the axis of a point of a face."""
     frame = errors.frame
     return combination((frame[face], frame[(face + 1) % 3], frame[(face + 2) % 3]), x)
-
-
-@inner_kernel
-def signs(corner):
-    """Return on which sides of a cell's three coordinates a corner lies."""
-    return 1.0 if corner & 1 else -1.0, 1.0 if corner & 2 else -1.0, 1.0 if corner & 4 else -1.0
-
-
-@inner_kernel
-def corner_of(centre, half, corner):
-    """Return a corner of three of a cell's coordinates."""
-    x, y, z = signs(corner)
-    return centre[0] + x * half[0], centre[1] + y * half[1], centre[2] + z * half[2]
 
 
 @inner_kernel
