@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.mutations.truth import Data, Problem, pose_of
+from nullpose.certificate.certificate import COLUMNS
 from nullpose.certificate.file import scenario_digest
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
@@ -28,11 +29,8 @@ def changed(value: Any, rng: np.random.Generator) -> Any:
     if value is None:
         return "M"
     if isinstance(value, str):
-        schemes, axes = (
-            ["optimum", "vertical", "zero-interference", "maximum-gain"],
-            ["free", "null M", "null M1"],
-        )
-        return str(rng.choice([*schemes, *axes, "M1", value + "x", value[:-1]]))
+        schemes = ("optimum", "vertical", "zero-interference", "maximum-gain")
+        return str(rng.choice([*schemes, "free", "null M", "null M1", "M1", value + "x", value[:-1]]))
     if isinstance(value, int):
         steps = [1, -1, 2, -2, int(rng.integers(-60, 60)), 2**40, -(2**40)]
         return value + int(rng.choice(steps))
@@ -46,29 +44,17 @@ def changed(value: Any, rng: np.random.Generator) -> Any:
     return value + float(rng.normal() * 10.0 ** rng.uniform(-6, 2)) if kind == 3 else 0.0
 
 
-COLUMNS = (
-    "box",
-    "cell",
-    "test",
-    "point",
-    "level",
-    "mix",
-    "sides",
-    "band",
-    "ball",
-    "ball_multiplier",
-    "mixes",
-)
+_LEAF = (*COLUMNS, "mixes")
 _CLAIM = ("value", "upper_bound", "position_m", "angle", "root_m", "axis", "scheme", "null_jammer")
 _FILE = ("format", "version", "scenario_sha256", "scenario", "scenario, digest redone")
 _REDONE = tuple(f"{part}, claim redone" for part in ("scenario", "airframe", "no_fly", "antenna"))
-CLASSES = (*COLUMNS, *_CLAIM, *_FILE, *_REDONE, "leaf dropped", "leaf moved", "tree dropped")
+CLASSES = (*_LEAF, *_CLAIM, *_FILE, *_REDONE, "leaf dropped", "leaf moved", "tree dropped")
 
 
 def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
     """Return where a mutation of a class may strike."""
     tree = int(rng.integers(len(data["trees"])))
-    if kind in COLUMNS:
+    if kind in _LEAF:
         column = data["trees"][tree]["leaves"].get(kind, [])
         rows = list(range(len(column)))
         if kind in ("cell", "sides"):  # rather those that have a cell
@@ -145,13 +131,9 @@ def forged(data: Data, *, keep_bound: bool = False) -> Data | None:
 _LEAVES = ("leaf doubled", "leaves shuffled", "tests exchanged", "box halved", "cell halved", "cell moved")
 _ROOT = ("leaves exchanged", "root shrunk", "root grown")
 _NUMBERS = ("bound lowered", "bound at the value", "bound raised", "claim scaled", "levels lowered")
-_MIXES = (
-    "multipliers scaled",
-    "multipliers exchanged",
-    "pose moved, claim redone",
-    "pose turned, claim redone",
-)
-MORE = (*_LEAVES, *_ROOT, *_NUMBERS, *_MIXES, "key added", "key dropped", "no number", "several")
+_MIXES = ("multipliers scaled", "multipliers exchanged")
+_POSES = ("pose moved, claim redone", "pose turned, claim redone")
+MORE = (*_LEAVES, *_ROOT, *_NUMBERS, *_MIXES, *_POSES, "key added", "key dropped", "no number", "several")
 """Classes of larger changes, many of them such as leave the claim true or nearly."""
 _AFTER_EACH_OTHER = MORE[:-3]
 
@@ -241,9 +223,8 @@ def _change_claim(kind: str, data: Data, rng: np.random.Generator) -> None:
         size = 10.0 * _size(rng)
         data["pose"]["position_m"] = [x + size * float(rng.normal()) for x in data["pose"]["position_m"]]
     elif kind == "pose turned, claim redone":
-        data["pose"][str(rng.choice(["roll_rad", "pitch_rad", "yaw_rad"]))] += _size(rng) * float(
-            rng.normal()
-        )
+        angle = str(rng.choice(["roll_rad", "pitch_rad", "yaw_rad"]))
+        data["pose"][angle] += _size(rng) * float(rng.normal())
     for tree in data["trees"]:  # so that the change is not found out by a comparison
         tree["leaves"]["level"] = [min(level, data["upper_bound"]) for level in tree["leaves"]["level"]]
 

@@ -101,9 +101,8 @@ def _no_fly(rng: np.random.Generator) -> Table:
 def _fence(rng: np.random.Generator) -> Table:
     """A fence that often leaves out where it would be best to be."""
     plain = _plain(rng)
-    plain["airspace"]["geofence_m"] = _star(
-        rng, rng.uniform(10.0, 50.0, size=2), float(rng.uniform(10.0, 30.0))
-    )
+    middle, size = rng.uniform(10.0, 50.0, size=2), float(rng.uniform(10.0, 30.0))
+    plain["airspace"]["geofence_m"] = _star(rng, middle, size)
     return plain
 
 
@@ -240,18 +239,6 @@ MOUNTS_DEG = (0.0, 30.0, 45.0, 89.999, 90.0)
 """Mounts of the antenna on level vehicles."""
 
 
-def _short_dipole(rng: np.random.Generator) -> Table:
-    return {}
-
-
-def _leaky_dipole(rng: np.random.Generator) -> Table:
-    return {"null_depth_db": float(rng.choice([0.0, 3.0, 20.0, 50.0]))}
-
-
-def _half_wave(rng: np.random.Generator) -> Table:
-    return {"kind": "half-wave"}
-
-
 def _profile(rng: np.random.Generator) -> Table:
     """A gain that is the same all round, often with a lobe below zero."""
     degree = int(rng.integers(1, 7))
@@ -268,10 +255,11 @@ def _pattern(rng: np.random.Generator) -> Table:
     return {"kind": "pattern", "harmonics": [[2.0], *rows[1:]]}
 
 
+# a short dipole, one that leaks, a half-wave dipole, a profile, any pattern
 _ON_THE_DRONE: tuple[Callable[[np.random.Generator], Table], ...] = (
-    _short_dipole,
-    _leaky_dipole,
-    _half_wave,
+    lambda rng: {},
+    lambda rng: {"null_depth_db": float(rng.choice([0.0, 3.0, 20.0, 50.0]))},
+    lambda rng: {"kind": "half-wave"},
     _profile,
     _pattern,
 )

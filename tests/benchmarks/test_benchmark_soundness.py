@@ -43,25 +43,18 @@ def test_the_search_would_notice() -> None:
     assert outcome.searched >= outcome.value * (1.0 - 1e-9)
 
 
-@pytest.mark.parametrize("number", [210, 5059, 5135, 5143])
-def test_hard_scenes_with_antennas(number: int) -> None:
-    """Positions at the level itself have a certificate; a proof that is cut short keeps to the airspace."""
-    assert check_scene(make_feature_scene("antennas", number), starts=5).faults == ()
+# positions at the level itself, and a proof that is cut short; a large lobe below zero, and a root of 260 m
+# where no rate is positive; gains that are equal all round
+HARD = [("antennas", 210), ("antennas", 5059), ("antennas", 5135), ("antennas", 5143)]
+HARD += [("patterns", 16), ("patterns", 117), ("gaps", 169)]
 
 
-@pytest.mark.parametrize("number", [16, 117])
-def test_hard_scenes_with_patterns(number: int) -> None:
-    """A large lobe below zero, and a root of 260 m where no rate is positive: both are verified."""
-    outcome = check_scene(make_feature_scene("patterns", number), starts=5)
+@pytest.mark.parametrize(("feature", "number"), HARD)
+def test_hard_scenes_of_a_feature(feature: str, number: int) -> None:
+    """Scenes that were unsound once, or not verified."""
+    outcome = check_scene(make_feature_scene(feature, number), starts=5, time_limit_s=60.0)
     assert outcome.faults == ()
-    assert outcome.checked
-
-
-def test_equal_gains_all_round_are_verified() -> None:
-    """A profile that is the same in every direction: some thousand leaves, each with a whole turn."""
-    outcome = check_scene(make_feature_scene("gaps", 169), starts=5, time_limit_s=60.0)
-    assert outcome.faults == ()
-    assert outcome.checked
+    assert outcome.checked or feature == "antennas"
 
 
 @pytest.mark.parametrize("number", [321, 692])
