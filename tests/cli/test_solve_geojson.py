@@ -42,18 +42,3 @@ def test_without_an_origin_nothing_is_solved(run: Run, paper: str, tmp_path: Pat
     assert "error: GeoJSON: the scenario has no origin" in result.stderr
     assert "[origin]" in result.stderr
     assert not out.exists()
-
-
-def test_faults_of_the_nodes_file_are_told_with_their_place(run: Run, geodetic: str, tmp_path: Path) -> None:
-    """A fault in the file of nodes is reported under the scenario's name, at its own place."""
-    example = Path(geodetic)
-    nodes = example.with_name("nodes.geojson").read_text(encoding="utf-8")
-    (tmp_path / "nodes.geojson").write_text(nodes.replace("50.0006,", "500.006,"), encoding="utf-8")
-    scene = tmp_path / "scene.toml"
-    scene.write_text(example.read_text(encoding="utf-8"), encoding="utf-8")
-    result = run("check", scene)
-    assert result.exit_code == 2
-    assert (
-        "  nodes.geojson: features[1].geometry: got longitude 14.5012 and latitude 500.006, must be"
-        in result.stderr
-    )

@@ -69,16 +69,12 @@ def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:
     earthly.write_text(Path(ROBUST).read_text(encoding="utf-8") + origin, encoding="utf-8")
     path = tmp_path / "poses.geojson"
     result = run("solve", earthly, "--robust", "--fast", "--geojson", path)
-    assert (result.exit_code, result.stderr) == (0, "")
-    for words in ("Robust pose", "Best pose without errors", "m over the WGS-84 ellipsoid", "m over the sea"):
-        assert words in result.stdout
-    assert result.stdout.count("on the Earth") == 2
+    assert (result.exit_code, result.stderr, result.stdout.count("on the Earth")) == (0, "", 2)
     robust, nominal, *_ = json.loads(path.read_text(encoding="utf-8"))["features"]
     assert [robust["properties"]["kind"], nominal["properties"]["kind"]] == ["pose", "pose-as-stated"]
     answer = json.loads(run("solve", earthly, "--robust", "--fast", "--json").stdout)
     for one, feature in ((answer["robust"], robust), (answer["nominal"], nominal)):
         place = one["frames"]["geodetic"]
-        assert place["alt_m"] - place["alt_msl_m"] == pytest.approx(45.0)
         assert feature["geometry"]["coordinates"][:2] == pytest.approx([place["lon_deg"], place["lat_deg"]])
         north_m, east_m, _ = one["frames"]["ned"]["position_m"]
         assert [east_m, north_m] == one["position_m"][:2]

@@ -78,16 +78,6 @@ def test_a_rejected_certificate_names_the_leaf(run: Run, proof: Path) -> None:
     assert "leaf 7" in json.loads(answer.stdout)["message"]
 
 
-@pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\xff\xfe", b"\x1f\x8b\x08\x00", b'{"format": 1}'])
-def test_what_is_no_certificate_is_refused(content: bytes, run: Run, tmp_path: Path) -> None:
-    """A malformed file is bad input: exit code 2, the file named on standard error."""
-    path = tmp_path / "proof.json"
-    path.write_bytes(content)
-    result = run("verify", path)
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr.startswith(f"error: {path}: ")
-
-
 def test_malformed_parts_are_named(run: Run, proof: Path) -> None:
     """A missing key, a changed scenario and a missing file are told by name, with exit code 2."""
     spoil(proof, lambda data: data["pose"].pop("roll_rad"))
