@@ -5,9 +5,22 @@ import pytest
 
 from nullpose.antenna.caps import pattern_arrays
 from nullpose.antenna.harmonics import Harmonics
-from nullpose.solver.kernels.harmonics import fill_cap, fill_gains, fill_jet
+from nullpose.solver.kernels.harmonics import cap_bounds, gain_at, gain_jet
+from nullpose.solver.kernels.jit import kernel
 
 STEP = 2e-3  # of differences, radians
+
+
+@kernel
+def fill_jet(pattern, direction, slope, bend):
+    """Fill gradient and Hessian of the gain over squared distance."""
+    return gain_jet(pattern, (direction[0], direction[1], direction[2]), slope, bend)
+
+
+@kernel
+def fill_cap(pattern, direction, radius, out):
+    """Fill the five bounds over a cap."""
+    cap_bounds(pattern, (direction[0], direction[1], direction[2]), radius, out)
 
 
 def pattern(degree: int, seed: int) -> Harmonics:
@@ -48,9 +61,9 @@ def test_samples_are_within(degree: int) -> None:
 def test_kernels_evaluate_the_pattern() -> None:
     """Gain, gradient and Hessian of the gain over squared distance are those of the harmonics."""
     harmonics = pattern(8, 3)
-    arrays, found = pattern_arrays(harmonics), np.empty(50)
+    arrays = pattern_arrays(harmonics)
     ways = unit(np.random.default_rng(4).normal(size=(50, 3)))
-    fill_gains(arrays, ways, found)
+    found = [gain_at(arrays, *way) for way in ways]
     np.testing.assert_allclose(found, np.maximum(0.0, harmonics.gain(ways)), atol=1e-12)
 
     def over_square(r: np.ndarray) -> float:

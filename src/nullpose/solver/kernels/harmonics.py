@@ -79,11 +79,7 @@ def gain_jet(pattern, d, slope, bend):
     h = ((hxx, hxy, hxz), (hxy, -hxx, hyz), (hxz, hyz, hzz))
     outward = x * hx + y * hy + z * hz
     across = (hx - outward * x, hy - outward * y, hz - outward * z)
-    hd = (
-        hxx * x + hxy * y + hxz * z,
-        hxy * x - hxx * y + hyz * z,
-        hxz * x + hyz * y + hzz * z,
-    )
+    hd = (hxx * x + hxy * y + hxz * z, hxy * x - hxx * y + hyz * z, hxz * x + hyz * y + hzz * z)
     dhd = x * hd[0] + y * hd[1] + z * hd[2]
     for i in range(3):
         slope[i] = across[i] - 2.0 * g * d[i]
@@ -134,22 +130,3 @@ def cap_bounds(pattern, d, radius, out):
             at = pattern.offset[level, across] + i * columns + j % columns
             for n in range(5):
                 out[n] = max(out[n], pattern.caps[at, n])
-
-
-@kernel
-def fill_gains(pattern, directions, out):
-    """Fill the gains towards many unit vectors, (n, 3) in body axes."""
-    for i in range(directions.shape[0]):
-        out[i] = gain_at(pattern, directions[i, 0], directions[i, 1], directions[i, 2])
-
-
-@kernel
-def fill_jet(pattern, direction, slope, bend):
-    """Fill gradient and Hessian of :func:`gain_jet` at a direction, (3,); return the gain."""
-    return gain_jet(pattern, (direction[0], direction[1], direction[2]), slope, bend)
-
-
-@kernel
-def fill_cap(pattern, direction, radius, out):
-    """Fill the five bounds over a cap about a direction, (3,)."""
-    cap_bounds(pattern, (direction[0], direction[1], direction[2]), radius, out)
