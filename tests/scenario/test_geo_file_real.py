@@ -179,6 +179,21 @@ def test_zones_with_too_many_corners_are_cut_once(tmp_path: Path) -> None:
     ]
 
 
+def test_zones_with_too_many_corners_are_cut_to_the_fence(tmp_path: Path) -> None:
+    """A fence that is at fault is told, and stops nothing."""
+    rings = [shapely.Point(HERE[0] + x, HERE[1]).buffer(0.01, quad_segs=1200) for x in (0.0105, 0.2)]
+    write_geojson(tmp_path / "z.geojson", [(ring, {}) for ring in rings])
+    fence = f"[[{HERE[1]}, {HERE[0]}], [{HERE[1]}, {HERE[0] + 1e-3}], [{HERE[1] + 1e-3}, {HERE[0]}]]"
+    for corners, words in ((fence, None), ("3", "geofence_lat_lon_deg: got 3, must be a list")):
+        airspace = f'altitude_m = [10, 120]\nno_fly_from = "z.geojson"\ngeofence_lat_lon_deg = {corners}'
+        path = scene(tmp_path, airspace)
+        if words is None:
+            assert len(load(path).airspace.no_fly) == 1
+        else:
+            with pytest.raises(ScenarioError, match=words):
+                load(path)
+
+
 def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> None:
     """Real sets have them: a loop at a corner, a ring that runs twice around, a hole around its border."""
     x, y = HERE

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from shapely import Polygon
 
+from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
 from nullpose.scenario.areas import Area, account_of, areas_of, polygons_of
 from nullpose.scenario.arrays import Floats
@@ -24,6 +25,7 @@ REACH_M = 6e4
 """How far east, west, north and south of the origin zones of files count; in degrees this square lies within
 the 100 km that a frame holds."""
 _HALVES_M = (REACH_M, 3e4, 1.5e4, 8e3, 4e3, 2e3)  # of squares about the origin
+_BOUNDS = {"x_m", "y_m", "geofence_m", "geofence_lat_lon_deg"}
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
@@ -132,14 +134,13 @@ def _place(origin: Any) -> Floats | None:
 
 def _box_m(airspace: Raw, half_m: float, place: Floats) -> Floats:
     """Return the ends of where the vehicle may be within a square about the origin, (2, 2), by axis last."""
-    ends_m = np.array([[-half_m, -half_m], [half_m, half_m]])
-    fence = airspace.get("geofence_m")
-    if airspace.get("geofence_lat_lon_deg"):
-        corners = [[lat, lon, 0.0] for lat, lon in airspace["geofence_lat_lon_deg"]]
-        fence = enu_from_geodetic(corners, place)[:, :2]
+    bounds = Airspace._sound_part({key: airspace[key] for key in _BOUNDS & airspace.keys()})
+    ends_m, fence = np.array([[-half_m, -half_m], [half_m, half_m]]), bounds.geofence_m
+    if bounds.geofence_lat_lon_deg:
+        fence = enu_from_geodetic(np.insert(bounds.geofence_lat_lon_deg, 2, 0.0, axis=-1), place)[:, :2]
     if fence is not None:
         ends_m = np.clip(ends_m, np.min(fence, axis=0), np.max(fence, axis=0))
-    sides_m = np.array([_ends(airspace.get(key)) or (-np.inf, np.inf) for key in ("x_m", "y_m")])
+    sides_m = np.array([bounds.x_m or (-np.inf, np.inf), bounds.y_m or (-np.inf, np.inf)])
     return np.asarray(np.clip(ends_m, *sides_m.T))
 
 

@@ -177,9 +177,9 @@ def _area(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool
     if not (polygons or cylinders):
         return None
     polygons = [polygon for polygon in polygons if polygon.envelope.intersects(reach)]
-    mended = [sound(polygon, feature.place, is_fence) for polygon in polygons]
-    counts["crossing"] += sum(is_crossing for _, is_crossing in mended)
-    ground = [polygon for polygon, _ in mended if polygon.area]
+    checked = [sound(polygon, feature.place, is_fence) for polygon in polygons]
+    counts["crossing"] += sum(is_crossing for _, is_crossing in checked)
+    ground = [polygon for polygon, _ in checked if polygon.area]
     if polygons and not ground and not cylinders:
         counts["wall"] += 1
         return None

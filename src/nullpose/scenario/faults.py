@@ -59,14 +59,14 @@ def collected(title: str, faults: Iterable[tuple[Place, str]]) -> ValidationErro
 
 
 def reworded(
-    error: ValidationError, fields: Mapping[str, FieldInfo], untold: Collection[str] = ()
+    error: ValidationError, fields: Mapping[str, FieldInfo], left_out: Collection[str] = ()
 ) -> Iterator[tuple[Place, str]]:
     """Yield in plain words what pydantic found in a table.
 
     Args:
         error: what it found.
         fields: the fields of the table.
-        untold: keys of which it need not be said that they are missing.
+        left_out: keys of which it need not be said that they are missing.
     """
     for entry in error.errors(include_url=False):
         place, kind = entry["loc"], entry["type"]
@@ -75,7 +75,7 @@ def reworded(
             message = f"missing; it must be given: {(fields[str(place[-1])].description or '').rstrip('.')}"
         elif kind != _KIND:
             message = f"got {described(entry['input'])}, which cannot be used here"
-        if kind != "missing" or place[-1] not in untold:
+        if kind != "missing" or place[-1] not in left_out:
             yield place, message
 
 

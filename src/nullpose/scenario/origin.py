@@ -189,10 +189,10 @@ def in_metres(table: Any, origin: Origin) -> dict[str, Floats]:
         if (corners := getattr(table, key, None)) is not None
     }
     heights_m = [
-        value + (base_m - own_m)
+        value + (base_m - zero_m)
         for key in ALTITUDE_KEYS
         if (value := getattr(table, key, None)) is not None
-        and (own_m := 0.0 if key == "alt_agl_m" else getattr(origin, key)) is not None
+        and (zero_m := 0.0 if key == "alt_agl_m" else getattr(origin, key)) is not None
     ]
     place = [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]
     if heights_m and None not in place:

@@ -66,8 +66,8 @@ def close_to_degrees(origin: Origin | None, positions_m: Sequence[Any], remedy: 
     """
     if origin is None or not len(positions_m) or max(abs(origin.lat_deg), abs(origin.lon_deg)) < 1.0:
         return  # near latitude and longitude zero small numbers are as likely metres
-    own_deg, planes_m = np.array([origin.lat_deg, origin.lon_deg]), np.array(positions_m)[:, :2]
-    apart = np.minimum(*(np.abs(planes_m - each).max(axis=1) for each in (own_deg, own_deg[::-1])))
+    origin_deg, planes_m = np.array([origin.lat_deg, origin.lon_deg]), np.array(positions_m)[:, :2]
+    apart = np.minimum(*(np.abs(planes_m - each).max(axis=1) for each in (origin_deg, origin_deg[::-1])))
     if apart.min() < _NEAR_DEG:
         east_m, north_m = planes_m[apart.argmin()]
         yield (

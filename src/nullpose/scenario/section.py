@@ -75,8 +75,10 @@ class Section(BaseModel):
     @model_serializer(mode="wrap")
     def _serialised(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         fields = type(self).model_fields
-        untold = {key for key in self.unstated if getattr(self, key) == fields[key].default}
-        return {key: value for key, value in handler(self).items() if value is not None and key not in untold}
+        left_out = {key for key in self.unstated if getattr(self, key) == fields[key].default}
+        return {
+            key: value for key, value in handler(self).items() if value is not None and key not in left_out
+        }
 
     @classmethod
     def heading(cls) -> str:

@@ -65,8 +65,8 @@ def read_pattern(
     with _lines_of(path) as lines:
         name = _format_of("\n".join(text for _, text in lines), file_format)
         table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(path).name} ({name})")
-        is_told = estimate or not table.caveat
-        require(is_told, f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
+        is_allowed = estimate or not table.caveat
+        require(is_allowed, f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
         require_antenna(table := _scaled(table))
         harmonics = require_fit(table)
         if not table.caveat:
@@ -125,8 +125,8 @@ def _format_of(text: str, asserted: str | None) -> str:
     looks = [
         name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE | re.IGNORECASE)
     ]
-    is_known = asserted is not None or looks
-    require(is_known, f"it has the marks of no known format; export the pattern in one of {formats}")
+    has_format = asserted is not None or looks
+    require(has_format, f"it has the marks of no known format; export the pattern in one of {formats}")
     looks_like = f"it looks like {looks[0] if looks else 'none of them'}"
     is_like = asserted in (None, *looks)
     require(is_like, f"got the format {asserted!r}, must be one of {formats}; {looks_like}")
