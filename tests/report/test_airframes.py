@@ -9,7 +9,8 @@ import pytest
 from rich.console import Console
 
 from nullpose import Airframe, ResultTable, Status, compare_airframes, load
-from nullpose.report.comparison import airframes_view, answer_lines
+from nullpose.report.answer import answer_lines
+from nullpose.report.comparison import airframes_view
 from nullpose.report.figures.bars import draw_comparison
 from nullpose.scenario import apply_overrides
 from nullpose.study.vehicles import dipoles

@@ -6,7 +6,8 @@ from pathlib import Path
 from rich.console import Console
 
 from nullpose import Scenario, load
-from nullpose.report.comparison import antennas_answer as answer, antennas_view
+from nullpose.report.answer import antennas_answer as answer
+from nullpose.report.comparison import antennas_view
 from nullpose.study import compare_antennas, compare_schemes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

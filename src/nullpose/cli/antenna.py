@@ -85,7 +85,8 @@ def compare(
     best pose for the stated antennas. Ideal: a short dipole, and isotropic antennas on the ground.
     """
     scenario = scene.read()
-    from nullpose.report.comparison import antennas_answer, antennas_view
+    from nullpose.report.answer import antennas_answer
+    from nullpose.report.comparison import antennas_view
     from nullpose.study import compare_antennas
 
     with compiling_announced(), Ticker("comparing antennas") as ticker:

@@ -31,7 +31,8 @@ def compare(
     """Solve under the paper's four schemes, or with several vehicles."""
     scenario = scene.read()
     prepare_outputs(scene, figure=figure, width=width)
-    from nullpose.report.comparison import airframes_view, answer_lines, comparison_view
+    from nullpose.report.answer import answer_lines
+    from nullpose.report.comparison import airframes_view, comparison_view
     from nullpose.study.vehicles import compare_airframes, compare_schemes, verdict
 
     solver: Any = compare_airframes if airframes else compare_schemes

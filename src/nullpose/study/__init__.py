@@ -1,13 +1,14 @@
 """Many solves and the table that they fill: a setting swept, vehicles or antennas compared."""
 
 from nullpose.study.antenna_comparison import compare_antennas
-from nullpose.study.case import AIRFRAME_CASES, Case, cases_of
+from nullpose.study.case import AIRFRAME_CASES, Case
 from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
 from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.sweep import spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import Field, value_map
 from nullpose.study.vehicles import (
+    cases_of,
     compare_airframes,
     compare_schemes,
     difference,

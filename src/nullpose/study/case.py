@@ -5,24 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, TypeAdapter
+from pydantic import BeforeValidator, Field
 
-from nullpose.objectives import USUAL
-from nullpose.physics import Pose
 from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, rejection
 from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.section import Section
-from nullpose.scenario.units import AttitudeDegrees, Label, Position
+from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described
-from nullpose.study.evaluation import pose_faults
+from nullpose.study.fixed_pose import FixedPose
 
 OMNIDIRECTIONAL = "omnidirectional"  # the case that other vehicles are compared with
 FILE_VEHICLE = "stated"  # the case of the scenario's own vehicle, if it is none of the others
@@ -70,11 +66,6 @@ class _Named(Choice):
 
 _VEHICLE = _Named("a table with tilt_max_deg and mount_deg, or a name", tuple(_BY_NAME), _BY_NAME)
 _POSE = _Named("a table with position_m, or a name", ("centroid",), {"centroid": {"position_m": "centroid"}})
-_POSITION: TypeAdapter[tuple[float, float, float]] = TypeAdapter(Position)
-_Place = Annotated[
-    tuple[float, float, float] | Literal["centroid"],
-    BeforeValidator(lambda value: value if value in ("centroid",) else _POSITION.validate_python(value)),
-]
 
 
 class _Truth(Rule):
@@ -87,56 +78,6 @@ class _Truth(Rule):
 
 
 _Bool = Annotated[bool, _Truth()]
-
-
-class FixedPose(Section):
-    """A pose that is evaluated in every scene, with nothing searched and nothing proved.
-
-    Args:
-        position_m: where the drone hovers; "centroid" for the lowest allowed position over
-            the centroid of the nodes.
-        roll_deg, pitch_deg, yaw_deg: how it is turned.
-    """
-
-    header: ClassVar[str] = "a table such as { position_m = [0, 0, 20], roll_deg = 90 }"
-    unstated: ClassVar[frozenset[str]] = frozenset({"roll_deg", "pitch_deg", "yaw_deg"})
-
-    position_m: _Place = Field(
-        description="Where the drone hovers: [east, north, up], or centroid for the lowest allowed position "
-        "over the centroid of the nodes.",
-        examples=[[0.0, 25.0, 8.0]],
-    )
-    roll_deg: AttitudeDegrees = Field(default=0.0, description="Roll in degrees.", examples=[90.0])
-    pitch_deg: AttitudeDegrees = Field(default=0.0, description="Pitch in degrees.", examples=[0.0])
-    yaw_deg: AttitudeDegrees = Field(default=0.0, description="Yaw in degrees.", examples=[0.0])
-
-    def on(self, scenario: Scenario) -> Pose:
-        """Return the pose on the scenario's vehicle.
-
-        Args:
-            scenario: with its airframe, which says how the dipole is mounted.
-        """
-        roll, pitch, yaw = (math.radians(angle) for angle in (self.roll_deg, self.pitch_deg, self.yaw_deg))
-        mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
-        position_m = (
-            _over_centroid_m(scenario) if self.position_m == "centroid" else np.array(self.position_m)
-        )
-        return Pose(position_m, roll, pitch, yaw, mount_rad)
-
-
-def _over_centroid_m(scenario: Scenario) -> NDArray[np.float64]:
-    """Return the lowest allowed position over the nodes' centroid; the lowest of all if none is allowed.
-
-    It is at the lowest altitude of the airspace, on the ceiling of a no-fly zone or on a keep-out ball.
-    """
-    points_m = np.vstack([scenario.source_positions_m, scenario.eavesdropper_positions_m])
-    across_m = scenario.node_positions_m[:, :2].mean(axis=0)
-    squares_m2 = scenario.airspace.keep_out_m**2 - np.sum((points_m[:, :2] - across_m) ** 2, axis=1)
-    heights_m = [scenario.airspace.altitude_m[0], *(points_m[:, 2] + np.sqrt(np.maximum(squares_m2, 0.0)))]
-    heights_m += [zone.ceiling_m for zone in scenario.airspace.inner.no_fly if math.isfinite(zone.ceiling_m)]
-    positions_m = [np.append(across_m, height_m) for height_m in sorted(heights_m)]
-    allowed = (each for each in positions_m if not list(pose_faults(scenario, Pose(each, 0.0, 0.0))))
-    return next(allowed, np.append(across_m, heights_m[0]))
 
 
 class Case(Section):
@@ -303,31 +244,6 @@ class Case(Section):
 AIRFRAME_CASES: tuple[Case, ...] = tuple(
     Case(name=name, airframe=airframe) for name, airframe in _AIRFRAMES.items()
 )
-
-ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries
-
-_ARRAY = Array(elements=ARRAY_SIZES[0], layout="linear", spacing_wavelengths=0.5)
-
-
-def cases_of(scenario: Scenario) -> tuple[Case, ...]:
-    """List the vehicles to try for a scenario: its own among the usual ones, if it is none of them.
-
-    Two vehicles are the same if they reach the same axes. Arrays are for hearing nodes only, with the paper's
-    antennas at both ends; their layout and spacing are those that the scenario states, or a line with half a
-    wavelength from one to the next.
-
-    Args:
-        scenario: with or without an airframe or an array.
-    """
-    airframes, array = dict(_AIRFRAMES), scenario.array or _ARRAY
-    if scenario.airframe is not None and not Case(airframe=scenario.airframe).usual:
-        airframes[FILE_VEHICLE] = scenario.airframe
-    by_tilt = sorted(airframes.items(), key=lambda each: each[1].tilt_max_rad)
-    vehicles = tuple(Case(name=name, airframe=airframe) for name, airframe in by_tilt)
-    if scenario.objective != USUAL or scenario.states_antennas:
-        return vehicles
-    sized = (array.model_copy(update={"elements": size}) for size in sorted({*ARRAY_SIZES, array.elements}))
-    return (*vehicles, *(Case(name=f"array-{each.elements}-digital", array=each) for each in sized))
 
 
 def _degrees(angle_rad: float) -> str:

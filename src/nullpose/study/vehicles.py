@@ -3,22 +3,50 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from types import MappingProxyType
 from typing import Any, Unpack
 
 from nullpose.errors import SolveError
-from nullpose.objectives import Quantity
+from nullpose.objectives import USUAL, Quantity
 from nullpose.problem.schemes import Scheme
-from nullpose.scenario import Scenario, require_scenario
+from nullpose.scenario import Array, Scenario, require_scenario
 from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
 from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
-from nullpose.study.case import OMNIDIRECTIONAL, Case, cases_of
+from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, Case
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 
 TOLERANCE = 0.01  # a vehicle suffices if it reaches no less than the omnidirectional one but for this share
 _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
+
+
+ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries
+
+_ARRAY = Array(elements=ARRAY_SIZES[0], layout="linear", spacing_wavelengths=0.5)
+
+
+def cases_of(scenario: Scenario) -> tuple[Case, ...]:
+    """List the vehicles to try for a scenario: its own among the usual ones, if it is none of them.
+
+    Two vehicles are the same if they reach the same axes. Arrays are for hearing nodes only, with the paper's
+    antennas at both ends; their layout and spacing are those that the scenario states, or a line with half a
+    wavelength from one to the next.
+
+    Args:
+        scenario: with or without an airframe or an array.
+    """
+    vehicles, array = AIRFRAME_CASES, scenario.array or _ARRAY
+    of_file = Case(name=FILE_VEHICLE, airframe=scenario.airframe)
+    if of_file.airframe is not None and not of_file.usual:
+        tilts_rad = [case.airframe.tilt_max_rad for case in vehicles if case.airframe]
+        place = bisect_right(tilts_rad, of_file.airframe.tilt_max_rad)
+        vehicles = (*vehicles[:place], of_file, *vehicles[place:])
+    if scenario.objective != USUAL or scenario.states_antennas:
+        return vehicles
+    sized = (array.model_copy(update={"elements": size}) for size in sorted({*ARRAY_SIZES, array.elements}))
+    return (*vehicles, *(Case(name=f"array-{each.elements}-digital", array=each) for each in sized))
 
 
 def compare_schemes(

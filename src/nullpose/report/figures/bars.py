@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
-from nullpose.report.comparison import answer_lines, numbers_of
+from nullpose.report.answer import answer_lines
+from nullpose.report.comparison import numbers_of
 from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, house_style, inches
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import capitalised, number
