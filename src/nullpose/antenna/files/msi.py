@@ -59,6 +59,28 @@ def read_msi(lines: Lines) -> Iterator[Block]:
     for name in _CUTS:
         require(name in keys, f"the cut {name} is missing; both must be there. Is the file cut short?")
     across, down = (_loss_db(lines, keys, name) for name in _CUTS)
+    _require_crossing(across, down)
+    at, text = keys.get("GAIN", (0, ""))
+    amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", text.strip(), flags=re.IGNORECASE))]
+    gain_dbi = numbers(amount, 1, "GAIN, in dBd unless dBi is stated")[0, 0]
+    unit, more_db = ("dBi", 0.0) if "dbi" in text.lower() else ("dBd", DBD)
+    theta, phi = np.meshgrid(np.arange(181), np.arange(360), indexing="ij")
+    halves_db, ripple_db = (down[(theta - 90) % 360], down[(270 - theta) % 360]), float(np.ptp(across))
+    is_profile = ripple_db <= _OMNI_DB
+    gain, note = _profile(*halves_db, ripple_db) if is_profile else _estimate(*halves_db, across[-phi % 360])
+    frequency_hz, of_frequency = _frequency_hz(keys.get("FREQUENCY", (0, ""))[1].strip())
+    yield Block(
+        theta_deg=theta.ravel().astype(float),
+        phi_deg=phi.ravel().astype(float),
+        gain=(gain * from_db(gain_dbi + more_db)).ravel(),
+        frequency_hz=frequency_hz,
+        notes=(f"Its gain is read as {unit}.", note, of_frequency),
+        caveat="" if is_profile else _CAVEAT.format(ripple_db),
+    )
+
+
+def _require_crossing(across: FloatArray, down: FloatArray) -> None:
+    """Refuse cuts that contradict each other ahead or behind, where they cross."""
     peaks_deg = [int(np.argmin(cut)) for cut in (across, down)]
     advice = (
         f"The horizontal cut is strongest at {peaks_deg[0]} degrees and the vertical one at {peaks_deg[1]}: "
@@ -73,49 +95,36 @@ def read_msi(lines: Lines) -> Iterator[Block]:
             f"{where}, where its cuts cross, the horizontal one has a loss of {both_db[0]:g} dB and the "
             f"vertical one {both_db[1]:g} dB; must be the same. {advice}",
         )
-    at, text = keys.get("GAIN", (0, ""))
-    amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", text.strip(), flags=re.IGNORECASE))]
-    gain_dbi = numbers(amount, 1, "GAIN, in dBd unless dBi is stated")[0, 0]
-    unit, more_db = ("dBi", 0.0) if "dbi" in text.lower() else ("dBd", DBD)
-    notes = [f"Its gain is read as {unit}."]
-    theta, phi = np.meshgrid(np.arange(181), np.arange(360), indexing="ij")
-    front_db, back_db = down[(theta - 90) % 360], down[(270 - theta) % 360]
-    ripple_db, caveat = float(np.ptp(across)), ""
-    if ripple_db <= _OMNI_DB:
-        gain = 0.5 * (from_db(-front_db) + from_db(-back_db))
-        strong = np.minimum(front_db, back_db) < _WEAK_DB
-        apart_db = float(np.max(np.abs(front_db - back_db)[strong], initial=0.0))
-        notes.append(
-            "Read as the same all round, by the mean of the vertical cut's halves. Not modelled: the "
-            f"horizontal cut's ripple of {ripple_db:.1f} dB, and {apart_db:.1f} dB between the halves."
-        )
-    else:
-        ahead = 0.5 + 0.5 * np.cos(np.radians(phi))
-        round_db, down_db = across[-phi % 360], ahead * front_db + (1.0 - ahead) * back_db
-        sum_db = round_db + down_db - ahead * down[0] - (1.0 - ahead) * down[180]
-        gain = from_db(-np.maximum(sum_db, np.minimum(round_db, down_db)))
-        gain[[0, -1]] = np.mean(gain[[0, -1]], axis=1, keepdims=True)  # where all azimuths are one direction
-        caveat = _CAVEAT.format(ripple_db)
-        notes.append(_CLOCKWISE)
-    yield Block(
-        theta_deg=theta.ravel().astype(float),
-        phi_deg=phi.ravel().astype(float),
-        gain=(gain * from_db(gain_dbi + more_db)).ravel(),
-        frequency_hz=_frequency_hz(keys.get("FREQUENCY", (0, ""))[1], notes),
-        notes=tuple(notes),
-        caveat=caveat,
+
+
+def _profile(front_db: FloatArray, back_db: FloatArray, ripple_db: float) -> tuple[FloatArray, str]:
+    """Return the gain of an antenna that is the same all round, and a note on what is left out."""
+    strong = np.minimum(front_db, back_db) < _WEAK_DB
+    apart_db = float(np.max(np.abs(front_db - back_db)[strong], initial=0.0))
+    note = (
+        "Read as the same all round, by the mean of the vertical cut's halves. Not modelled: the "
+        f"horizontal cut's ripple of {ripple_db:.1f} dB, and {apart_db:.1f} dB between the halves."
     )
+    return 0.5 * (from_db(-front_db) + from_db(-back_db)), note
 
 
-def _frequency_hz(text: str, notes: list[str]) -> float | None:
-    """Return the frequency that a file states, with a note on how it is read; None for a range or none."""
+def _estimate(front_db: FloatArray, back_db: FloatArray, round_db: FloatArray) -> tuple[FloatArray, str]:
+    """Return the gain by the sum of losses, by polar angle and azimuth, and a note on how these are read."""
+    ahead = 0.5 + 0.5 * np.cos(np.radians(np.arange(round_db.shape[1])))
+    down_db = ahead * front_db + (1.0 - ahead) * back_db
+    sum_db = round_db + down_db - ahead * front_db[90] - (1.0 - ahead) * back_db[90]
+    gain = from_db(-np.maximum(sum_db, np.minimum(round_db, down_db)))
+    gain[[0, -1]] = np.mean(gain[[0, -1]], axis=1, keepdims=True)  # where all azimuths are one direction
+    return gain, _CLOCKWISE
+
+
+def _frequency_hz(text: str) -> tuple[float | None, str]:
+    """Return the frequency that a file states, None for a range or none, and a note on how it is read."""
     try:
-        frequency_hz = 1e6 * float(re.sub(r"MHz$", "", text.strip(), flags=re.IGNORECASE))
+        frequency_hz = 1e6 * float(re.sub(r"MHz$", "", text, flags=re.IGNORECASE))
     except ValueError:
-        notes.append(f"Its FREQUENCY, {text.strip()[:40]!r}, is not one number in MHz: not known.")
-        return None
-    notes.append(f"Its FREQUENCY, {text.strip()}, is read in MHz.")
-    return frequency_hz
+        return None, f"Its FREQUENCY, {text[:40]!r}, is not one number in MHz: not known."
+    return frequency_hz, f"Its FREQUENCY, {text}, is read in MHz."
 
 
 def _loss_db(lines: Lines, keys: dict[str, tuple[int, str]], name: str) -> FloatArray:
