@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import TOWARDS, WORLD
+from nullpose.certificate.certificate import COLUMNS, TOWARDS, WORLD
 from nullpose.certificate.forms import matrices
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
@@ -144,21 +144,12 @@ def random_family(
 
 
 def make_leaves(count: int, **columns: object) -> Leaves:
-    """Leaves of which only some columns matter; the others are of no effect."""
-    plain: dict[str, object] = {
-        "box": np.zeros((count, 6), dtype=np.int64),
-        "cell": np.tile(np.array([-1, 0, 0, 0, 0]), (count, 1)),
-        "test": np.zeros(count, dtype=np.int64),
-        "point": np.full(count, -1),
-        "level": np.ones(count),
-        "mix": np.zeros(count, dtype=np.int64),
-        "mixes": ({0: 1.0},),
-        "sides": np.zeros((count, 2)),
-        "band": np.zeros(count),
-        "ball": np.full(count, -1),
-        "ball_multiplier": np.zeros(count),
-    }
-    return Leaves(**(plain | columns))
+    """Leaves of which only some columns matter, one number for all or an array; others are of no effect."""
+    plain = {"cell": [-1, 0, 0, 0, 0], "point": -1, "level": 1.0, "ball": -1}
+    columns = {"mixes": ({0: 1.0},)} | dict.fromkeys(COLUMNS, 0) | plain | columns
+    for name, (kind, shape) in COLUMNS.items():
+        columns[name] = np.array(np.broadcast_to(columns[name], (count, *shape)), dtype=kind)
+    return Leaves(**columns)
 
 
 def link_matrix(r: np.ndarray, leak: float) -> np.ndarray:
@@ -217,3 +208,12 @@ def carried(turns: bool, anchor: np.ndarray, centre: np.ndarray, p: np.ndarray) 
     axis = np.cross(d, e)
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
     return np.eye(3) + cross + cross @ cross / (1.0 + d @ e)
+
+
+def overheard(scenario: Scenario, *places: tuple[float, float, float], power_w: float = 1.0) -> Scenario:
+    """Return a scenario in which the drone transmits and somebody listens in at each place."""
+    plain = scenario.to_dict()
+    secrecy = {"objective": "secrecy-rate", "transmitter": {"power_w": power_w}, "jammers": []}
+    nodes = [{"position_m": node["position_m"]} for node in plain["nodes"]]
+    heard = [{"position_m": place} for place in places]
+    return Scenario.from_dict(plain | secrecy | {"nodes": nodes, "eavesdroppers": heard})

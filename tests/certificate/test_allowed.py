@@ -125,8 +125,7 @@ def test_zones_help(zone: int, field: AxisField) -> None:
     boxes = boxes_at(np.array([out]), 0.01)
     upright = np.array([0.0, 0.0, 1.0])
     level = float(dense_ratios(family, np.array(out), upright).min()) * (1.0 + 1e-5)
-    test = np.array([WORLD if field.is_free else AFFINE])
-    leaves = make_leaves(1, test=test, level=np.array([level]), ball=np.array([zone]))
+    leaves = make_leaves(1, test=WORLD if field.is_free else AFFINE, level=level, ball=zone)
     assert excluded(family, field, leaves, boxes)[0]
     assert not excluded(family, field, replace(leaves, level=leaves.level * (1.0 - 2e-5)), boxes)[0]
     for other in {-1, 0, 1, 2} - {zone}:
@@ -151,7 +150,7 @@ def test_corners_help() -> None:
         boxes = boxes_at(np.array([at]), 1e-3)
         steepness = 1e-4 if expected else 1e-6
         level = float(dense_ratios(here, np.array(at), upright).min()) * (1.0 + steepness)
-        leaves = make_leaves(1, level=np.array([level]), ball=np.array([zone]))
+        leaves = make_leaves(1, level=level, ball=zone)
         held = free_holds(here, AxisField.free(), leaves, boxes)[0]
         plain = free_holds(here, AxisField.free(), replace(leaves, ball=np.array([-1])), boxes)[0]
         assert (held, plain) == (expected, False), (zone, at)
@@ -162,15 +161,9 @@ def test_balls_curve(field: AxisField) -> None:
     """A ball in the middle of a box excludes none of what is around it, whatever its multiplier."""
     family = random_family(np.random.default_rng(9), 1, 1)
     family = family.changed(keep_out_points_m=np.array([[20.0, 20.0, 60.0]]), keep_out_m=1.0)
-    test = np.array([WORLD if field.is_free else AFFINE])
+    test = WORLD if field.is_free else AFFINE
     for half, expected in ((0.5, True), (0.6, False), (2.0, False)):
         boxes = boxes_at(family.keep_out_points_m.copy(), half)
         for multiplier in (1.0, 1e3, 1e6):
-            leaves = make_leaves(
-                1,
-                test=test,
-                level=np.array([1e-6]),
-                ball=np.array([0]),
-                ball_multiplier=np.array([multiplier]),
-            )
+            leaves = make_leaves(1, test=test, level=1e-6, ball=0, ball_multiplier=multiplier)
             assert excluded(family, field, leaves, boxes)[0] == (expected and multiplier > 1.0)

@@ -7,6 +7,7 @@ from hypothesis import given, strategies as st
 from tests.certificate.plain import boxes_at, make_leaves
 
 from nullpose.certificate.boxes import Boxes, boxes_of, parts
+from nullpose.certificate.pose_value import exact
 from nullpose.certificate.weighted_sum import mix_slots
 
 ends = st.one_of(
@@ -18,11 +19,6 @@ sides = st.tuples(ends, ends).map(sorted)
 places = st.integers(0, 50).flatmap(lambda d: st.tuples(st.just(d), st.integers(0, (1 << d) - 1)))
 
 
-def exact(pair: np.ndarray) -> list[Fraction]:
-    """Return numbers exactly."""
-    return [Fraction(float(x)) for x in pair]
-
-
 def span(boxes: Boxes, b: int, i: int) -> tuple[Fraction, Fraction]:
     """Return the exact ends of a box along one axis."""
     centre, half = Fraction(float(boxes.centre[b, i])), Fraction(float(boxes.half[b, i]))
@@ -32,7 +28,7 @@ def span(boxes: Boxes, b: int, i: int) -> tuple[Fraction, Fraction]:
 @given(root=st.tuples(sides, sides, sides), place=st.tuples(places, places, places))
 def test_boxes_contain_the_exact_ones(root: tuple, place: tuple) -> None:
     """Centre and half side, and the hull, enclose the dyadic part of the root, and hardly more."""
-    leaves = make_leaves(1, box=np.array([[x for pair in place for x in pair]]))
+    leaves = make_leaves(1, box=[x for pair in place for x in pair])
     boxes = boxes_of(np.array(root).T, leaves)
     hull = boxes.hull
     for i, ((low, high), (depth, index)) in enumerate(zip(root, place, strict=True)):
@@ -49,7 +45,7 @@ def test_boxes_contain_the_exact_ones(root: tuple, place: tuple) -> None:
 @given(root=st.tuples(sides, sides, sides), place=st.tuples(places, places, places))
 def test_parts_cover_their_parent(root: tuple, place: tuple) -> None:
     """The eight parts meet in the middle and reach the ends, along every axis, and keep the leaf."""
-    leaves = make_leaves(1, box=np.array([[x for pair in place for x in pair]]))
+    leaves = make_leaves(1, box=[x for pair in place for x in pair])
     boxes = boxes_of(np.array(root).T, leaves)
     eight = parts(boxes)
     assert eight.leaf.tolist() == [0] * 8
@@ -84,9 +80,9 @@ def test_distances_are_bounds(seed: int, scale: float) -> None:
 
 def test_mixes_fill_slots() -> None:
     """Each box gets its leaf's mix; unused slots, and leaves without a mix, weigh nothing."""
-    leaves = make_leaves(3, mix=np.array([1, -1, 0]), mixes=({2: 0.25, 0: 0.75}, {1: 1.0}))
+    leaves = make_leaves(3, mix=[1, -1, 0], mixes=({2: 0.25, 0: 0.75}, {1: 1.0}))
     ratio, weight = mix_slots(leaves.chosen(np.array([2, 0, 1])))
     assert ratio[:, 0].tolist() == [2, 0]
     assert weight.tolist() == [[0.25, 1.0, 0.0], [0.75, 0.0, 0.0]]
-    none = make_leaves(1, mix=np.array([-1]), mixes=())
+    none = make_leaves(1, mix=-1, mixes=())
     assert mix_slots(none)[1].tolist() == [[0.0]]

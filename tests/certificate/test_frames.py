@@ -1,7 +1,5 @@
 """Frames: the expansions enclose the forms they stand for, in a frame at rest or one that turns."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,12 +13,10 @@ from nullpose.certificate.interval import Interval
 from nullpose.problem.family import Family
 
 
-def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator, make: Callable) -> Frames:
+def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator) -> Frames:
     """Return the frames of one box, standing still or turning towards some point."""
-    point = np.array([int(rng.integers(len(family.points_m)))])
-    leaves = make(
-        1, test=np.array([TOWARDS if turning else WORLD]), point=point if turning else point * 0 - 1
-    )
+    point = int(rng.integers(len(family.points_m)))
+    leaves = make_leaves(1, test=TOWARDS if turning else WORLD, point=point if turning else -1)
     return frames_of(family, leaves, boxes)
 
 
@@ -31,16 +27,15 @@ def test_expansions_enclose_the_forms(turning: bool, seed: int) -> None:
     """Value, slopes and remainder enclose the turned form of every point all over the box."""
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 3, 2), one_box(rng)
-    frames = framed(family, boxes, turning, rng, make_leaves)
+    frames = framed(family, boxes, turning, rng)
     basis, gram = frames.basis.middle()[:, :, 0], full(frames.gram)
     for x in rng.uniform(-1.0, 1.0, (3, 3)) * boxes.half[0]:
         p = boxes.centre[0] + x
         rotation = carried(frames.turning[0], family.points_m[frames.anchor[0]], boxes.centre[0], p)
         for j in range(len(family.points_m)):
             form, up, down = expansion(family, frames, boxes, np.array([j]))
-            turned = (
-                basis.T @ rotation.T @ link_matrix(family.points_m[j] - p, family.leak) @ rotation @ basis
-            )
+            way = rotation @ basis
+            turned = way.T @ link_matrix(family.points_m[j] - p, family.leak) @ way
             error = turned - full(form.value) - sum(h * full(form.slopes[:, i]) for i, h in enumerate(x))
             anchored = turning and j == frames.anchor[0]
             around = full(anchor_shape(family, frames)) if anchored else gram
@@ -55,7 +50,7 @@ def test_the_form_at_the_centre_is_exact(seed: int) -> None:
     """Intervals of the value are narrow and hold the form in the basis; an anchor has its null there."""
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 2, 2), one_box(rng)
-    frames = framed(family, boxes, True, rng, make_leaves)
+    frames = framed(family, boxes, True, rng)
     basis = frames.basis.middle()[:, :, 0]
     assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-14)
     for j in range(4):
@@ -72,17 +67,13 @@ def test_turning_rates_are_derivatives(seed: int) -> None:
     """The rate of a turned constant form agrees with differences of the frame that is carried along."""
     rng = np.random.default_rng(seed)
     family, boxes = random_family(rng, 2, 2), one_box(rng)
-    frames = framed(family, boxes, True, rng, make_leaves)
+    frames = framed(family, boxes, True, rng)
     q = rng.normal(size=(3, 3))
     q = q + q.T
     centre, step, basis = boxes.centre[0], 1e-4, frames.basis.middle()[:, :, 0]
     slopes = constant(frames, Interval(q[ROW, COLUMN][:, None])).slopes
     for e in range(3):
-        ends = [
-            carried(
-                frames.turning[0], family.points_m[frames.anchor[0]], centre, centre + s * step * np.eye(3)[e]
-            )
-            for s in (-1.0, 1.0)
-        ]
+        anchor_m, way = family.points_m[frames.anchor[0]], step * np.eye(3)[e]
+        ends = [carried(frames.turning[0], anchor_m, centre, centre + s * way) for s in (-1.0, 1.0)]
         change = (ends[1].T @ q @ ends[1] - ends[0].T @ q @ ends[0]) / (2.0 * step)
         assert full(slopes[:, e]) == pytest.approx(basis.T @ change @ basis, abs=1e-7)

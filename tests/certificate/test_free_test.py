@@ -115,9 +115,8 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
     band = BANDS[int(rng.integers(len(BANDS)))]
     sides = rng.uniform(0.0, 2.0, (1, 2)) * rng.integers(0, 2, (1, 2))
     ends = rng.uniform(-2.0, 2.0, 1) * rng.integers(0, 2, 1)
-    point = np.array([int(rng.integers(4))])
-    test = np.array([TOWARDS if turning else WORLD])
-    leaves = make_leaves(1, test=test, point=point, cell=cell[None], sides=sides, band=ends)
+    point, test = int(rng.integers(4)), TOWARDS if turning else WORLD
+    leaves = make_leaves(1, test=test, point=point, cell=cell, sides=sides, band=ends)
     frames = frames_of(family, leaves, boxes)
     nothing = Linear(Interval(np.zeros((6, 1))), Interval(np.zeros((6, 3, 1))))
     total = with_constants(nothing, AxisField.within(*band), leaves, boxes, frames)
@@ -133,10 +132,8 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
         assert u @ dense_band(band, ends[0]) @ u >= -1e-12 * (u @ u)
         x = rng.uniform(-1.0, 1.0, 3) * boxes.half[0]
         centre = boxes.centre[0]
-        turn = (
-            carried(frames.turning[0], family.points_m[point[0]], centre, centre + x)
-            @ frames.basis.middle()[:, :, 0]
-        )
+        turn = carried(frames.turning[0], family.points_m[point], centre, centre + x)
+        turn = turn @ frames.basis.middle()[:, :, 0]
         bound = full(total.value) + sum(h * full(total.slopes[:, i]) for i, h in enumerate(x))
         error = turn.T @ constant @ turn - bound
         slack = 1e-11 * (1.0 + np.abs(bound).max())
@@ -154,8 +151,8 @@ def test_the_remainder_near_a_null_is_a_bound(turning: bool) -> None:
         centre, half = boxes.centre[0], boxes.half[0]
         point, anchor = rng.permutation(len(family.points_m))[:2]
         point_m, anchor_m = family.points_m[point], family.points_m[anchor]
-        test = np.array([TOWARDS if turning else WORLD])
-        frames = frames_of(family, make_leaves(1, test=test, point=np.array([anchor])), boxes)
+        leaves = make_leaves(1, test=TOWARDS if turning else WORLD, point=anchor)
+        frames = frames_of(family, leaves, boxes)
         near_null = (point_m - centre) / np.linalg.norm(point_m - centre)
         near_null = near_null + rng.normal(size=3) * 10.0 ** rng.uniform(-4.0, 0.0)
         vector = np.linalg.solve(frames.basis.middle()[:, :, 0], near_null / np.linalg.norm(near_null))
@@ -251,7 +248,7 @@ def test_multipliers_of_a_band_count() -> None:
         hits += 1
         level = np.array([1.1 * steep])
         sizes = level[0] * np.concatenate([[0.0], -(10.0 ** np.linspace(-3, 2, 60))])
-        leaves = make_leaves(len(sizes), level=np.full(len(sizes), level[0]), band=sizes)
+        leaves = make_leaves(len(sizes), level=level, band=sizes)
         alike = boxes.chosen(np.zeros(len(sizes), dtype=np.int64))
         held = free_holds(family, AxisField.within(0.75, 1.0), leaves, alike)
         assert not held[0]

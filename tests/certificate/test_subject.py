@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from tests.certificate.plain import overheard
 
 from nullpose.certificate import Certificate
 from nullpose.certificate.subject import sentence
-from nullpose.scenario import Scenario
 
 numbers = st.floats(-6.0, 6.0).map(lambda x: 10.0**x)
 
@@ -22,15 +22,6 @@ def claim(paper: Callable) -> Certificate:
     numbers = {"value": 1.25, "upper_bound": 1.26, "roll_rad": 0.0, "pitch_rad": 0.0, "yaw_rad": 0.0}
     what = {"scenario": paper(), "scheme": "optimum", "null_jammer": None, "trees": ()}
     return Certificate(position_m=np.array([0.0, 25.0, 8.0]), **what, **numbers)
-
-
-def overheard(scenario: Scenario) -> Scenario:
-    """Return a scenario in which the drone transmits and somebody listens in."""
-    plain = scenario.to_dict()
-    nodes = [{"position_m": node["position_m"]} for node in plain["nodes"]]
-    heard = [{"position_m": (1.0, 2.0, 3.0)}]
-    secrecy = {"objective": "secrecy-rate", "transmitter": {"power_w": 1.0}, "eavesdroppers": heard}
-    return Scenario.from_dict(plain | secrecy | {"nodes": nodes})
 
 
 @given(value=numbers, gap=st.floats(0.0, 1.0))
@@ -53,7 +44,7 @@ def test_ratios_are_rounded_outwards(value: float, gap: float, claim: Certificat
 @given(rate=st.floats(-3.0, 20.0), gap=st.floats(0.0, 1.0))
 def test_rates_are_rounded_outwards(rate: float, gap: float, claim: Certificate) -> None:
     """Rates too, and they are never below zero."""
-    scenario = overheard(claim.scenario)
+    scenario = overheard(claim.scenario, (1.0, 2.0, 3.0))
     value, bound = 2.0**rate, 2.0 ** (rate + gap)
     words = sentence(replace(claim, scenario=scenario, value=value, upper_bound=bound), 1)
     most, least, near = (float(x) for x in re.findall(r"(\S+) bits/s/Hz", words))

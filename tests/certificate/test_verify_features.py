@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.certificate.plain import accepted, certified, put_together, rejected, with_leaves
+from tests.certificate.plain import accepted, certified, overheard, put_together, rejected, with_leaves
 
 from nullpose.certificate import Certificate, certificate_text, differences, parse_certificate, verify
 from nullpose.certificate.certificate import KEPT_OUT
@@ -36,15 +36,6 @@ ZONES = {
 def within(scenario: Scenario, **airspace: object) -> Scenario:
     """Return a scenario in another airspace."""
     return scenario.model_copy(update={"airspace": Airspace(altitude_m=ALTITUDE_M, **airspace)})
-
-
-def overheard(scenario: Scenario, *places: tuple[float, float, float], power_w: float = 1.0) -> Scenario:
-    """Return a scenario in which the drone transmits and somebody listens in at each place."""
-    plain = scenario.to_dict()
-    secrecy = {"objective": "secrecy-rate", "transmitter": {"power_w": power_w}, "jammers": []}
-    nodes = [{"position_m": node["position_m"]} for node in plain["nodes"]]
-    heard = [{"position_m": place} for place in places]
-    return Scenario.from_dict(plain | secrecy | {"nodes": nodes, "eavesdroppers": heard})
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """The sum of a free axis' test where points have dipoles: above the exact one all over a box."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
@@ -137,13 +135,8 @@ def test_the_solvers_sum_is_above_the_exact_one(kind: int, leak: float, seed: in
 def test_the_verifiers_sum_is_above_the_exact_one(kind: int, leak: float, seed: int) -> None:
     """Likewise, with the coordinates that it names itself."""
     rng, family, weights, level, anchor, centre, half = case_of(seed, leak)
-    leaves = make_leaves(
-        1,
-        test=np.array([kind]),
-        point=np.array([anchor]),
-        level=np.array([level]),
-        mixes=({0: weights[0], 1: weights[1]},),
-    )
+    mix = {0: weights[0], 1: weights[1]}
+    leaves = make_leaves(1, test=kind, point=anchor, level=level, mixes=(mix,))
     boxes = boxes_at(centre[None], half)
     total, shear = dipole_sum(family, leaves, boxes, [])
     assert kind == TOWARDS_POINT or not shear.on[0]
@@ -187,6 +180,6 @@ def test_coordinates_turn_in_small_boxes(seed: int) -> None:
         return
     way = turned_axes(family, anchor, centre, centre + rng.uniform(-0.01, 0.01, 3))
     boxes = boxes_at(centre[None], 0.01)
-    shear = shear_of(family, SimpleNamespace(test=np.array([TOWARDS_POINT]), point=np.array([anchor])), boxes)
+    shear = shear_of(family, make_leaves(1, test=TOWARDS_POINT, point=anchor), boxes)
     assert shear.on[0]
     assert np.linalg.norm(way - np.eye(3), 2) <= shear.most.high[0, 0] * (1.0 + 1e-9)
