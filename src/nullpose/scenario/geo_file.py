@@ -170,7 +170,8 @@ def _on_earth(geometry: BaseGeometry, place: str) -> BaseGeometry:
     return geometry
 
 
-def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
+def _layers_of_gdal(source: Path | bytes) -> list[tuple[str, Any]]:
+    """Read the layers of a file, by name; refuse it where GDAL warns of what may change a place."""
     try:
         import pyogrio
     except ImportError:
@@ -183,27 +184,28 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
             layers = [(names[index], pyogrio.raw.read(source, layer=index)) for index in kept]
         except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, RuntimeError) as error:
             raise refusal("", f"GDAL cannot read it: {str(error)[:200]}") from None
-    for warning in said:
-        words = str(warning.message)
+    for words in (str(warning.message) for warning in said):
         is_whole = any(harmless in words for harmless in _NO_MATTER)
         require(is_whole, "", f"GDAL reads it in part only: {words[:200]}; export it anew")
-    numbers = count()
-    for layer, (meta, _, shapes, columns) in layers:
+    return layers
+
+
+def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
+    numbers, left_out = count(), _OF_DRAWING if is_kml else set()
+    for layer, (meta, _, shapes, columns) in _layers_of_gdal(source):
         if shapes is None:  # a table, such as of styles
             shapes = [None] * len(columns[0]) if columns else []
         else:
             _require_wgs84(str(meta["crs"]))
         for index, shape in enumerate(shapes):
-            cells = {
-                key: _cell(column[index], key in NAMES)
+            found = {
+                key: value
                 for key, column in zip(meta["fields"], columns, strict=True)
+                if key not in left_out and (value := _cell(column[index], key in NAMES)) not in (None, "")
             }
-            if is_kml:
-                cells = {key: cells[key] for key in cells.keys() - _OF_DRAWING}
-            found = {key: value for key, value in cells.items() if value not in (None, "")}
-            name = found.get("Name", found.get("name"))
-            kind = "Placemark" if is_kml else layer
-            place = f"{kind}[{next(numbers) if is_kml else index}]" if name is None else f'{kind} "{name}"'
+            name, number = found.get("Name", found.get("name")), next(numbers)
+            label = f"[{number}]" if name is None else f' "{name}"'
+            place = f"{'Placemark' if is_kml else layer}{label}"
             yield Feature(place, _shape_of_wkb(shape, place), found)
 
 
