@@ -10,6 +10,8 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -51,13 +53,29 @@ class Command:
             return self.process.stdout.read(), self.process.stderr.read()
 
 
+Start = Callable[..., Command]
+
+
+@pytest.fixture
+def start() -> Iterator[Start]:
+    """Starts studios, none of which outlives the test."""
+    with ExitStack() as stack:
+
+        def started(*options: str, port: int = 0) -> Command:
+            command = Command(*options, port=port)
+            stack.callback(command.process.kill)
+            return command
+
+        yield started
+
+
 def _html(address: str) -> bytes:
     return bytes(urllib.request.urlopen(address, timeout=5.0).read(200)).lower()
 
 
-def test_interrupt_ends_it_without_a_trace() -> None:
+def test_interrupt_ends_it_without_a_trace(start: Start) -> None:
     """After Ctrl-C the process and its group are gone, with code 0; rubbish before left no complaint."""
-    command = Command()
+    command = start()
     address = command.address()
     assert address.startswith(f"http://127.0.0.1:{command.port}/?token=")
     for rubbish in (b"rubbish\r\n\r\n", b"\x16\x03\x01\x02", b"GET / HTTP/1.1\r\n\r\n"):
@@ -71,10 +89,10 @@ def test_interrupt_ends_it_without_a_trace() -> None:
         os.killpg(command.process.pid, 0)
 
 
-def test_the_printed_address_opens_in_a_browser(browser: Browser, words: Any) -> None:
+def test_the_printed_address_opens_in_a_browser(browser: Browser, start: Start, words: Any) -> None:
     """The scene with its proof, also loaded again, from nowhere else; the bare address shows nothing."""
     words.expected = ["Forbidden"]
-    command = Command()
+    command = start()
     address = command.address()
     page = browser.new_context().new_page()
     page.set_default_timeout(90_000)
@@ -95,11 +113,11 @@ def test_the_printed_address_opens_in_a_browser(browser: Browser, words: Any) ->
     assert command.ended()[1] == ""
 
 
-def test_a_port_in_use_ends_with_a_message() -> None:
+def test_a_port_in_use_ends_with_a_message(start: Start) -> None:
     """A second studio at the same port ends with code 2 and one line, and the first goes on."""
-    first = Command()
+    first = start()
     address = first.address()
-    second = Command(port=first.port)
+    second = start(port=first.port)
     _, err = second.process.communicate(timeout=60.0)
     assert second.process.returncode == 2
     assert f"--port: {first.port} is in use" in err
@@ -108,15 +126,15 @@ def test_a_port_in_use_ends_with_a_message() -> None:
     first.ended(signal.SIGTERM)
 
 
-def test_it_listens_to_this_machine_only_unless_told() -> None:
+def test_it_listens_to_this_machine_only_unless_told(start: Start) -> None:
     """Without --host other addresses are refused; with one, it says who can come in, and with what."""
-    command = Command()
+    command = start()
     command.address()
     with socket.socket() as probe:
         probe.settimeout(2.0)
         assert probe.connect_ex(("127.0.0.2", command.port)) != 0
     assert "another machine" not in command.ended()[0]
-    command = Command("--host", "0.0.0.0")
+    command = start("--host", "0.0.0.0")
     elsewhere = command.address().replace("localhost", "127.0.0.2")
     assert b"html" in _html(elsewhere)
     with pytest.raises(urllib.error.HTTPError, match="403") as refused:
