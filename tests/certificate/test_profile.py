@@ -54,5 +54,5 @@ def test_what_an_airframe_reaches() -> None:
     scenario = Scenario.from_dict(data)
     tilted = apply_overrides(scenario, ["airframe.tilt_max_deg=20", "airframe.mount_deg=30"])
     wanted = [(np.sin(angle), np.cos(angle)) for angle in np.radians([10.0, 50.0])]
-    np.testing.assert_allclose(ProfileField(tilted.antenna_record, tilted).ends, wanted, atol=1e-15)
-    assert ProfileField(scenario.antenna_record, scenario).ends == ((0.0, 1.0), (0.0, -1.0))
+    np.testing.assert_allclose(ProfileField.of(tilted.antenna_record, tilted).ends, wanted, atol=1e-15)
+    assert ProfileField.of(scenario.antenna_record, scenario).ends == ((0.0, 1.0), (0.0, -1.0))

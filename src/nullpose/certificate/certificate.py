@@ -166,4 +166,4 @@ def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Ma
         return record.fields(scenario, null_jammer)
     if not (record.any_antenna and antenna.is_axisymmetric):
         return None
-    return {"profile": ProfileField(antenna, scenario)}
+    return {"profile": ProfileField.of(antenna, scenario)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import TypeAlias
@@ -99,30 +100,37 @@ class Profile:
         return total
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ProfileField(AxisField):
     """Any axis of an antenna that is the same all round, as far as the airframe reaches.
 
     Args:
-        antenna: whose gain it is.
-        scenario: with its airframe.
-
-    Raises:
-        ValueError: the gain changes round the axis.
+        profile: its gain.
+        ends: sine and cosine of the least and of the largest angle between vertical and axis.
+        even: whether opposite directions have the same gain.
     """
-
-    __slots__ = ("ends", "even", "profile")
 
     profile: Profile
     ends: tuple[tuple[float, float], tuple[float, float]]
     even: bool
 
-    def __init__(self, antenna: PatternAntenna, scenario: Scenario) -> None:
+    @classmethod
+    def of(cls, antenna: PatternAntenna, scenario: Scenario) -> ProfileField:
+        """Build the field of an antenna on a scenario's airframe.
+
+        Raises:
+            ValueError: the gain changes round the axis.
+        """
         if not antenna.is_axisymmetric:
             raise ValueError(f"{antenna.label}: its gain changes round its axis")
-        super().__init__(is_free=True, offset=np.zeros(3), matrix=np.zeros((3, 3)))
-        object.__setattr__(self, "profile", _profile(antenna.harmonics.cosine[:, 0].tobytes()))
-        object.__setattr__(self, "ends", _ends(scenario))
-        object.__setattr__(self, "even", antenna.harmonics.is_even)
+        return cls(
+            is_free=True,
+            offset=np.zeros(3),
+            matrix=np.zeros((3, 3)),
+            profile=_profile(antenna.harmonics.cosine[:, 0].tobytes()),
+            ends=_ends(scenario),
+            even=antenna.harmonics.is_even,
+        )
 
 
 def profiles_of(fields: Mapping[str, AxisField]) -> list[Profile]:
