@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
@@ -167,47 +166,46 @@ class _Search:
         jammed = np.concatenate(
             [jammed, self._with_worst_jammers(jammed)]
         )  # then each among the others moved
-        sets = [np.concatenate([samples * free, jammed * free]) for free in self.free]
-        alone, (attitude, position, jammers) = self._descend(sets, self.free)
+        alone = [self._descend(np.concatenate([samples, jammed]) * free, free) for free in self.free]
+        attitude, position, jammers = (ends for _, ends in alone)
         # all together: from samples, from the worst places of jammers, and from places found for other poses
         drone = np.concatenate([samples * ~self.free[2], attitude[:1] + position[:1]])
         elsewhere = (jammers[:_JAMMED, None] + drone).reshape(-1, len(self.ball))
         worst = np.argsort(np.min(self._ratios(drone + jammed[:1]), axis=1))[:_JAMMED]
-        sets = [samples, elsewhere, self._with_worst_jammers(drone[worst])]
-        together, _ = self._descend(sets, np.ones((3, len(self.ball)), bool))
-        lowest = np.minimum(nominal, [*alone, min(*alone, *together)])
-        return np.array([nominal, *lowest])
+        sets, free = (
+            (samples, elsewhere, self._with_worst_jammers(drone[worst])),
+            np.ones(len(self.ball), bool),
+        )
+        together = [self._descend(points, free)[0] for points in sets]
+        of_kind = [lowest for lowest, _ in alone]
+        return np.array([nominal, *np.minimum(nominal, [*of_kind, min(*of_kind, *together)])])
 
-    def _descend(self, sets: Sequence[FloatArray], free: Any) -> tuple[FloatArray, list[FloatArray]]:
-        """Descend along the slope of the logarithm of a ratio, from the worst points of each set.
+    def _descend(self, points: FloatArray, free: Any) -> tuple[float, FloatArray]:
+        """Descend along the slope of the logarithm of a ratio, from the worst of some points.
 
-        Half of a set's descents end every second round, those with the largest ratios.
+        Half of the descents end every second round, those with the largest ratios.
 
         Args:
-            sets: points, (n, d) each.
-            free: (sets, d) the coordinates that change.
+            points: (n, d).
+            free: (d,) the coordinates that change.
 
         Returns:
-            The lowest ratio of each set, and the ends of its descents, (n, d), the lowest first.
+            The lowest ratio, and the ends of the descents, (n, d), the lowest first.
         """
-        ratios = [self._ratios(points) for points in sets]
-        lowest = np.array([np.min(each) for each in ratios])
-        starts = [_starts(each) for each in ratios]
-        points = np.concatenate([each[row] for each, (row, _) in zip(sets, starts, strict=True)])
-        values = np.concatenate([each[tuple(start)] for each, start in zip(ratios, starts, strict=True)])
-        values = np.log(np.maximum(_LEAST, values))
-        ratio = np.concatenate([ratio for _, ratio in starts])
-        of_set = np.repeat(np.arange(len(sets)), [len(row) for row, _ in starts])
+        ratios = self._ratios(points)
+        row, ratio = _starts(ratios)
+        lowest, points = float(np.min(ratios)), points[row]
+        values = np.log(np.maximum(_LEAST, ratios[row, ratio]))
         before, last = points.copy(), points.copy()
-        going = np.flatnonzero(np.any(free, axis=1)[of_set])
+        going = np.arange(len(points)) if np.any(free) else np.arange(0)
         for done in range(_ROUNDS):
             if not len(going):
                 break
-            going = _lowest_of_each(going, values, of_set, max(2, 2 * _STARTS >> done // 2))
-            slope = self._slope(points[going], ratio[going], values[going], free[of_set[going]])
+            going = going[np.argsort(values[going])][: max(2, 2 * _STARTS >> done // 2)]
+            slope = self._slope(points[going], ratio[going], values[going], free)
             tried = self._steps(points[going], slope, before[going])
             found = self._ratios(tried.reshape(-1, len(self.ball))).reshape(*tried.shape[:2], -1)
-            np.minimum.at(lowest, of_set[going], np.min(found, axis=(1, 2)))
+            lowest = min(lowest, float(np.min(found)))
             of_ratio = np.take_along_axis(found, ratio[going, None, None], axis=2)[..., 0]
             best = np.argmin(of_ratio, axis=1)
             reached = np.log(np.maximum(_LEAST, _of(of_ratio, best)))
@@ -215,8 +213,7 @@ class _Search:
             before[going], last[going] = last[going], points[going]
             points[going[better]], values[going[better]] = _of(tried, best)[better], reached[better]
             going = going[better]
-        order = np.argsort(values)
-        return lowest, [points[order[of_set[order] == each]] for each in range(len(sets))]
+        return lowest, points[np.argsort(values)]
 
     def _steps(self, points: FloatArray, slope: FloatArray, before: FloatArray) -> FloatArray:
         """Step from each point in several ways, (n, steps, d).
@@ -233,7 +230,7 @@ class _Search:
     def _slope(self, points: FloatArray, ratio: Any, values: FloatArray, free: Any) -> FloatArray:
         """Evaluate the slope of a ratio's logarithm at each point, zero where nothing is free, (n, d)."""
         slope = np.zeros(points.shape)
-        row, column = np.nonzero(free)
+        row, column = np.nonzero(np.broadcast_to(free, points.shape))
         shifted = points[row]
         shifted[np.arange(len(row)), column] += _STEP
         logs = np.log(np.maximum(_LEAST, _of(self._ratios(shifted), ratio[row])))
@@ -330,12 +327,6 @@ def _starts(ratios: FloatArray) -> Any:
     worst = np.argsort(np.min(ratios, axis=0))[:_STARTS].tolist()
     pairs |= {(int(np.argmin(ratios[:, ratio])), ratio) for ratio in worst}
     return np.array(sorted(pairs)).T
-
-
-def _lowest_of_each(going: Any, values: FloatArray, of_set: Any, most: int) -> Any:
-    """Keep so many of each set's descents, those with the lowest values."""
-    going = going[np.argsort(values[going])]
-    return np.concatenate([going[of_set[going] == each][:most] for each in np.unique(of_set[going])])
 
 
 def _of(values: FloatArray, column: Any) -> FloatArray:
