@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -146,7 +147,7 @@ class PatternRun(BranchAndBound):
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         root, self.keeps_leaves = self.root_of(gap), self.reach.spins
-        workers = WorkerPool(self.cells_of(root), self.threads, orientation=(3, 3))
+        workers = WorkerPool(np.array(list(self._roots(*root))), self.threads, orientation=(3, 3))
         reason = self.work_off(workers, gap, self.node_limit - self.nodes, until, self.threads)
         bound = self.value * (1.0 + gap)
         if not reason and bound < self.proved:
@@ -185,17 +186,10 @@ class PatternRun(BranchAndBound):
         low_m, high_m = self.search.box(level)
         return np.array([low_m, np.maximum(low_m, high_m)])
 
-    def cells_of(self, root_m: FloatArray) -> FloatArray:
-        """Return cells of positions and attitudes to begin with.
+    def _roots(self, low_m: FloatArray, high_m: FloatArray) -> Iterator[FloatArray]:
+        """Yield cells of positions in a box and of all attitudes, to begin with."""
+        from nullpose.solver.kernels import attitude as a
 
-        Args:
-            root_m: (2, 3) corners of the box of all positions.
-        """
-        found: list[FloatArray] = []
-        self._add_roots(root_m[0], root_m[1], found)
-        return np.array(found)
-
-    def _add_roots(self, low_m: FloatArray, high_m: FloatArray, found: list[FloatArray]) -> None:
         middle, half = 0.5 * (low_m + high_m), 0.5 * (high_m - low_m)
         anchor = self.search.anchor
         clear, chart = max((self._clearance(anchor, chart, middle, half), chart) for chart in range(3))
@@ -203,11 +197,9 @@ class PatternRun(BranchAndBound):
             side = int(np.argmax(half))
             lower, upper = high_m.copy(), low_m.copy()
             lower[side] = upper[side] = middle[side]
-            self._add_roots(low_m, lower, found)
-            self._add_roots(upper, high_m, found)
+            yield from self._roots(low_m, lower)
+            yield from self._roots(upper, high_m)
             return
-        from nullpose.solver.kernels import attitude as a
-
         for face in range(1 if self.reach.spins else 6):
             cell = np.zeros(a.WARM + len(self.family.numerator_point))
             cell[:3], cell[a.HALF : a.HALF + 3] = middle, half * (1.0 + 1e-12)
@@ -217,7 +209,7 @@ class PatternRun(BranchAndBound):
                 cell[a.HALF + 4] = 0.0
             cell[a.FACE], cell[a.CHART], cell[a.ANCHOR] = face, chart, anchor
             cell[a.WARM :] = 1.0 / len(self.family.numerator_point)
-            found.append(cell)
+            yield cell
 
     def _clearance(self, anchor: int, chart: int, middle: FloatArray, half: FloatArray) -> float:
         """Return the least cosine of the anchor's latitude over a box, in a chart."""
