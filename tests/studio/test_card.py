@@ -16,7 +16,7 @@ from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.field_map import MAPS, FieldMap
 from nullpose.studio.readout import readout_html
 from nullpose.studio.state import State
-from nullpose.study.value_map import Field
+from nullpose.study import Field
 
 _PAPER = load(Path(__file__).parents[2] / "examples" / "paper.toml")
 

@@ -16,7 +16,8 @@ from nullpose.solver.background_compiler import BackgroundCompiler
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import new_scenario
 from nullpose.studio.look import scale_range
-from nullpose.study.value_map import Field, in_decibels, value_map
+from nullpose.study import Field, value_map
+from nullpose.study.value_map import in_decibels
 
 MAPS = ("best value at each place", "pattern's footprint")
 """What the two maps are called, the first being that of the best values."""

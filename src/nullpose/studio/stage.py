@@ -17,7 +17,7 @@ from nullpose.studio.field_map import Scale
 from nullpose.studio.ground import ground_shapes, scene_size_m
 from nullpose.studio.look import LIGHT, Look, Rgb, round_steps, scale_colours
 from nullpose.studio.state import Key, State
-from nullpose.study.value_map import Field
+from nullpose.study import Field
 
 OnDrag = Callable[[Key, NDArray[np.float64], str], None]
 """Called with a point's key, its new position and the phase of the drag."""

@@ -3,10 +3,11 @@
 from nullpose.study.antenna_comparison import compare_antennas
 from nullpose.study.case import AIRFRAME_CASES, Case
 from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
+from nullpose.study.field import Field
 from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.sweep import spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
-from nullpose.study.value_map import Field, value_map
+from nullpose.study.value_map import value_map
 from nullpose.study.vehicles import (
     cases_of,
     compare_airframes,

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
-import signal
-import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
@@ -19,13 +16,13 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import ExitStack, contextmanager, suppress
-from multiprocessing import get_context, resource_tracker
-from multiprocessing.connection import Connection
+from multiprocessing import get_context
 from typing import TYPE_CHECKING, TypeVar
 
 from nullpose.errors import ClusterError
 from nullpose.solver.worker_pool import processors
 from nullpose.study.monte_carlo.chunk import fingerprint
+from nullpose.study.monte_carlo.processes import end_with, environment, interrupts_put_off
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -142,11 +139,11 @@ class _Pool(Workers):
 
     def _started(self) -> Executor:
         # forked processes would share the locks of numba's threads
-        return ProcessPoolExecutor(self._size, get_context("spawn"), _end_with, (self._watched,))
+        return ProcessPoolExecutor(self._size, get_context("spawn"), end_with, (self._watched,))
 
     def submit(self, function: Callable[..., Answer], *arguments: object) -> Future[Answer]:
         # a process may be started by this; none of them hears Ctrl-C
-        with interrupts_put_off(), _environment(_ONE_THREAD):
+        with interrupts_put_off(), environment(_ONE_THREAD):
             try:
                 return super().submit(function, *arguments)
             except BrokenExecutor:
@@ -261,51 +258,6 @@ async def _reach(scheduler: str) -> None:
     # the certificate that Dask's configuration names, which a tls:// address needs
     comm = await connect(scheduler, timeout=_CONNECT_S, **Security().get_connection_args("client"))
     await comm.close()
-
-
-def _end_with(pipe: Connection) -> None:
-    """End this process when the other end of a pipe is closed, be it by the death of who holds it."""
-
-    def watch() -> None:
-        pipe.poll(None)
-        os._exit(0)
-
-    threading.Thread(target=watch, daemon=True).start()
-
-
-@contextmanager
-def interrupts_put_off() -> Iterator[None]:
-    """Hear Ctrl-C at the end of the block; processes that the block starts never hear it."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    heard: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
-    if has_mask := hasattr(signal, "pthread_sigmask"):
-        resource_tracker.ensure_running()  # it would take the mask away if it were started in the block
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        if has_mask:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        signal.signal(signal.SIGINT, before)
-        if heard:
-            signal.raise_signal(signal.SIGINT)
-
-
-@contextmanager
-def _environment(values: dict[str, str]) -> Iterator[None]:
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 @contextmanager
