@@ -44,7 +44,7 @@ class BranchAndBound(ABC):
         """The smallest ratio of the best pose so far."""
 
     @abstractmethod
-    def excluding(self, gap: float) -> Kernel:
+    def exclusion_kernel(self, gap: float) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``."""
 
     @abstractmethod
@@ -83,7 +83,7 @@ class BranchAndBound(ABC):
                 if self.nodes >= until:
                     return f"the node limit of {self.limits.node_limit}"
                 budget = min(self.chunk, until - self.nodes)
-                self.nodes += workers.work(self.excluding(gap), budget, pool)
+                self.nodes += workers.work(self.exclusion_kernel(gap), budget, pool)
                 for position_m, orientation in workers.better():
                     self.improve(position_m, orientation)
                 if self.nodes >= self.nodes_of_search and not workers.done:

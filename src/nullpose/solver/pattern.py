@@ -170,7 +170,7 @@ class PatternRun(BranchAndBound):
             self.thorough = True
             self.search.search(light=False)
 
-    def excluding(self, gap: float) -> Kernel:
+    def exclusion_kernel(self, gap: float) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``."""
         level, floor = self.value * (1.0 + gap), self.value * (1.0 + self.rounding)
         problem = self.family.arrays, self.family.domain, self.antenna.arrays, self.reach

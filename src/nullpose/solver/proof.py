@@ -1,4 +1,7 @@
-"""The branch and bound run: from an incumbent to a bound, anytime."""
+"""The branch and bound of a dipole, from an incumbent to a bound that holds whenever the run is stopped.
+
+Antennas with patterns and arrays have runs of their own, in ``pattern.py`` and ``array_bound.py``.
+"""
 
 from __future__ import annotations
 
@@ -22,18 +25,22 @@ from nullpose.solver.worker_pool import Kernel, WorkerPool
 
 MOST_HALVINGS = 50
 """Of a leaf that a certificate can hold, as the verifier has it."""
-_SMALLEST = 0.99 * 2.0**-MOST_HALVINGS  # of a box or a cell over the root
+_THINNEST = 0.99 * 2.0**-MOST_HALVINGS  # side of a box or a cell, over the root's
 _TRIES = ((400, False), (20_000, False), (200_000, True))
 """Boxes from the root after which a better pose is looked for, and whether all threads share them.
 
-To start more than one takes longer than most proofs, which have hundreds of boxes.
+To start threads takes longer than most proofs, which have hundreds of boxes.
 """
 _DIRECT_SHARE = 0.125  # of the time left, at most: then come the stages, which have a bound to show
-_BARRIERS = (0.01, 0.1, 0.3)  # of climbs from where a try stopped: they may lead to different maxima
-_KEPT = 4  # boxes of a limit that are left to the stages, which bound what is far at once
+_BARRIERS = (
+    0.01,
+    0.1,
+    0.3,
+)  # weights of the barrier of climbs from where a try stopped: they may lead to different maxima
+_FOR_STAGES = 4  # boxes of a limit that are left to the stages, which bound what is far at once
 _STAGE = 0.1  # each stage's gap, as a share of the one before
-_NEARLY = 2.0  # a stage that ends so near to the target goes all the way
-_CHUNK = 4096  # nodes between two looks at the clock, for few ratios
+_LAST_STAGE = 2.0  # a stage that would end within so many times the target gap goes to the target
+_CHUNK = 4096  # boxes between two looks at the clock, for few ratios
 _MOST_BYTES = 2e9  # of a tree; beyond, leaves are not kept, and the next stage begins at the root
 _WIDEST_GAP = 1e6
 
@@ -43,14 +50,14 @@ class Proof:
     """What the branch and bound run showed.
 
     Args:
-        incumbent: the incumbent, perhaps better than the one it began with.
+        incumbent: the best pose, perhaps better than the one that the run began with.
         upper_bound: no pose of the domain has its smallest ratio above this.
         root: (2, 3) lowest and highest corner of a box outside which no pose reaches the incumbent.
-        leaves: (l, columns) the excluded nodes, in the kernels' layout; they cover the root box. Without
+        leaves: (l, columns) the excluded boxes, in the kernels' layout; they cover the root box. Without
             rows if they are too many for a certificate.
         reason: why the target gap was not reached; empty if it was.
-        nodes: nodes examined.
-        is_even: of an antenna that is no dipole: whether opposite directions have the same gain.
+        nodes: boxes examined.
+        is_even: of an antenna with a pattern: whether opposite directions have the same gain.
     """
 
     incumbent: Incumbent
@@ -63,7 +70,7 @@ class Proof:
 
 
 class _Run(BranchAndBound):
-    """The proof for a dipole: arrays that the kernels write, and the clock."""
+    """One run: arrays that the kernels write, and the clock."""
 
     nodes_of_search = 5_000
 
@@ -88,9 +95,9 @@ class _Run(BranchAndBound):
         self.incumbent, self.search = incumbent, search
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
-        self.rounding = 0.0  # relative: by less a pose is not better, but met again
+        self.rounding = 0.0  # a pose better by less, relative, is the incumbent evaluated in another order
         self.target = INSIDE * limits.ratio_gap(self.value)
-        self.likely_row = np.zeros(node.COLUMNS)  # its multipliers are the incumbent's
+        self.incumbent_row = np.zeros(node.COLUMNS)  # its multipliers are the incumbent's
         self.proved, farthest = entry_of(root.fill_root, ratios)(
             ratios,
             family.domain,
@@ -98,9 +105,9 @@ class _Run(BranchAndBound):
             self.target,
             bound,
             incumbent.multipliers.copy(),
-            self.likely_row,
+            self.incumbent_row,
         )
-        self.root = self.likely_row[None]
+        self.root = self.incumbent_row[None]
         self.leaves = self.root.copy()  # one, which shows the bound from distances alone
         self.leaves[0, [node.LEVEL, node.KIND, node.ANCHOR]] = self.proved, node.FAR, farthest
 
@@ -108,7 +115,7 @@ class _Run(BranchAndBound):
     def value(self) -> float:
         return math.exp(self.incumbent.log_value)
 
-    def directly(self) -> tuple[FloatArray, str]:
+    def try_target(self) -> tuple[FloatArray, str]:
         """Try the target from the root; return the leaves and why it stopped short, if it did.
 
         Boxes that do not end may lie around a better pose: if one is found there, the try begins again.
@@ -117,14 +124,14 @@ class _Run(BranchAndBound):
         until, start = now + _DIRECT_SHARE * (self.deadline - now), self.nodes
         workers = WorkerPool(self.root, 1)
         for nodes, is_shared in _TRIES:
-            most = min(start + nodes, self.node_limit - _KEPT) - self.nodes
+            most = min(start + nodes, self.node_limit - _FOR_STAGES) - self.nodes
             threads = self.threads if is_shared else 1
-            done, reason = self.exclude_all(workers, self.target, max(1, most), until, threads)
-            if not reason or limit_clock() > until or self.nodes >= self.node_limit - _KEPT:
+            leaves, reason = self.exclude_all(workers, self.target, max(1, most), until, threads)
+            if not reason or limit_clock() > until or self.nodes >= self.node_limit - _FOR_STAGES:
                 break
             if self.axis_field.is_free and self._improved_from(workers):
-                return self.directly()
-        return done, reason
+                return self.try_target()
+        return leaves, reason
 
     def _improved_from(self, workers: WorkerPool) -> bool:
         """Climb from where a try stopped; check that a clearly better pose is found."""
@@ -145,18 +152,18 @@ class _Run(BranchAndBound):
         reason = self.work_off(workers, gap, most, deadline, threads)
         if reason:
             return self.root[:0], reason
-        self.proved, done = min(self.proved, self.value * (1.0 + gap)), workers.leaves()
-        if np.all(done[:, self.node.LEVEL] <= self.proved):  # or the bound was better before
-            self.leaves = done
-        return done, ""
+        self.proved, leaves = min(self.proved, self.value * (1.0 + gap)), workers.leaves()
+        if np.all(leaves[:, self.node.LEVEL] <= self.proved):  # else the bound from distances is better
+            self.leaves = leaves
+        return leaves, ""
 
     def has_space(self, workers: WorkerPool) -> bool:
         return workers.size_bytes + self.leaves.nbytes <= _MOST_BYTES
 
-    def excluding(self, gap: float) -> Kernel:
+    def exclusion_kernel(self, gap: float) -> Kernel:
         from nullpose.solver.kernels.records import Goal
 
-        goal = Goal(self.value * (1.0 + self.rounding), self.likely_row)
+        goal = Goal(self.value * (1.0 + self.rounding), self.incumbent_row)
         family, level = self.family, self.value * (1.0 + gap)
         return partial(self.branch, family.arrays, family.domain, self.axis_field.arrays, level, goal)
 
@@ -173,7 +180,7 @@ class _Run(BranchAndBound):
         found = climb(self.family, self.axis_field, position_m, axis, mu=mu, steps=100)
         if found.log_value < start:
             found = replace(found, log_value=start, position_m=position_m, axis=axis)
-        if not self._take(found):  # the two evaluations differ in their rounding: do not ask again
+        if not self._take(found):  # a difference of rounding: such poses are not tried again
             self.rounding = max(1e-9, 10.0 * self.rounding)
 
     def _take(self, found: Incumbent) -> bool:
@@ -181,8 +188,8 @@ class _Run(BranchAndBound):
         if not found.log_value > self.incumbent.log_value:
             return False
         self.incumbent = found
-        self.likely_row, weights = np.zeros(self.node.COLUMNS), found.multipliers.copy()
-        self.node.keep_largest(weights, len(weights), self.likely_row)
+        self.incumbent_row, weights = np.zeros(self.node.COLUMNS), found.multipliers.copy()
+        self.node.keep_largest(weights, len(weights), self.incumbent_row)
         return True
 
     def search_thoroughly(self) -> None:
@@ -191,13 +198,13 @@ class _Run(BranchAndBound):
             self._take(search())
 
     def _has_certificate(self, side_m: FloatArray) -> bool:
-        """Check that a certificate can hold the leaves: so many, and halved so often."""
+        """Check that a certificate can hold the leaves, by their number and their sides."""
         halves_m = self.leaves[:, self.node.HALF : self.node.LEVEL]
         cells = self.leaves[self.leaves[:, self.node.FACE] >= 0.0, self.node.CELL : self.node.SIDE]
         return (
             len(self.leaves) <= MOST_LEAVES
-            and bool(np.all(halves_m >= _SMALLEST * side_m))
-            and bool(np.all(cells[:, 1::2] - cells[:, ::2] >= 2.0 * _SMALLEST))
+            and bool(np.all(halves_m >= _THINNEST * side_m))
+            and bool(np.all(cells[:, 1::2] - cells[:, ::2] >= 2.0 * _THINNEST))
         )
 
     def result(self, reason: str) -> Proof:
@@ -226,18 +233,18 @@ def prove(
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
 
-    First the target gap is tried directly. If that takes too many nodes, the gap is closed in stages, each
+    First the target gap is tried directly. If that takes too many boxes, the gap is closed in stages, each
     refining the leaves of the one before, so that a limit leaves the bound of the last stage finished.
 
     Args:
         family: the ratios and their domain.
         axis_field: which axes are allowed.
-        incumbent: the incumbent.
-        limits: target gap, time, nodes and progress; a KeyboardInterrupt during the run ends it with the
+        incumbent: the best pose of the search.
+        limits: target gap, time, boxes and progress; a KeyboardInterrupt during the run ends it with the
             bound reached.
         began: when the clock of the limits began, that of ``limit_clock``; now, if left out.
-        nodes: nodes examined before, which count towards the limit.
-        bound: known before, of a field that holds all axes of this one; the leaves do not show it.
+        nodes: boxes examined before, which count towards the limit.
+        bound: one proved before for a field that holds all axes of this one; the leaves do not prove it.
         search: a thorough search, made once if the proof does not close at once.
     """
     began = limit_clock() if began is None else began
@@ -246,16 +253,16 @@ def prove(
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
             return run.result("")
-        done, reason = run.directly()
+        leaves, reason = run.try_target()
         if reason and run.nodes < run.node_limit and limit_clock() < run.deadline:
             start, gap = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
-                gap = target if _STAGE * gap <= _NEARLY * target else _STAGE * gap
+                gap = target if _STAGE * gap <= _LAST_STAGE * target else _STAGE * gap
                 most, threads = run.node_limit - run.nodes, run.threads
-                done, reason = run.exclude_all(WorkerPool(start, threads), gap, most, run.deadline, threads)
+                leaves, reason = run.exclude_all(WorkerPool(start, threads), gap, most, run.deadline, threads)
                 if reason:
                     break
-                start = done if len(done) else run.root
+                start = leaves if len(leaves) else run.root
         if reason:
             run.search_thoroughly()
     except KeyboardInterrupt:

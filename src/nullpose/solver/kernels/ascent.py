@@ -171,9 +171,9 @@ def fill_model(pool, mix, top, v, total):
 
 
 @inner_kernel
-def take_in(family, level_axes, basis, row, whitening, ratio, share, pool, total):
+def take_in(family, is_horizontal, basis, row, whitening, ratio, share, pool, total):
     """Add a ratio to the pool; return how many forms there are."""
-    ratio_form(family, level_axes, basis, row, whitening, ratio, pool.forms[total])
+    ratio_form(family, is_horizontal, basis, row, whitening, ratio, pool.forms[total])
     pool.members[total], pool.shares[total] = ratio, share
     return total + 1
 
@@ -212,12 +212,12 @@ def put_weights(pool, sides, total, ratios, weights):
 
 
 @inner_kernel
-def ascend(family, level_axes, basis, row, whitening, pool, sides, tolerance, every, weights, v):
+def ascend(family, is_horizontal, basis, row, whitening, pool, sides, tolerance, every, weights, v):
     """Fill the best multipliers at a box's centre and the axis that they leave; return the dual's value.
 
     Args:
         family: arrays of the family.
-        level_axes: whether only horizontal axes are allowed.
+        is_horizontal: whether only horizontal axes are allowed.
         basis: the frame.
         row: the box, whose multipliers are the start; without any the first ratio is.
         whitening: as ``whiten`` fills it.
@@ -238,7 +238,7 @@ def ascend(family, level_axes, basis, row, whitening, pool, sides, tolerance, ev
     total = sides
     for s in range(max(1, int(row[COUNT]))):
         ratio, share = (int(row[INDEX + s]), row[WEIGHT + s]) if row[COUNT] > 0.0 else (0, 1.0)
-        total = take_in(family, level_axes, basis, row, whitening, ratio, share, pool, total)
+        total = take_in(family, is_horizontal, basis, row, whitening, ratio, share, pool, total)
     before = lowest = math.inf
     for _ in range(_STEPS):
         mix[:] = 0.0
@@ -264,7 +264,7 @@ def ascend(family, level_axes, basis, row, whitening, pool, sides, tolerance, ev
             ratio = lowest_missing(every, top, pool, sides, total)
             if ratio < 0 or total >= _MOST:
                 break
-            total = take_in(family, level_axes, basis, row, whitening, ratio, 0.0, pool, total)
+            total = take_in(family, is_horizontal, basis, row, whitening, ratio, 0.0, pool, total)
         before = top
         copy_into(shares, trial)
         if not fill_model(pool, mix, top, v, total):

@@ -16,7 +16,7 @@ from nullpose.solver.kernels.curved import curved_multipliers, denominator_jet, 
 from nullpose.solver.kernels.denominators import expand_denominator
 from nullpose.solver.kernels.domain import contains
 from nullpose.solver.kernels.enclosure import JET, MOST, axis_clearance
-from nullpose.solver.kernels.exclusion import excludes, is_level, out_of_reach, will_fail
+from nullpose.solver.kernels.exclusion import excludes, has_horizontal_axes, out_of_reach, will_fail
 from nullpose.solver.kernels.expansion import best_frame, frame_at, min_square
 from nullpose.solver.kernels.forms import add_denominator
 from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel, inner_kernel
@@ -108,7 +108,7 @@ def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, a
     is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
-    kind, anchor = best_frame(family, is_level(axis_field), row)
+    kind, anchor = best_frame(family, has_horizontal_axes(axis_field), row)
     frame = frame_at(family, kind, anchor, centre, half, basis)
     denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)
@@ -201,7 +201,7 @@ def workspace_of(family):
 
 
 @inner_kernel
-def split_foreseen(row, side, forecast, level_axes, stack, top):
+def split_foreseen(row, side, forecast, is_horizontal, stack, top):
     """Push the parts of a box; halves of which it is foreseen that they fail are halved again unseen."""
     halvings, place = scratch_int(9), top
     top = split_position(row, side, stack, top)
@@ -209,7 +209,7 @@ def split_foreseen(row, side, forecast, level_axes, stack, top):
     first = place
     while place < top:
         done = halvings[place - first]
-        if done < _HALVINGS and will_fail(forecast, row, stack[place], level_axes):
+        if done < _HALVINGS and will_fail(forecast, row, stack[place], is_horizontal):
             halve(stack, place, top)
             halvings[place - first] = halvings[top - first] = done + 1
             top += 1
@@ -272,9 +272,9 @@ def branch(
             copy_into(axis, better_u)
             return BETTER, top + 1, filled, boxes, sought
         elif verdict == BY_AXIS:
-            top = split_axis(row, is_level(axis_field), stack, top)
+            top = split_axis(row, has_horizontal_axes(axis_field), stack, top)
         elif verdict == FORESEEN:
-            top = split_foreseen(row, side, workspace, is_level(axis_field), stack, top)
+            top = split_foreseen(row, side, workspace, has_horizontal_axes(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)
     return DONE, top, filled, boxes, sought

@@ -1,10 +1,14 @@
 """The test that excludes a node of a free axis: a weighted sum of forms that is negative all over its box.
 
-Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell, one for the band)
-exclude a box at a level t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum_q mu_q Q_q`` is negative definite for
-every position p in it: then no pose there has all its ratios at t or above. The matrix is bounded by its
-first-order expansion at the eight corners plus a second-order remainder, with a margin for rounding. Where
-all axes are level, it only needs to be negative definite in the level plane.
+Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell of axes, one for
+the band of elevations) exclude a box at the ratio t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum mu_q Q_q``
+is negative definite for every position p in it: then no pose there has all its ratios at t or above. ``Q_q``
+are the forms that no axis of the cell or the band makes negative. The matrix is expanded to the first order
+at the box's centre; with a bound on the remainder, and a margin for rounding, it is tested at the eight
+corners. Where all axes are horizontal, it only needs to be negative definite in the horizontal plane.
+
+A form is six numbers: xx, yy, zz, xy, xz, yz. Forms stand in a frame that turns with the direction to one
+ground point, the anchor, whose null stands still in it (docs/certificate.md, lemma 2).
 """
 
 from __future__ import annotations
@@ -58,19 +62,19 @@ from nullpose.solver.kernels.symmetric import (
 from nullpose.solver.kernels.vectors import corner_of, dot, minus
 from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
 
-_HOPED = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
-_CENTRE = (0.0, 0.0, 0.0)
-_DEFINITE = 1e-13  # minors, relative to the products that they are made of
+_FORESEEN_SHARE = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
+_CENTRE = (0.0, 0.0, 0.0)  # as a step from it
+_DEFINITE = 1e-13  # least minor over the products that it consists of: many times its rounding
 
 
 @inner_kernel
-def is_level(axis_field):
+def has_horizontal_axes(axis_field):
     """Check whether an axis field holds the level axes only."""
     return axis_field.kind == CONE_AXIS and axis_field.offset[1] == 0.0
 
 
 @inner_kernel
-def negative_at(matrix, slopes, step, level_axes):
+def negative_at(matrix, slopes, step, is_horizontal):
     """Check whether the linear matrix is negative definite at a step from the centre."""
     x, y, z = step
     a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
@@ -80,44 +84,44 @@ def negative_at(matrix, slopes, step, level_axes):
     minor = a0 * a1 - a3 * a3
     if not (a0 < 0.0 and minor > _DEFINITE * a0 * a1):
         return False
-    if level_axes:
+    if is_horizontal:
         return True
     a2 = matrix[2] + x * slopes[0, 2] + y * slopes[1, 2] + z * slopes[2, 2]
     a4 = matrix[4] + x * slopes[0, 4] + y * slopes[1, 4] + z * slopes[2, 4]
     a5 = matrix[5] + x * slopes[0, 5] + y * slopes[1, 5] + z * slopes[2, 5]
-    det = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
-    return det > -_DEFINITE * a0 * a1 * a2
+    negated_determinant = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
+    return negated_determinant > -_DEFINITE * a0 * a1 * a2
 
 
 @inner_kernel
-def failing_corner(matrix, slopes, middle, half, level_axes):
+def failing_corner(matrix, slopes, middle, half, is_horizontal):
     """Return the first corner of a box at which the linear matrix is not negative definite, or -1."""
     for corner in range(8):
-        if not negative_at(matrix, slopes, corner_of(middle, half, corner), level_axes):
+        if not negative_at(matrix, slopes, corner_of(middle, half, corner), is_horizontal):
             return corner
     return -1
 
 
 @inner_kernel
-def is_negative_without(matrix, slopes, half, corner, most, level_axes):
-    """Check whether a failing corner is negative once so much is taken off the diagonal."""
-    less = scratch(6)
-    copy_into(matrix, less)
-    add_identity(-most, less)
-    return negative_at(less, slopes, corner_of(_CENTRE, half, corner), level_axes)
+def passes_without(matrix, slopes, half, corner, remainder, is_horizontal):
+    """Check whether a failing corner passes without a part of the remainder."""
+    rest = scratch(6)
+    copy_into(matrix, rest)
+    add_identity(-remainder, rest)
+    return negative_at(rest, slopes, corner_of(_CENTRE, half, corner), is_horizontal)
 
 
 @inner_kernel
-def will_fail(forecast, row, part, level_axes):
-    """Check whether a part of a row's box will fail, by what its own multipliers come to there."""
+def will_fail(forecast, row, part, is_horizontal):
+    """Foresee whether a part of a box fails the test, from the matrix of the whole box."""
     half, whole, matrix = part[HALF:LEVEL], row[HALF:LEVEL], scratch(6)
     if forecast.rest[0] == math.inf:  # no multipliers exclude even the centre
         return True
     middle = minus(part[CENTRE:HALF], row[CENTRE:HALF])
-    share = _HOPED * dot(half, half) / dot(whole, whole)  # remainders are of the second order
+    share = _FORESEEN_SHARE * dot(half, half) / dot(whole, whole)  # remainders are of the second order
     copy_into(forecast.matrix, matrix)
     add_scaled(share, forecast.rest, matrix)
-    return failing_corner(matrix, forecast.slopes, middle, half, level_axes) >= 0
+    return failing_corner(matrix, forecast.slopes, middle, half, is_horizontal) >= 0
 
 
 @inner_kernel
@@ -145,23 +149,23 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
     """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes = scratch(6), scratch(3, 6)
-    radius = 0.5 * dot(half, half)
+    half_square = 0.5 * dot(half, half)  # a remainder is this times a second derivative
     everywhere = 0.0
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         weight = row[WEIGHT + s]
         isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
         j = family.numerator_point[k]
-        up, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
+        bend, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
         add_with_slopes(weight * strength, form, form_slopes, matrix, slopes)
         add_identity(weight * isotropic, matrix)
         size = isotropic + strength * (form[0] + form[1] + form[2])
-        everywhere += weight * (radius * strength * up + ROUNDING * size)
+        everywhere += weight * (half_square * strength * bend + ROUNDING * size)
     for number in range(3):
         weight, level = constraint_of(axis_field, row, number, form)
         if weight > 0.0:
             add_identity(weight * level, matrix)  # which no frame turns
-            everywhere += radius * add_side(form, weight, frame, matrix, slopes)
+            everywhere += half_square * add_side(form, weight, frame, matrix, slopes)
             everywhere += 4.0 * ROUNDING * weight  # a form's entries are at most 1
     return everywhere
 
@@ -218,9 +222,9 @@ def constraint_of(axis_field, row, number, form):
             return 0.0, 0.0
         cell_side(int(row[FACE]), row[CELL:SIDE], number, form)
         return row[SIDE + number], 0.0
-    if axis_field.kind < BAND_AXIS or is_level(axis_field):
+    if axis_field.kind < BAND_AXIS or has_horizontal_axes(axis_field):
         return 0.0, 0.0
-    upper = row[BAND] > 0.0
+    upper = row[BAND] > 0.0  # its sign tells the end of the band that is in force
     form[2] = -1.0 if upper else 1.0
     return abs(row[BAND]), axis_field.offset[1] if upper else -axis_field.offset[0]
 
@@ -236,35 +240,35 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
     matrix, slopes = scratch(6), forecast.slopes
     dipoles = family.ground_axes is not None
     row[NU] = below_rest = 0.0
-    half, level_axes = row[HALF:LEVEL], is_level(axis_field)
+    half, is_horizontal = row[HALF:LEVEL], has_horizontal_axes(axis_field)
     if dipoles:
         add_dipole_sum(family, family.ground_axes, axis_field, frame, row, matrix, slopes, forecast.rest)
     else:
         below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
     # without a remainder, at the centre: what fails there fails in every box about it, however small
-    if row[BALL] < 0.0 and not negative_at(matrix, slopes, _CENTRE, level_axes):
+    if row[BALL] < 0.0 and not negative_at(matrix, slopes, _CENTRE, is_horizontal):
         forecast.rest[0] = math.inf
         return False
     copy_into(matrix, forecast.matrix)
     add_scaled(1.0, forecast.rest, matrix)
-    corner = failing_corner(matrix, slopes, _CENTRE, half, level_axes)
+    corner = failing_corner(matrix, slopes, _CENTRE, half, is_horizontal)
     if corner < 0:
         return True
     # sharper remainders cost as much as the test so far: only where none at all would let the corner pass
-    if not dipoles and is_negative_without(matrix, slopes, half, corner, below_rest, level_axes):
-        if level_axes:  # what is off the level plane does not count
+    if not dipoles and passes_without(matrix, slopes, half, corner, below_rest, is_horizontal):
+        if is_horizontal:  # what is off the level plane does not count
             matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
             matrix[4] = matrix[5] = 0.0
         slopes = scratch(3, 6)
         copy_table(forecast.slopes, slopes)
         sharpen(family, frame, row, matrix, slopes)
-        if failing_corner(matrix, slopes, _CENTRE, half, level_axes) < 0:
+        if failing_corner(matrix, slopes, _CENTRE, half, is_horizontal) < 0:
             return True
-    return row[BALL] >= 0.0 and excludes_allowed(domain, row, matrix, slopes, level_axes)
+    return row[BALL] >= 0.0 and excludes_within_borders(domain, row, matrix, slopes, is_horizontal)
 
 
 @inner_kernel
-def excludes_allowed(domain, row, matrix, slopes, level_axes):
+def excludes_within_borders(domain, row, matrix, slopes, is_horizontal):
     """Check whether the matrix is negative wherever a border allows positions; fill its multiplier."""
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
     alternatives = borders(domain, row, sides, counts)
@@ -272,28 +276,28 @@ def excludes_allowed(domain, row, matrix, slopes, level_axes):
         return False
     v, gradient, border = scratch(3), scratch(3), scratch(7)
     half = row[HALF:LEVEL]
-    if level_axes:
+    if is_horizontal:
         matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
     # the border is to cancel the slope along the axis that fails worst
     top_eigenvector(matrix, v)
     for i in range(3):
         gradient[i] = form_value(slopes, i, v)
-    bent, bent_slopes = scratch(6), scratch(3, 6)
+    bordered, bordered_slopes = scratch(6), scratch(3, 6)
     for a in range(alternatives):
         row[NU] = weigh_borders(sides[a], counts[a], row, gradient, border)
         if row[NU] < 0.0:
             return False
-        copy_into(matrix, bent)
-        copy_table(slopes, bent_slopes)
+        copy_into(matrix, bordered)
+        copy_table(slopes, bordered_slopes)
         rest = border[0]
         for i in range(3):
             rest += 0.5 * border[4 + i] * half[i] ** 2
-            add_identity(border[1 + i], bent_slopes[i])
-        add_identity(rest, bent)
-        if failing_corner(bent, bent_slopes, _CENTRE, half, level_axes) >= 0:
+            add_identity(border[1 + i], bordered_slopes[i])
+        add_identity(rest, bordered)
+        if failing_corner(bordered, bordered_slopes, _CENTRE, half, is_horizontal) >= 0:
             return False
     if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
-        row[NU] = 1.0  # a zone's multipliers are found again by the verifier
+        row[NU] = 1.0  # any positive number: the verifier finds a zone's multipliers itself
     return True
 
 

@@ -171,7 +171,7 @@ def dipole_sine(axes, j, away):
 
 
 @inner_kernel
-def best_frame(family, level_axes, row):
+def best_frame(family, is_horizontal, row):
     """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
 
     A frame that turns spares us the remainder of the point that it turns towards, and makes all others
@@ -179,7 +179,7 @@ def best_frame(family, level_axes, row):
     """
     points, centre, half = family.points_m, row[CENTRE:HALF], row[HALF:LEVEL]
     anchor = strongest_point(family, centre)
-    if anchor < 0 or family.turn.shape[0] > 0 or level_axes:
+    if anchor < 0 or family.turn.shape[0] > 0 or is_horizontal:
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
     if isotropic_share(family.ground_leaks, anchor) < 1.0:

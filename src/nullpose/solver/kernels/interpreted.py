@@ -10,20 +10,23 @@ import threading
 from collections.abc import Callable
 from functools import cache
 from types import FunctionType
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from nullpose.solver.background_compiler import BackgroundCompiler
 
 
 class Superseded(Exception):  # noqa: N818  no error
     """Ends what Python runs once all that is compiled elsewhere is there."""
 
 
-compiler: Any = None
+compiler: BackgroundCompiler | None = None
 """A ``BackgroundCompiler`` that compiles kernels elsewhere; None where this process compiles them."""
 
 
-def interpret(kernel: Any, signature: Any, *arguments: Any) -> Any:
+def interpret(kernel, signature, *arguments):
     """Run a kernel in Python, or as machine code if that is there before.
 
     An array that Python has changed is as before when machine code takes over, or when an interrupt ends the
@@ -59,14 +62,14 @@ def python_of(function: FunctionType) -> FunctionType:
     return FunctionType(function.__code__, _namespace(function), function.__name__)
 
 
-def yielding(function: Callable[..., Any]) -> Callable[..., Any]:
+def yielding(function: Callable[..., object]) -> Callable[..., object]:
     """Return a function that first looks whether machine code is there.
 
     Args:
         function: called now and then in every long kernel.
     """
 
-    def look_and_call(*arguments: Any) -> Any:
+    def look_and_call(*arguments):
         if compiler is not None and not compiler.is_busy():
             raise Superseded
         return function(*arguments)
@@ -74,11 +77,11 @@ def yielding(function: Callable[..., Any]) -> Callable[..., Any]:
     return look_and_call
 
 
-_namespaces: dict[str, dict[str, Any]] = {}
+_namespaces: dict[str, dict[str, object]] = {}
 _building = threading.RLock()
 
 
-def _namespace(function: FunctionType) -> dict[str, Any]:
+def _namespace(function: FunctionType) -> dict[str, object]:
     """Return the names of a kernel's module with plain functions in place of kernels."""
     module = function.__module__
     with _building:

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
 import numba
 from numba import config
@@ -23,14 +22,14 @@ IS_LINKED = LINKED_FROM <= tuple(map(int, numba.__version__.split(".")[:2])) < L
 """Whether this numba is one of them; with another, kernels are compiled as any function is."""
 
 # without the wrapper that C callbacks would use, a tenth less is compiled
-_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+_OPTIONS: dict[str, object] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 # no references are counted, which in short kernels is a fifth of the time
-_LEAN: dict[str, Any] = _OPTIONS | {"_nrt": False}
+_LEAN: dict[str, object] = _OPTIONS | {"_nrt": False}
 # said, since a kernel inherits what is not said from the first that calls it
-_HEAP: dict[str, Any] = _OPTIONS | {"_nrt": True}
+_HEAP: dict[str, object] = _OPTIONS | {"_nrt": True}
 
 
-def kernel(function: Callable[..., Any]) -> Any:
+def kernel(function: Callable[..., object]):
     """Return the function compiled on first use, cached on disk, following IEEE rules on division by zero.
 
     It may take views of arrays and scratch space (``scratch.py``), but make no array on the heap: the
@@ -40,28 +39,28 @@ def kernel(function: Callable[..., Any]) -> Any:
     return _compiled(function, _LEAN)
 
 
-def inner_kernel(function: Callable[..., Any]) -> Any:
+def inner_kernel(function: Callable[..., object]):
     """Return a kernel that only kernels can call: without a Python wrapper a tenth less is compiled."""
     return _compiled(function, _LEAN, is_part=True)
 
 
-def heap_kernel(function: Callable[..., Any]) -> Any:
+def heap_kernel(function: Callable[..., object]):
     """Return a kernel that makes arrays whose size is not known when it is compiled."""
     return _compiled(function, _HEAP)
 
 
-def inner_heap_kernel(function: Callable[..., Any]) -> Any:
+def inner_heap_kernel(function: Callable[..., object]):
     """Return a kernel that makes such arrays and that only kernels can call."""
     return _compiled(function, _HEAP, is_part=True)
 
 
-def _compiled(function: Callable[..., Any], options: dict[str, Any], is_part: bool = False) -> Any:
+def _compiled(function, options, is_part=False):
     if getattr(config, "DISABLE_JIT", False):
         return function
     if IS_LINKED:
         from nullpose.solver.kernels.linked import LinkedDispatcher, Part
 
-        kind: Any = Part if is_part else LinkedDispatcher
+        kind = Part if is_part else LinkedDispatcher
         kernel = kind(function, {"nopython": True, "boundscheck": None, **options})
         if is_part:
             return kernel
@@ -94,7 +93,7 @@ def _drop_outdated(cache_path: str) -> None:
         stamp.write_text(present)
 
 
-def entry_of(kernel: Any, ratios: Ratios) -> Any:
+def entry_of(kernel, ratios: Ratios):
     """Return the quickest entry to a kernel whose arguments but the ratios are always of the same types.
 
     That is its machine code, once it is compiled: to choose by types, which for named tuples takes as long

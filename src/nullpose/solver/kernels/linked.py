@@ -13,7 +13,6 @@ from contextlib import suppress
 from functools import cached_property, partial
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
 from llvmlite import binding
 from numba.core import types
@@ -34,7 +33,7 @@ _CHECKSUM = 32  # bytes
 class _Whole(JITCodeLibrary):
     """Machine code of a kernel and of all its parts."""
 
-    def add_linking_library(self, library: Any) -> None:
+    def add_linking_library(self, library) -> None:
         super().add_linking_library(library)
         if isinstance(library, _Part):  # which holds nothing but itself
             self._linking_libraries += library._linking_libraries
@@ -43,7 +42,7 @@ class _Whole(JITCodeLibrary):
 class _Part(_Whole):
     """Code of one kernel, to be linked into others."""
 
-    def _optimize_functions(self, ll_module: Any) -> None:
+    def _optimize_functions(self, ll_module) -> None:
         ll_module.data_layout = self._codegen._data_layout
 
     def finalize(self) -> None:
@@ -53,17 +52,17 @@ class _Part(_Whole):
         return 0  # there is no machine code
 
     @property
-    def codegen(self) -> Any:
+    def codegen(self):
         return self
 
-    def set_env(self, name: str, env: Any) -> None:
+    def set_env(self, name: str, env) -> None:
         """Do nothing: an environment belongs to machine code."""
 
 
 class _Compiler(CompilerBase):
-    library: Any = _Whole
+    library = _Whole
 
-    def define_pipelines(self) -> list[Any]:
+    def define_pipelines(self):
         from nullpose.solver.kernels.passes import passes  # a part of the compiler
 
         state = self.state
@@ -79,24 +78,24 @@ class _PartCompiler(_Compiler):
 class Part:
     """A kernel as other kernels link it in; nothing is made of it before the first of them is compiled."""
 
-    def __init__(self, function: Any, options: dict[str, Any]) -> None:
+    def __init__(self, function, options: dict[str, object]) -> None:
         self.py_func, self._options = function, options
         self.makes_arrays = options["_nrt"]
 
     @cached_property
-    def _dispatcher(self) -> Any:
+    def _dispatcher(self):
         options = self._options | {"no_cpython_wrapper": True}
         return CPUDispatcher(self.py_func, targetoptions=options, pipeline_class=_PartCompiler)
 
     @property
-    def _numba_type_(self) -> Any:
+    def _numba_type_(self):
         return self._dispatcher._numba_type_
 
 
 class _Stored(CompileResultCacheImpl):
     """What the cache holds of a kernel."""
 
-    def reduce(self, cres: Any) -> Any:
+    def reduce(self, cres):
         """Return machine code alone.
 
         Nothing links a whole: of its bitcode only the two names that it is entered by are read.
@@ -115,11 +114,11 @@ class _Files(IndexDataCacheFile):
     Numba's have none: a byte that the disk has lost or changed would be run.
     """
 
-    def _path(self, key: Any) -> Path:
+    def _path(self, key) -> Path:
         choice = sha256(repr((self._version, self._source_stamp, key)).encode()).hexdigest()
         return Path(self._cache_path) / self._index_name.replace(".nbi", f".{choice}.nbc")
 
-    def load(self, key: Any) -> Any:
+    def load(self, key):
         """Load a kernel; None where there is none, or where its file is damaged."""
         with suppress(OSError):
             content = self._path(key).read_bytes()
@@ -127,7 +126,7 @@ class _Files(IndexDataCacheFile):
                 return pickle.loads(content[_CHECKSUM:])
         return None
 
-    def save(self, key: Any, data: Any) -> None:
+    def save(self, key, data) -> None:
         """Save, in place of what was there."""
         content = dumps(data)
         with self._open_for_write(self._path(key)) as file:
@@ -139,22 +138,22 @@ class _Cache(FunctionCache):
 
     _impl_class = _Stored
 
-    def __init__(self, function: Any) -> None:
+    def __init__(self, function) -> None:
         super().__init__(function)
         numba = self._cache_file
         self._cache_file = _Files(numba._cache_path, self._impl.filename_base, numba._source_stamp)
 
-    def holds(self, sig: Any, target_context: Any) -> bool:
+    def holds(self, sig, target_context) -> bool:
         """Check for machine code that can be loaded."""
         return self._cache_file.load(self._index_key(sig, target_context.codegen())) is not None
 
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
+    def load_overload(self, sig, target_context):
         """Load machine code without the compiler, which numba would load too; None where there is none."""
         rtsys.initialize(target_context)
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)
 
-    def save_overload(self, sig: Any, data: Any) -> None:
+    def save_overload(self, sig, data) -> None:
         """Save machine code; where that cannot be, say so once."""
         try:
             super().save_overload(sig, data)
@@ -165,32 +164,32 @@ class _Cache(FunctionCache):
 class LinkedDispatcher(CPUDispatcher):
     """A kernel: a whole where Python calls it, a part where a kernel does."""
 
-    def __init__(self, function: Any, options: dict[str, Any]) -> None:
+    def __init__(self, function, options: dict[str, object]) -> None:
         super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
-        self.entries: dict[bool, Any] = {}
+        self.entries: dict[bool, object] = {}
         self._part = Part(function, options)
         self.makes_arrays = self._part.makes_arrays
 
     @property
-    def _numba_type_(self) -> Any:
+    def _numba_type_(self):
         return self._part._numba_type_
 
     def enable_caching(self) -> None:
         """Keep machine code on disk."""
         self._cache = _Cache(self.py_func)
 
-    def compile(self, sig: Any) -> Any:
+    def compile(self, sig):
         """Return machine code for arguments of given types, or Python while that is not there."""
         compiler = interpreted.compiler
         if compiler is None or self._has_code(sig) or not compiler.takes(self, sig):
             return super().compile(sig)
         return partial(interpreted.interpret, self, sig)
 
-    def _has_code(self, sig: Any) -> bool:
+    def _has_code(self, sig) -> bool:
         is_kept = isinstance(self._cache, _Cache) and self._cache.holds(sig, self.targetctx)
         return is_kept or tuple(sig) in self.overloads
 
-    def add_overload(self, cres: Any) -> None:
+    def add_overload(self, cres) -> None:
         """Keep the machine code for one choice of types."""
         super().add_overload(cres)
         for first in cres.signature.args[:1]:

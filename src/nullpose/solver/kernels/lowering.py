@@ -10,7 +10,6 @@ from __future__ import annotations
 import operator
 import sys
 from functools import reduce
-from typing import Any
 
 from llvmlite.ir import Constant, Value
 from numba.core import cgutils, ir, types
@@ -30,7 +29,7 @@ class _Lower(Lower):
 
     def init(self) -> None:
         super().init()
-        self._values: dict[str, Any] = {}
+        self._values: dict[str, object] = {}
         # where references are counted, numba must see where each ends
         self._lasting = set() if self.context.enable_nrt else _assigned_once(self.func_ir.blocks)
         self._singly_assigned_vars -= self._lasting
@@ -40,27 +39,27 @@ class _Lower(Lower):
         if self.context.enable_nrt:
             super()._find_singly_assigned_variable()
 
-    def _alloca_var(self, name: str, kind: Any) -> None:
+    def _alloca_var(self, name: str, kind) -> None:
         if name not in self._lasting:
             super()._alloca_var(name, kind)
 
-    def alloca_lltype(self, name: str, lltype: Any, datamodel: Any = None) -> Any:
+    def alloca_lltype(self, name: str, lltype, datamodel=None):
         return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
 
-    def storevar(self, value: Any, name: str, argidx: int | None = None) -> None:
+    def storevar(self, value, name: str, argidx: int | None = None) -> None:
         if name in self._lasting:
             self._values[name] = value
         else:
             super().storevar(value, name)
 
-    def loadvar(self, name: str) -> Any:
+    def loadvar(self, name: str):
         return self._values[name] if name in self._lasting else super().loadvar(name)
 
     def delvar(self, name: str) -> None:
         if self.context.enable_nrt:
             super().delvar(name)
 
-    def lower_inst(self, inst: Any) -> None:
+    def lower_inst(self, inst) -> None:
         if isinstance(inst, ir.SetItem | ir.StaticSetItem):
             kind, item = self.typeof(inst.target.name), self.typeof(inst.value.name)
             found = self._part(inst.target, inst.index) if isinstance(item, types.Number) else None
@@ -70,7 +69,7 @@ class _Lower(Lower):
                 return
         super().lower_inst(inst)
 
-    def lower_binop(self, resty: Any, expr: Any, op: Any) -> Any:
+    def lower_binop(self, resty, expr, op):
         ends = expr.lhs, expr.rhs
         kinds = [self.typeof(each.name) for each in ends]
         if op in (operator.pow, operator.ipow) or not all(isinstance(kind, types.Number) for kind in kinds):
@@ -85,7 +84,7 @@ class _Lower(Lower):
         ]
         return context.cast(builder, function(builder, values), signature.return_type, resty)
 
-    def lower_expr(self, resty: Any, expr: Any) -> Any:
+    def lower_expr(self, resty, expr):
         if expr.op in ("getitem", "static_getitem"):
             found = self._part(expr.value, expr.index)
             if found is not None and not found[1]:
@@ -96,7 +95,7 @@ class _Lower(Lower):
                 return array_value(self.builder, *found)
         return super().lower_expr(resty, expr)
 
-    def _part(self, array: Any, index: Any) -> Any:
+    def _part(self, array, index):
         """Return the address, shape and strides of a part of an array; None if left to numba."""
         kind, builder = self.typeof(array.name), self.builder
         if not isinstance(kind, types.Array):
@@ -123,37 +122,37 @@ class _Lower(Lower):
             offset = builder.add(offset, places[i]) if i < len(places) else offset
         return builder.gep(data, [offset]), *left
 
-    def _places(self, index: Any) -> list[Any]:
+    def _places(self, index):
         """Return an index's parts: values, pairs of the ends of slices, None for what is left to numba."""
         if not isinstance(index, ir.Var):
             return [_constant(part) for part in (index if isinstance(index, tuple) else (index,))]
-        kind: Any = self.typeof(index.name)
+        kind = self.typeof(index.name)
         value = self.loadvar(index.name)
         if not isinstance(kind, types.Tuple | types.UniTuple):
             return [self._place(kind, value)]
         parts = cgutils.unpack_tuple(self.builder, value)
         return [self._place(each, parts[i]) for i, each in enumerate(kind.types)]
 
-    def _place(self, kind: Any, value: Any) -> Any:
+    def _place(self, kind, value):
         if isinstance(kind, types.Integer):
             return self.context.cast(self.builder, value, kind, types.intp)
         if kind == types.slice2_type:
             return self.builder.extract_value(value, 0), self.builder.extract_value(value, 1)
         return None
 
-    def _counted(self, place: Any, count: Any) -> Any:
+    def _counted(self, place, count):
         """Return a place, which below zero is counted from the end."""
         if isinstance(place, Constant) and place.constant >= 0:
             return place
         below = self.builder.icmp_signed("<", place, _INTP(0))
         return self.builder.select(below, self.builder.add(place, count), place)
 
-    def _within(self, place: Any, count: Any) -> Any:
+    def _within(self, place, count):
         """Return an end of a slice, within the array."""
         place = self._larger(_INTP(0), self._counted(place, count))
         return self.builder.select(self.builder.icmp_signed("<", place, count), place, count)
 
-    def _larger(self, a: Any, b: Any) -> Any:
+    def _larger(self, a, b):
         return self.builder.select(self.builder.icmp_signed(">", a, b), a, b)
 
 
@@ -165,7 +164,7 @@ class KernelLowering(NativeLowering):
     lowering_class = _Lower
 
 
-def array_value(builder: Any, data: Any, shape: list[Any], strides: list[Any]) -> Any:
+def array_value(builder, data, shape, strides):
     """Return an array of items of eight bytes that owns nothing, as LLVM has it.
 
     Args:
@@ -179,7 +178,7 @@ def array_value(builder: Any, data: Any, shape: list[Any], strides: list[Any]) -
     return cgutils.pack_struct(builder, [none, none, count, _INTP(_ITEM), data, *ends])
 
 
-def _constant(index: Any) -> Any:
+def _constant(index):
     """Return a constant index's value, or the ends of a constant slice; None for any other."""
     if isinstance(index, int):
         return _INTP(index)
@@ -188,7 +187,7 @@ def _constant(index: Any) -> Any:
     return _INTP(index.start or 0), _INTP(sys.maxsize if index.stop is None else index.stop)
 
 
-def _assigned_once(blocks: Any) -> set[str]:
+def _assigned_once(blocks) -> set[str]:
     """Return the variables with one assignment, which is always passed before they are used."""
     where: dict[str, int] = {}
     others = set()

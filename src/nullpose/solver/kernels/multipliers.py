@@ -9,7 +9,7 @@ import numpy as np
 from nullpose.problem.records import BAND_AXIS
 from nullpose.solver.kernels.ascent import POOL, Pool, ascend, lowest_missing, put_weights
 from nullpose.solver.kernels.dual import dual_multipliers, positive_definite
-from nullpose.solver.kernels.exclusion import is_level
+from nullpose.solver.kernels.exclusion import has_horizontal_axes
 from nullpose.solver.kernels.forms import form_value
 from nullpose.solver.kernels.jit import inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.local_coordinates import clamp_axis
@@ -89,9 +89,13 @@ def cell_start(axis_field, basis, back, row, start):
 
     In whitened coordinates: the mean of the squares of axes inside. None may have been met in a thin cell.
     """
-    face, has_band, level_axes = int(row[FACE]), axis_field.kind >= BAND_AXIS, is_level(axis_field)
+    face, has_band, is_horizontal = (
+        int(row[FACE]),
+        axis_field.kind >= BAND_AXIS,
+        has_horizontal_axes(axis_field),
+    )
     start[:] = 0.0
-    if face < 0 and (level_axes or not has_band):
+    if face < 0 and (is_horizontal or not has_band):
         start[:3] = 1.0 / 3.0
         return True
     half = half_width(axis_field)
@@ -104,7 +108,7 @@ def cell_start(axis_field, basis, back, row, start):
             u[0], u[1] = across * math.cos(azimuth), across * math.sin(azimuth)
             u[2] = math.sqrt(share) if turn < 6 else -math.sqrt(share)
             add_axis(basis, back, u, start)
-    elif has_band and not level_axes:
+    elif has_band and not is_horizontal:
         if face != 1:
             add_band_axes(basis, back, row, least, greatest, 1 if face == 0 else 0, start)
         if face != 0:
@@ -116,10 +120,10 @@ def cell_start(axis_field, basis, back, row, start):
                 low, wide = row[CELL + 2 * side], row[CELL + 2 * side + 1] - row[CELL + 2 * side]
                 fraction = 0.5 if corner == 4 else (0.02 if (corner >> side) & 1 else 0.98)
                 u[(face + 1 + side) % 3] = low + fraction * wide
-            if level_axes:
+            if is_horizontal:
                 u[2] = 0.0
             add_axis(basis, back, u, start)
-    if level_axes:
+    if is_horizontal:
         start[2] += 0.1
     trace = start[0] + start[1] + start[2]
     for m in range(6):
@@ -169,7 +173,7 @@ def interior_multipliers(
     if not cell_start(axis_field, basis, whitening[2], row, start):
         return math.inf
     for k in range(ratios):
-        ratio_form(family, is_level(axis_field), basis, row, whitening, k, forms[k])
+        ratio_form(family, has_horizontal_axes(axis_field), basis, row, whitening, k, forms[k])
     # multipliers as sloppy as that exclude a box so small no sooner than its halves, for ever
     accuracy = max(_INTERIOR * coarseness, min(_FINE, max(_FINEST, coarseness)))
     primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix)
@@ -208,7 +212,17 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, wo
         pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])
     tolerance = max(_FINE, _LOOSE * coarseness)
     primal, followed, total = ascend(
-        family, is_level(axis_field), basis, row, whitening, pool, sides, tolerance, every, weights, v
+        family,
+        has_horizontal_axes(axis_field),
+        basis,
+        row,
+        whitening,
+        pool,
+        sides,
+        tolerance,
+        every,
+        weights,
+        v,
     )
     if primal == math.inf:
         primal = interior_multipliers(

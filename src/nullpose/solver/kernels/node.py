@@ -99,7 +99,7 @@ def split_position(row, side, stack, top):
 
 
 @inner_kernel
-def split_axis(row, level_axes, stack, top):
+def split_axis(row, is_horizontal, stack, top):
     """Push the parts of a cell of axes, three faces or two halves; return the new top.
 
     Where all axes are level, only the coordinate in the level plane is cut.
@@ -115,7 +115,7 @@ def split_axis(row, level_axes, stack, top):
             top += 1
         return top
     side = 0 if row[CELL + 1] - row[CELL] >= row[CELL + 3] - row[CELL + 2] else 1
-    if level_axes:
+    if is_horizontal:
         side = 0 if row[FACE] == 0.0 else 1
     middle = 0.5 * (row[CELL + 2 * side] + row[CELL + 2 * side + 1])
     for child in range(2):

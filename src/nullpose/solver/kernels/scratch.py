@@ -8,7 +8,6 @@ and handed to other kernels, never returned or kept.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numba import config, njit, types
@@ -21,7 +20,7 @@ _ITEM = 8  # bytes of a float64 and of an int64
 _MOST = 4096  # of them in one array: a thread's stack is small
 
 
-def _allocate(context: Any, builder: Any, kind: Any, shape: list[int], fill: bool) -> Any:
+def _allocate(context, builder, kind, shape: list[int], fill: bool):
     """Return the value of an array in the calling kernel's own frame."""
     from nullpose.solver.kernels.lowering import array_value  # imports a part of the compiler
 
@@ -35,7 +34,7 @@ def _allocate(context: Any, builder: Any, kind: Any, shape: list[int], fill: boo
     return array_value(builder, data, lengths, strides)
 
 
-def _maker(plain: Any, item: Any, fill: bool) -> Any:
+def _maker(plain, item, fill: bool):
     """Return the function that kernels call with the lengths, which are known when they are compiled."""
     if getattr(config, "DISABLE_JIT", False):  # then kernels run without the compiler
         return plain
@@ -43,13 +42,13 @@ def _maker(plain: Any, item: Any, fill: bool) -> Any:
         return njit(plain)
 
     @intrinsic(prefer_literal=True)
-    def make(_: Any, *lengths: Any) -> Any:
+    def make(_, *lengths):
         shape = [n.literal_value for n in lengths if isinstance(n, types.IntegerLiteral)]
         if len(shape) < len(lengths) or math.prod(shape) > _MOST:
             return None
         kind = types.Array(item, len(shape), "C")
 
-        def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def codegen(context, builder, signature, arguments):
             return _allocate(context, builder, kind, shape, fill)
 
         return kind(types.StarArgTuple.from_types(lengths)), codegen
@@ -58,15 +57,15 @@ def _maker(plain: Any, item: Any, fill: bool) -> Any:
     return make
 
 
-def _plain(*lengths: int) -> Any:
+def _plain(*lengths: int):
     return np.empty(lengths)
 
 
-def _plain_int(*lengths: int) -> Any:
+def _plain_int(*lengths: int):
     return np.empty(lengths, np.int64)
 
 
-def _plain_zeros(*lengths: int) -> Any:
+def _plain_zeros(*lengths: int):
     return np.zeros(lengths)
 
 

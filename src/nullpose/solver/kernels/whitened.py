@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS
-from nullpose.solver.kernels.exclusion import is_level
+from nullpose.solver.kernels.exclusion import has_horizontal_axes
 from nullpose.solver.kernels.forms import add_denominator, add_point, congruence, in_frame, inverse_factor
 from nullpose.solver.kernels.jit import inner_kernel
 from nullpose.solver.kernels.links import denominator_at, numerator_at
@@ -55,7 +55,7 @@ def whiten(family, basis, row, denominator, denominators, mean, back):
 
 
 @inner_kernel
-def ratio_form(family, level_axes, basis, row, whitening, k, out):
+def ratio_form(family, is_horizontal, basis, row, whitening, k, out):
     """Fill the whitened form of one ratio at the centre."""
     denominators, mean, back = whitening
     den, level, raw = family.denominator_of, row[LEVEL], scratch(6)
@@ -65,7 +65,7 @@ def ratio_form(family, level_axes, basis, row, whitening, k, out):
     weight, isotropic = family.numerator_weight[k], family.numerator_isotropic[k]
     add_point(family, family.numerator_point[k], row[CENTRE:HALF], basis, weight, isotropic, raw)
     congruence(raw, back, out)
-    if level_axes:  # no weight on the vertical: whitening leaves its direction alone
+    if is_horizontal:  # no weight on the vertical: whitening leaves its direction alone
         out[2] = -(abs(out[0]) + abs(out[1]) + 2.0 * abs(out[3])) - level
         out[4] = out[5] = 0.0
 
@@ -78,19 +78,19 @@ def constraint_forms(axis_field, basis, row, back, forms, places):
     """
     raw, turned = scratch(6), scratch(6)
     sides = np.int64(0)
-    level_axes = is_level(axis_field)
+    is_horizontal = has_horizontal_axes(axis_field)
     if row[FACE] >= 0.0:
         for side in range(2):
-            if level_axes and side != (0 if row[FACE] == 0.0 else 1):
+            if is_horizontal and side != (0 if row[FACE] == 0.0 else 1):
                 continue
             cell_side(int(row[FACE]), row[CELL:SIDE], side, raw)
             congruence(raw, basis, turned)
             congruence(turned, back, forms[sides])
-            if level_axes:
+            if is_horizontal:
                 forms[sides, 2] = forms[sides, 4] = forms[sides, 5] = 0.0
             places[sides] = SIDE + side
             sides += 1
-    if axis_field.kind >= BAND_AXIS and not level_axes:
+    if axis_field.kind >= BAND_AXIS and not is_horizontal:
         thin = half_width(axis_field)
         for end in range(2):
             c = axis_field.offset[end] + (thin if end == 1 else -thin)
