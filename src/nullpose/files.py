@@ -15,9 +15,12 @@ from contextlib import contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Any
+from typing import Any, TypeAlias
 
 from nullpose.errors import Fault, OutputError, ScenarioError
+
+PlainTable: TypeAlias = dict[str, Any]
+"""A table of plain values, as JSON and TOML hold them."""
 
 MOST_BYTES = 10_000_000
 """The largest file that is read, but for certificates and the manifests of studies."""
@@ -57,7 +60,7 @@ def parse_json(text: str, **options: Any) -> Any:
     """
     place, closed = "", 0
 
-    def table_of(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    def table_of(pairs: list[tuple[str, Any]]) -> PlainTable:
         nonlocal closed
         closed += 1
         table = dict(pairs)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from functools import cached_property, reduce
 from typing import Annotated, ClassVar
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
+from nullpose.files import PlainTable
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import ONLY_LOCAL, Place
 from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
@@ -123,7 +124,7 @@ class Airspace(Section):
         "none if left out.",
     )
 
-    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the faults of what has no place on the Earth, of named files and of too large a margin."""
         yield from unplaced(self, raw)
         for key in ("geofence_from", "no_fly_from"):

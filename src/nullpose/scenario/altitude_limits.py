@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import shapely
 
-from nullpose.scenario.faults import RawTable, require
+from nullpose.files import PlainTable
+from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.units import EARTHLY_RANGES
 
@@ -33,7 +34,7 @@ Ground = Mapping[str, float | None]
 """The origin's ground by the keys of a zone's altitudes, metres; None where the origin does not state it."""
 
 
-def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[RawTable, list[str]]:
+def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[PlainTable, list[str]]:
     """Read a feature's altitudes by the key of a zone, with remarks on what is not read.
 
     Keys of a zone come first, then ED-318's layer, openAIP's ceilings, and KML's heights. Flight levels are
@@ -60,7 +61,7 @@ def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[RawTable, list[
     return found, [*remarks, *([f"counts at all times; not read: {', '.join(times)}"] if times else [])]
 
 
-def _limits(feature: Feature) -> list[tuple[str, Any, Any, Any]]:
+def _limits(feature: Feature) -> list[tuple[str, object, object, object]]:
     """Return place, value, unit and datum of the lower and the upper limit; nothing where none is stated."""
     properties, place = feature.properties, feature.place
     layer = properties.get("layer")
@@ -90,22 +91,22 @@ class _End(NamedTuple):
     off_m: float = 0.0
 
 
-def _end(place: str, value: Any, unit: Any, datum: Any) -> _End | None:
+def _end(place: str, value: object, unit: object, datum: object) -> _End | None:
     if value is None:
         return None
     unit, datum = str(unit).upper(), str(datum).upper()
-    is_number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _FAR_M
-    if unit in _FLIGHT_LEVELS and is_number:
-        return _End(100.0 * _FOOT_M * value, "altitude_msl_m", _WEATHER_M)
-    require(
-        is_number and unit in _UNITS_M and datum in _DATUMS,
-        place,
-        f"got {value!r} in {unit} over {datum}, must be a number in M, FT or FL over GND, MSL or WGS84",
+    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _FAR_M:
+        if unit in _FLIGHT_LEVELS:
+            return _End(100.0 * _FOOT_M * value, "altitude_msl_m", _WEATHER_M)
+        if unit in _UNITS_M and datum in _DATUMS:
+            off_m = _WEATHER_M if datum in ("STD", "2") else 0.0
+            return _End(value * _UNITS_M[unit], _DATUMS[datum], off_m)
+    raise refusal(
+        place, f"got {value!r} in {unit} over {datum}, must be a number in M, FT or FL over GND, MSL or WGS84"
     )
-    return _End(value * _UNITS_M[unit], _DATUMS[datum], _WEATHER_M if datum in ("STD", "2") else 0.0)
 
 
-def _joined(feature: Feature, low: _End | None, high: _End | None, ground_m: Ground) -> RawTable:
+def _joined(feature: Feature, low: _End | None, high: _End | None, ground_m: Ground) -> PlainTable:
     """Return both ends over one thing; the ground is a lower end for every upper one."""
     if low and low[:2] == (0.0, "altitude_m"):
         low = None
@@ -143,7 +144,7 @@ def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
     return (ground_m[key] or 0.0) - (ground_m[over] or 0.0)
 
 
-def _of_kml(feature: Feature) -> tuple[RawTable, bool]:
+def _of_kml(feature: Feature) -> tuple[PlainTable, bool]:
     """Read the altitudes between roof and floor, or from the ground up to what is extruded.
 
     Returns:

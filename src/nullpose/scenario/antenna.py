@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
@@ -12,7 +12,8 @@ from pydantic import Field
 from nullpose.antenna import ANTENNAS, Antenna as AnyAntenna
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.errors import ScenarioError
-from nullpose.scenario.faults import ONLY_LOCAL, Place, Raw, RawTable
+from nullpose.files import PlainTable
+from nullpose.scenario.faults import ONLY_LOCAL, Place
 from nullpose.scenario.rules import Choice, Count, ListOf
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels, Wavelengths
@@ -93,7 +94,7 @@ class Antenna(Section):
         "harmonics its cosine terms, then its sine terms. With them the file is not needed."
     )
 
-    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return keys that have no meaning for the kind, and what a profile or a pattern lacks."""
         if self.kind is None:
             return
@@ -123,7 +124,7 @@ class Antenna(Section):
         return kind.make(**{key: getattr(self, key) for key in kind.keys})
 
 
-def with_harmonics(table: Raw, path: Path) -> RawTable:
+def with_harmonics(table: PlainTable, path: Path) -> PlainTable:
     """Fill in a raw table what its file holds; leave it as it is where another of its keys is at fault.
 
     Args:

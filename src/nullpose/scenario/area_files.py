@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import shapely
+from numpy.typing import ArrayLike
 from shapely import Polygon
 
+from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
 from nullpose.scenario.areas import Area, account_of, areas_of, polygons_of
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import Raw, RawTable, refusal, require
+from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.polygon import MOST_CORNERS
@@ -29,12 +31,12 @@ _BOUNDS = {"x_m", "y_m", "geofence_m", "geofence_lat_lon_deg"}
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
-Filled: TypeAlias = tuple[RawTable, list[str], dict[str, str]]
+Filled: TypeAlias = tuple[PlainTable, list[str], dict[str, str]]
 """A raw airspace, notes on what became of a file's features, and the places in the file of what is from it by
 their path in the scenario."""
 
 
-def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> Filled:
+def with_zones(airspace: PlainTable, features: Sequence[Feature], origin: PlainTable) -> Filled:
     """Add the zones of a file to a raw airspace after its own.
 
     Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
@@ -42,7 +44,7 @@ def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     Args:
         airspace: raw.
         features: of the file.
-        origin: the scenario's, raw.
+        origin: the scenario's, raw; empty without one.
 
     Raises:
         ScenarioError: with the faults of all features.
@@ -51,7 +53,7 @@ def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     names = {str(zone.get("name")) for zone in listed if isinstance(zone, Mapping)}
     reach = _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
     areas, counts, remarks = areas_of(features, reach, _ground_m(origin), names)
-    bounds: RawTable = {}
+    bounds: PlainTable = {}
     words = ""
     for half_m in _HALVES_M:
         corners = sum(len(polygon.exterior.coords) - 1 for polygon in polygons_of(areas))
@@ -70,7 +72,7 @@ def with_zones(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     return filled, account_of(areas, counts, remarks), places
 
 
-def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> Filled:
+def with_fence(airspace: PlainTable, features: Sequence[Feature], origin: PlainTable) -> Filled:
     """Give a raw airspace the fence of a file.
 
     The fence's holes are zones, and its altitudes bound those of the airspace.
@@ -78,7 +80,7 @@ def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     Args:
         airspace: raw, without a fence.
         features: of the file, of which one is a polygon.
-        origin: the scenario's, raw.
+        origin: the scenario's, raw; empty without one.
 
     Raises:
         ScenarioError: there is not one polygon, or the altitudes leave none.
@@ -100,7 +102,7 @@ def with_fence(airspace: Raw, features: Sequence[Feature], origin: object) -> Fi
     return fenced, account_of(areas, counts, remarks, is_fence=True), places
 
 
-def _altitudes(airspace: Raw, fence: Area, ground_m: Ground) -> Iterator[tuple[str, list[float]]]:
+def _altitudes(airspace: PlainTable, fence: Area, ground_m: Ground) -> Iterator[tuple[str, list[float]]]:
     """Yield the airspace's ranges of altitudes within those of its fence."""
     for key, over in product(RANGES, fence.limits):
         ends_m, limits_m = _ends(airspace.get(key)), _ends(fence.limits[over])
@@ -119,12 +121,11 @@ def _altitudes(airspace: Raw, fence: Area, ground_m: Ground) -> Iterator[tuple[s
         yield key, [low_m, high_m]
 
 
-def _ground_m(origin: object) -> Ground:
-    keys = origin if isinstance(origin, Mapping) else {}
-    return {"altitude_m": 0.0} | {key: keys.get(over) for key, over in EARTHLY_RANGES.items()}
+def _ground_m(origin: PlainTable) -> Ground:
+    return {"altitude_m": 0.0} | {key: origin.get(over) for key, over in EARTHLY_RANGES.items()}
 
 
-def _place(origin: Any) -> Floats | None:
+def _place(origin: PlainTable) -> Floats | None:
     """Return the origin's latitude and longitude, and altitude 0, (3,); None where it is at fault."""
     try:
         return np.array([origin["lat_deg"], origin["lon_deg"], 0.0], dtype=float)
@@ -132,10 +133,11 @@ def _place(origin: Any) -> Floats | None:
         return None  # which the scenario is refused for
 
 
-def _box_m(airspace: Raw, half_m: float, place: Floats) -> Floats:
+def _box_m(airspace: PlainTable, half_m: float, place: Floats) -> Floats:
     """Return the ends of where the vehicle may be within a square about the origin, (2, 2), by axis last."""
     bounds = Airspace._sound_part({key: airspace[key] for key in _BOUNDS & airspace.keys()})
-    ends_m, fence = np.array([[-half_m, -half_m], [half_m, half_m]]), bounds.geofence_m
+    ends_m = np.array([[-half_m, -half_m], [half_m, half_m]])
+    fence: ArrayLike | None = bounds.geofence_m
     if bounds.geofence_lat_lon_deg:
         fence = enu_from_geodetic(np.insert(bounds.geofence_lat_lon_deg, 2, 0.0, axis=-1), place)[:, :2]
     if fence is not None:

@@ -7,14 +7,14 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any
 
 import shapely
 from shapely import Polygon
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.files import PlainTable
 from nullpose.scenario.altitude_limits import Ground, altitude_limits
-from nullpose.scenario.faults import EXCHANGED, RawTable
+from nullpose.scenario.faults import EXCHANGED
 from nullpose.scenario.geo_file import NAMES, Feature
 from nullpose.scenario.shapes import box_about, corners_of, cut, near, parts_of, sound
 
@@ -39,13 +39,13 @@ class Area:
     place: str
     name: str
     polygons: list[Polygon]
-    cylinders: list[tuple[float, float, Any]]
-    limits: RawTable = field(default_factory=dict)
+    cylinders: list[tuple[float, float, object]]
+    limits: PlainTable = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
 
-    def zones(self) -> Iterator[RawTable]:
+    def zones(self) -> Iterator[PlainTable]:
         """Yield raw no-fly zones, holes filled."""
-        shapes: list[RawTable] = [
+        shapes: list[PlainTable] = [
             *({"polygon_lat_lon_deg": corners_of(polygon.exterior)} for polygon in self.polygons),
             *({"centre_lat_lon_deg": [lat, lon], "radius_m": size} for lon, lat, size in self.cylinders),
         ]
@@ -189,7 +189,7 @@ def _area(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool
     return area if area.cut(reach) else None
 
 
-def _radius_m(feature: Feature) -> Any:
+def _radius_m(feature: Feature) -> object:
     """Return the radius of a circle as stated, by ED-318 in its extent; None without one."""
     extent = feature.properties.get("extent")
     return feature.properties.get("radius_m", extent.get("radius") if isinstance(extent, dict) else None)

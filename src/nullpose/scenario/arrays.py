@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,7 @@ from nullpose.errors import UsageError
 from nullpose.scenario.units import power_w, ratio_from_db
 
 if TYPE_CHECKING:
-    from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
+    from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
     from nullpose.scenario.radio import Receiver
 
 
@@ -49,7 +49,7 @@ def _antennas(kinds: str) -> cached_property[GroundAntennas | None]:
     return cached_property(stack)
 
 
-def _points_of(table: object, kinds: str) -> list[Any]:
+def _points_of(table: object, kinds: str) -> list[GroundPoint]:
     return [point for kind in kinds.split() for point in getattr(table, kind)]
 
 

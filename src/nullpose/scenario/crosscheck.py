@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nullpose.antenna import SHORT_DIPOLE
+from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS
-from nullpose.scenario.faults import ONLY_LOCAL, Place, Raw, path_of
+from nullpose.scenario.faults import ONLY_LOCAL, Place, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.origin_faults import is_placed, origin_faults
@@ -19,6 +20,7 @@ from nullpose.scenario.section import table_of
 
 if TYPE_CHECKING:
     from nullpose.scenario.airspace import Airspace
+    from nullpose.scenario.no_fly import NoFlyZone
     from nullpose.scenario.radio import Receiver
     from nullpose.scenario.scenario import Scenario
 
@@ -26,7 +28,7 @@ SAME_PLACE_M = 1e-6
 """Two ground points closer than this are at the same place [m]."""
 
 
-def scenario_faults(scenario: Scenario, raw: Raw) -> Iterator[tuple[Place, str]]:
+def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place, str]]:
     """Yield the faults between the values of a scenario, each with its place.
 
     Two nodes or jammers may be as close as they like, within the keep-out radius too, but not at the
@@ -46,7 +48,7 @@ def scenario_faults(scenario: Scenario, raw: Raw) -> Iterator[tuple[Place, str]]
         yield ("nodes_from",), f"{ONLY_LOCAL}, in place of its own nodes; remove it or them"
     airspace: Airspace | None = scenario.airspace
     listed = getattr(airspace, "no_fly", None) or ()
-    zones: dict[Place, Any] = {("airspace", "no_fly", index): zone for index, zone in enumerate(listed)}
+    zones: dict[Place, NoFlyZone] = {("airspace", "no_fly", index): zone for index, zone in enumerate(listed)}
     tables = points | ({} if airspace is None else {("airspace",): airspace}) | zones
     positioned = {place: point for place, point in points.items() if is_placed(point)}
     misplaced = [

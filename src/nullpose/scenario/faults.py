@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -12,11 +12,6 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario.wording import described, printable
-
-RawTable: TypeAlias = dict[str, Any]
-"""A table as a file states it, before it is judged."""
-Raw: TypeAlias = Mapping[str, Any]
-"""The same, which is only read."""
 
 Place = tuple[str | int, ...]
 """Where a value stands: keys and list indices from the root down."""
@@ -113,7 +108,7 @@ def _ranks(place: Place, data: Any) -> list[int]:
     for step in place:
         # a range looks itself up at once, however long it is
         places = range(len(data)) if isinstance(data, list | tuple) else range(0)
-        keys: Sequence[Any] = list(data) if isinstance(data, Mapping) else places
+        keys: Sequence[object] = list(data) if isinstance(data, Mapping) else places
         ranks.append(keys.index(step) if step in keys else len(keys))
         data = data[step] if step in keys else ()
     return ranks

@@ -20,8 +20,8 @@ import shapely.geometry
 from shapely.geometry.base import BaseGeometry
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.files import parse_json
-from nullpose.scenario.faults import EXCHANGED, Raw, refusal, require
+from nullpose.files import PlainTable, parse_json
+from nullpose.scenario.faults import EXCHANGED, refusal, require
 from nullpose.scenario.kml import kml_of_kmz, require_whole, root_of
 from nullpose.scenario.toml_file import decoded
 from nullpose.scenario.wording import described
@@ -54,7 +54,7 @@ class Feature:
 
     place: str
     geometry: BaseGeometry | None
-    properties: Raw
+    properties: PlainTable
 
 
 def features_of(content: bytes, path: Path) -> list[Feature]:
@@ -135,7 +135,7 @@ def _features_of_member(place: str, member: Any) -> Iterator[Feature]:
         yield Feature(where.removesuffix(".geometry"), _shape(shape, where), found)
 
 
-def _of(value: Any, key: str) -> Any:
+def _of(value: object, key: str) -> Any:
     return value.get(key) if isinstance(value, dict) else None
 
 
@@ -209,7 +209,7 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
             yield Feature(place, _shape_of_wkb(shape, place), found)
 
 
-def _cell(value: Any, is_name: bool) -> Any:
+def _cell(value: object, is_name: bool) -> object:
     """Return a value of a table as plain data; numbers and lists in texts as such, but in names; or None."""
     if isinstance(value, np.generic):
         value = value.item() if value.dtype.kind != "M" else None if np.isnat(value) else str(value)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Annotated, ClassVar, Self
 
 from pydantic import Field
 
 from nullpose.antenna import GROUND_ANTENNAS, short_dipole
+from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place
 from nullpose.scenario.radio import POWER, Powered
 from nullpose.scenario.rules import Choice
@@ -116,7 +117,7 @@ class GroundPoint(Section):
         examples=[2.15],
     )
 
-    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the fault that an axis or the depth of a null is given of an antenna that has none."""
         yield from super().faults(raw)
         for key, noun in (("antenna_axis", "axis"), ("null_depth_db", "null")):

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
+from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS
 from nullpose.scenario.radio import POWER
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section
 
 
-def json_schema() -> dict[str, Any]:
+def json_schema() -> PlainTable:
     """Return the JSON Schema (2020-12) of scenario files: keys, units, ranges and either-or pairs.
 
     It says what can be said key by key; faults between keys, such as a reversed range, are left to ``load``.
@@ -43,7 +42,7 @@ class _TomlSchema(GenerateJsonSchema):
         inner = super().default_schema(schema)
         return {key: value for key, value in inner.items() if key != "default" or value not in (None, "", [])}
 
-    def field_title_should_be_set(self, schema: Any) -> bool:
+    def field_title_should_be_set(self, schema: object) -> bool:
         return False
 
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
@@ -61,7 +60,7 @@ class _TomlSchema(GenerateJsonSchema):
         return described
 
 
-def _rules(kind: type[Section]) -> list[dict[str, Any]]:
+def _rules(kind: type[Section]) -> list[PlainTable]:
     """Write the rules of a table's keys together, and of what an objective needs of the nodes."""
     needed = {key for key, field in kind.model_fields.items() if field.is_required()}
     rules = [ways.schema() for ways in kind.ways if ways.most == 1 or needed.intersection(ways.groups[0])]

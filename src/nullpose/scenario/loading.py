@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from nullpose.errors import ScenarioError
-from nullpose.scenario.faults import ONLY_LOCAL, Raw, RawTable, refusal, require
+from nullpose.files import PlainTable
+from nullpose.scenario.faults import ONLY_LOCAL, refusal, require
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import file_text, tables_of, uploaded_text
@@ -65,7 +66,7 @@ def load(
 
 def _overridden_tables(
     path: Path, overrides: Iterable[str | Override]
-) -> tuple[RawTable, list[str | Override]]:
+) -> tuple[PlainTable, list[str | Override]]:
     """Read a file's tables, with those changes that decide which files are read and what of them counts.
 
     Returns:
@@ -81,7 +82,7 @@ def _overridden_tables(
     return overridden(tables, early), [change for change in late if change not in early]
 
 
-def _named_files(tables: Raw) -> RawTable:
+def _named_files(tables: PlainTable) -> PlainTable:
     """Pick the names of the files of nodes, fence, zones and antenna, by key."""
     inner = {
         f"{key}.{below}": value

@@ -6,14 +6,14 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePath
-from typing import Any
 
 import numpy as np
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.files import PlainTable
 from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
-from nullpose.scenario.faults import Raw, RawTable, refusal
+from nullpose.scenario.faults import refusal
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
 from nullpose.scenario.node_files import ListedNode, nodes_of_csv, nodes_of_features
 from nullpose.scenario.scenario import Scenario
@@ -36,7 +36,7 @@ class NamedFiles:
         self._faults: list[Fault] = []
         self._places: dict[str, str] = {}  # in the files, of tables and values by their path in the scenario
 
-    def scenario(self, tables: RawTable) -> Scenario:
+    def scenario(self, tables: PlainTable) -> Scenario:
         """Read the scenario of raw tables, and refuse it with the faults of all files.
 
         Raises:
@@ -92,16 +92,17 @@ class NamedFiles:
     def _features(self, path: Path, kind: FileKind, place: str = "") -> list[Feature]:
         return features_of(file_content(path, kind, self._folder, place, MOST_BYTES), path)
 
-    def _antenna(self, antenna: Any) -> Any:
+    def _antenna(self, antenna: object) -> object:
         """Fill in what the file of an antenna holds."""
-        file = antenna.get("file") if isinstance(antenna, dict) else None
-        if not isinstance(file, str) or "harmonics" in antenna:
+        if not isinstance(antenna, dict) or "harmonics" in antenna:
+            return antenna
+        if not isinstance(file := antenna.get("file"), str):
             return antenna
         with self._reading(f"antenna.file: {file}"):
             return with_harmonics(antenna, inside(self._folder, file, self._allow_outside))
         return antenna | {"harmonics": [[1.0]]}
 
-    def _airspace(self, airspace: Any, origin: object) -> Any:
+    def _airspace(self, airspace: object, origin: object) -> object:
         """Fill in the fence and the zones of other files."""
         if not isinstance(airspace, dict) or not isinstance(airspace.get("no_fly", []), list):
             return airspace
@@ -112,13 +113,13 @@ class NamedFiles:
             airspace = {other: value for other, value in airspace.items() if other != key}
             with self._reading(label):
                 features = self._features(self._path(file, _AREA_FILE), _AREA_FILE)
-                airspace, notes, places = fill(airspace, features, origin)
+                airspace, notes, places = fill(airspace, features, origin if isinstance(origin, dict) else {})
                 for note in notes:
                     self._on_note(f"{file}: {note}")
                 self._places |= {path: f"{label}: {place}" for path, place in places.items()}
         return airspace
 
-    def _nodes(self, file: object) -> list[Raw]:
+    def _nodes(self, file: object) -> list[PlainTable]:
         """Read the nodes that another file lists."""
         nodes: list[ListedNode] = []
         unread: list[Fault] = []  # of nodes

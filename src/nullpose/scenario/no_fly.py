@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
+from nullpose.files import PlainTable
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m, offset_outlines_m
@@ -105,7 +106,7 @@ class NoFlyZone(Section):
         "The same over the WGS-84 ellipsoid, in metres, in place of altitude_m.", [230.0, 250.0]
     )
 
-    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the fault of a zone on the Earth that no scenario has placed."""
         return unplaced(self, raw)
 

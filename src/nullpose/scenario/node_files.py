@@ -14,8 +14,9 @@ from typing import NamedTuple
 from shapely import Point
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.files import PlainTable
 from nullpose.scenario.areas import counted, name_of, unique
-from nullpose.scenario.faults import Raw, RawTable, refusal, require
+from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.ground_points import PLACE, Node
 from nullpose.scenario.rules import MOST_MEMBERS
@@ -44,7 +45,7 @@ class ListedNode(NamedTuple):
         places: by their path below the node, such as ``position_m[1]``; by the empty path the node's own.
     """
 
-    values: Raw
+    values: PlainTable
     places: Mapping[str, str]
 
 
@@ -147,7 +148,7 @@ def nodes_of_features(
         on_note(f"nodes: {nodes}; {'; '.join(words)}")
 
 
-def _values(feature: Feature, unread: set[str]) -> RawTable:
+def _values(feature: Feature, unread: set[str]) -> PlainTable:
     """Pick the properties that are keys of a node or look like one; add the others to those unread."""
     keys = set(Node.model_fields)
     likely = {key for key in feature.properties if key in keys or get_close_matches(key, keys, 1, _TYPO)}
@@ -155,7 +156,7 @@ def _values(feature: Feature, unread: set[str]) -> RawTable:
     return {key: feature.properties[key] for key in likely - {"name", "Name"}}
 
 
-def _node_of_point(feature: Feature, point: Point, values: Raw) -> ListedNode:
+def _node_of_point(feature: Feature, point: Point, values: PlainTable) -> ListedNode:
     where, coordinates = feature.place, f"{feature.place}.geometry.coordinates"
     key, height_m = "alt_m", point.z if point.has_z and math.isfinite(point.z) else None
     if where.startswith("Placemark"):  # KML clamps a point without a mode to the ground

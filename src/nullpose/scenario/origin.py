@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, ValidationError
 
 from nullpose.errors import UsageError
+from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.arrays import Floats, read_only
-from nullpose.scenario.faults import EXCHANGED, RawTable
+from nullpose.scenario.faults import EXCHANGED
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone
@@ -35,7 +36,7 @@ FARTHEST_M = 1e5
 
 POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
 """The keys of a scenario's points."""
-_PLACEHOLDERS: RawTable = {  # of what cannot be told; such a scenario is refused for that
+_PLACEHOLDERS: PlainTable = {  # of what cannot be told; such a scenario is refused for that
     "position_m": [0.0, 0.0, 0.0],
     "centre_m": [0.0, 0.0],
     "altitude_m": [1.0, 2.0],
@@ -158,7 +159,7 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
     return whole
 
 
-def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
+def _located(kind: type[Section], raw: object, origin: Origin | None) -> Any:
     """Return a raw table with the metres that follow from what it states on the Earth."""
     if not isinstance(raw, Mapping):
         return raw
@@ -175,7 +176,7 @@ def _located(kind: type[Section], raw: Any, origin: Origin | None) -> Any:
     return {**raw} | {key: near.get(key, _PLACEHOLDERS[key]) for key in wanted}
 
 
-def in_metres(table: Any, origin: Origin) -> dict[str, Floats]:
+def in_metres(table: object, origin: Origin) -> dict[str, Floats]:
     """Return the metres that follow from what a table states on the Earth, by key.
 
     Args:
@@ -183,7 +184,7 @@ def in_metres(table: Any, origin: Origin) -> dict[str, Floats]:
         origin: where the metres count from.
     """
     *_, base_m = origin.geodetic
-    found: RawTable = {
+    found: dict[str, Floats] = {
         metric: enu_from_geodetic(np.insert(corners, 2, base_m, axis=-1), origin.geodetic)[..., :2]
         for key, metric in EARTHLY_CORNERS.items()
         if (corners := getattr(table, key, None)) is not None

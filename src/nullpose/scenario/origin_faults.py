@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
-from nullpose.scenario.faults import EXCHANGED, Place, Raw, path_of
+from nullpose.files import PlainTable
+from nullpose.scenario.arrays import Floats
+from nullpose.scenario.faults import EXCHANGED, Place, path_of
 from nullpose.scenario.ground_points import GroundPoint
-from nullpose.scenario.origin import FARTHEST_M, POINT_LISTS, Origin, in_metres, size_m
+from nullpose.scenario.origin import FARTHEST_M, Origin, in_metres, size_m
+from nullpose.scenario.section import Section
 from nullpose.scenario.units import ALTITUDE_KEYS, EARTHLY, EARTHLY_CORNERS, EARTHLY_RANGES
 
 _SAME_PLACE_M = 1e-3  # metres and degrees of one thing may be given together if they agree within this
@@ -17,7 +19,7 @@ _OVER = {"alt_m": "over the ellipsoid", "alt_msl_m": "over the sea"}
 
 
 def origin_faults(
-    origin: Origin | None, tables: Mapping[Place, Any], raw: Raw
+    origin: Origin | None, tables: Mapping[Place, Section], raw: PlainTable
 ) -> Iterator[tuple[Place, str]]:
     """Yield the faults between the origin and the points and areas of a scenario, each with its place.
 
@@ -31,7 +33,9 @@ def origin_faults(
         for place, table in tables.items()
         if (keys := [key for key in EARTHLY if getattr(table, key, None) is not None])
     }
-    yield from _mixed({place: table for place, table in tables.items() if place[0] in POINT_LISTS}, raw)
+    yield from _mixed(
+        {place: table for place, table in tables.items() if isinstance(table, GroundPoint)}, raw
+    )
     if origin is None:
         for place, keys in list(earthly.items())[:1]:
             yield (
@@ -77,7 +81,7 @@ def _unknown_altitudes(
             )
 
 
-def _far(metres: Mapping[Place, Raw]) -> Iterator[tuple[Place, str]]:
+def _far(metres: Mapping[Place, Mapping[str, Floats]]) -> Iterator[tuple[Place, str]]:
     """Yield, once for all, that places are too far from the origin."""
     far_m = {
         (*place, *(key for key, of in EARTHLY_CORNERS.items() if of == metric)): size_m(value)
@@ -94,7 +98,9 @@ def _far(metres: Mapping[Place, Raw]) -> Iterator[tuple[Place, str]]:
 
 
 def _apart(
-    tables: Mapping[Place, Any], earthly: Mapping[Place, Sequence[str]], metres: Mapping[Place, Raw]
+    tables: Mapping[Place, Section],
+    earthly: Mapping[Place, Sequence[str]],
+    metres: Mapping[Place, Mapping[str, Floats]],
 ) -> Iterator[tuple[Place, str]]:
     """Yield what is stated in metres and on the Earth, and not at one place."""
     for place, values in metres.items():
@@ -106,7 +112,7 @@ def _apart(
                 yield (place, f"{key} and {how} are {apart_m:.3g} m apart, must be one place; remove either")
 
 
-def _mixed(points: Mapping[Place, GroundPoint], raw: Raw) -> Iterator[tuple[Place, str]]:
+def _mixed(points: Mapping[Place, GroundPoint], raw: PlainTable) -> Iterator[tuple[Place, str]]:
     """Yield the first point that is stated in another way than the first of all.
 
     A point that has both, as in files that are written from scenarios, goes with either.

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario.faults import Raw, RawTable, path_of, refusal, require
+from nullpose.files import PlainTable
+from nullpose.scenario.faults import path_of, refusal, require
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
@@ -95,7 +96,7 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
     return changed
 
 
-def overridden(tables: Raw, overrides: Sequence[str | Override]) -> RawTable:
+def overridden(tables: PlainTable, overrides: Sequence[str | Override]) -> PlainTable:
     """Return the tables of a scenario file with the given values in place of its own, not validated.
 
     Args:
@@ -111,7 +112,7 @@ def overridden(tables: Raw, overrides: Sequence[str | Override]) -> RawTable:
     return data
 
 
-def _applied(overrides: Sequence[str | Override], data: RawTable) -> list[Fault]:
+def _applied(overrides: Sequence[str | Override], data: PlainTable) -> list[Fault]:
     """Set the values in a raw scenario; returns the faults of those that cannot be set."""
     faults: list[Fault] = []
     for override in overrides:
@@ -126,12 +127,12 @@ def _source(overrides: Sequence[str | Override]) -> str:
     return f"override {listed([str(override).strip() or '(blank)' for override in overrides])}"
 
 
-def _apply(override: Override, data: RawTable) -> None:
+def _apply(override: Override, data: PlainTable) -> None:
     """Set one value of a raw scenario, and drops what it replaces."""
     path = override.path
     require(_PATH.fullmatch(path), path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))
-    steps: list[Any] = [
+    steps: list[str | int] = [
         int(index) if index else double or single or bare for double, single, bare, index in found
     ]
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)

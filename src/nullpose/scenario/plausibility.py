@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nullpose.errors import Fault
 from nullpose.scenario.faults import Place
@@ -16,7 +17,9 @@ from nullpose.scenario.radio import Powered
 from nullpose.scenario.units import EARTHLY_CORNERS, watts_from_dbm
 
 if TYPE_CHECKING:
+    from nullpose.scenario.ground_points import GroundPoint
     from nullpose.scenario.scenario import Scenario
+    from nullpose.scenario.section import Section
 
 # Smaller outlines are taken for a mistake: a share of the points' spread, but at most so many metres.
 _LEAST = {"geofence_m": (1e-2, 5.0), "polygon_m": (1e-3, 0.1)}
@@ -27,7 +30,7 @@ _OFF_M = 15.0  # points that all lie so far off the origin's altitude are unlike
 
 
 def too_small(
-    tables: Mapping[Place, Any], positions_m: Sequence[tuple[float, float, float]]
+    tables: Mapping[Place, Section], positions_m: Sequence[tuple[float, float, float]]
 ) -> Iterator[tuple[Place, str]]:
     """Yield the outlines that are far too small for the ground points, as if they were in another unit.
 
@@ -56,7 +59,7 @@ def too_small(
             )
 
 
-def close_to_degrees(origin: Origin | None, positions_m: Sequence[Any], remedy: str) -> Iterator[str]:
+def close_to_degrees(origin: Origin | None, positions_m: Sequence[ArrayLike], remedy: str) -> Iterator[str]:
     """Yields, of the first position whose metres are close to the origin's latitude and longitude, its words.
 
     Args:
@@ -105,7 +108,7 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
     )
 
 
-def _powers(scenario: Scenario, points: Mapping[str, Any]) -> Iterator[Fault]:
+def _powers(scenario: Scenario, points: Mapping[str, GroundPoint]) -> Iterator[Fault]:
     powers = {
         place: each
         for place, each in {**points, "transmitter": scenario.transmitter}.items()
@@ -123,7 +126,7 @@ def _powers(scenario: Scenario, points: Mapping[str, Any]) -> Iterator[Fault]:
             )
 
 
-def _altitudes(points: Mapping[str, Any]) -> Iterator[Fault]:
+def _altitudes(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:
     heights_m = {place: point.position_m[2] for place, point in points.items() if point.alt_m is not None}
     least_m = min(map(abs, heights_m.values()), default=0.0)
     if least_m >= _OFF_M and np.ptp([*heights_m.values()]) <= least_m:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.faults import rejection
 from nullpose.scenario.rules import ListOf
 from nullpose.scenario.units import LatLon, PlanePoint
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 # shapely is imported where there is a polygon: most scenarios have none.
 
@@ -59,7 +62,7 @@ def depth_m(points_m: Floats, vertices_m: Floats) -> Floats:
 
 
 @lru_cache(maxsize=64)
-def _prepared(vertices_m: bytes) -> tuple[Any, Any]:
+def _prepared(vertices_m: bytes) -> tuple[BaseGeometry, BaseGeometry]:
     """Return a polygon and its border, indexed for many points."""
     import shapely
 

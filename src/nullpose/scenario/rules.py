@@ -27,7 +27,7 @@ class Rule:
         """Return a raw value as its type takes it, or raises the fault that says what is wrong with it."""
         return value
 
-    def judge(self, value: Any) -> Any:
+    def judge(self, value: Any) -> object:
         """Return a value of the type, or raises the fault that says what is wrong with it."""
         return value
 
@@ -35,7 +35,7 @@ class Rule:
         """Return the JSON Schema, given that of the type."""
         return inner
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         read = core_schema.no_info_before_validator_function(self.read, handler(source))
         return core_schema.no_info_after_validator_function(self.judge, read)
 
@@ -180,7 +180,7 @@ class Direction(ListOf):
 class Members(ListOf):
     """A list of tables, as the metadata of an annotated tuple."""
 
-    def judge(self, value: tuple[Any, ...]) -> tuple[Any, ...]:
+    def judge(self, value: tuple[Any, ...]) -> tuple[object, ...]:
         """Return the tables, each that leaves its name out being named by its letter and its place."""
         return tuple(
             member

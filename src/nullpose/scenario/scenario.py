@@ -12,6 +12,7 @@ from pydantic import Field
 from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna
 from nullpose.antenna.from_file import ESTIMATE
 from nullpose.errors import WrongTypeError
+from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
@@ -166,7 +167,7 @@ class Scenario(Section, PointArrays):
             data = {**data, "name": f"{name} (antenna: {ESTIMATE})".strip()}
         return located(data)
 
-    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the faults between the parts of the scenario, those that are None being at fault."""
         return scenario_faults(self, raw)
 

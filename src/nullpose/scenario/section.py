@@ -20,6 +20,7 @@ from pydantic import (
 )
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
+from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place, collected, rejection, reworded, scenario_error
 from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.ways import Ways
@@ -42,7 +43,7 @@ class Section(BaseModel):
     unstated: ClassVar[frozenset[str]] = frozenset()
     """Keys that ``to_dict`` leaves out while they have their default."""
 
-    def __init__(self, /, **data: Any) -> None:
+    def __init__(self, /, **data: object) -> None:
         try:
             super().__init__(**data)
         except ValidationError as error:
@@ -68,12 +69,12 @@ class Section(BaseModel):
         except ValidationError as error:
             raise scenario_error(error, data, source) from None
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
         return self.model_dump(mode="json")
 
     @model_serializer(mode="wrap")
-    def _serialised(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialised(self, handler: SerializerFunctionWrapHandler) -> PlainTable:
         fields = type(self).model_fields
         left_out = {key for key in self.unstated if getattr(self, key) == fields[key].default}
         return {
@@ -90,7 +91,7 @@ class Section(BaseModel):
         """Return the raw table with what follows from its own values filled in."""
         return data
 
-    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the faults between several values of a table; those with a fault of their own are None.
 
         Args:
@@ -143,22 +144,25 @@ class Section(BaseModel):
         return judged
 
     @classmethod
-    def _sound_part(cls, data: object) -> Any:
+    def _sound_part(cls, data: Mapping[str, object]) -> Self:
         """Return a table without the values that are at fault, which are None in it."""
-        if not isinstance(data, Mapping):
-            return data if isinstance(data, cls) else None
-        sound: dict[str, Any] = {}
+        sound: PlainTable = {}
         for key, field in cls.model_fields.items():
             value, inner = data.get(key), table_of(cls, key)
             sound[key] = None if key in data or field.is_required() else field.get_default()
             if inner is not None and inner.letter is not None and isinstance(value, list | tuple):
-                sound[key] = tuple(inner._sound_part(member) for member in value)
+                sound[key] = tuple(
+                    inner._sound_part(member)
+                    if isinstance(member, Mapping)
+                    else (member if isinstance(member, inner) else None)
+                    for member in value
+                )
             elif key in data:
                 with suppress(ValidationError):
                     sound[key] = _reader(cls, key).validate_python(value)
-        return cls.model_construct(**sound)
+        return super().model_construct(**sound)
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+    def model_copy(self, *, update: Mapping[str, object] | None = None, deep: bool = False) -> Self:
         """Return a copy with some values replaced, validated like any other.
 
         A new value in metres takes the place of what was stated on the Earth too.
@@ -176,7 +180,7 @@ class Section(BaseModel):
                 values |= dict.fromkeys(ways.others(key) if key in (update or {}) else ())
         return type(self)(**values | dict(update or {}))
 
-    def __getstate__(self) -> dict[Any, Any]:
+    def __getstate__(self) -> PlainTable:
         # Cached arrays stay behind: they would come back writeable.
         state = super().__getstate__()
         return state | {"__dict__": {key: state["__dict__"][key] for key in type(self).model_fields}}
@@ -218,6 +222,6 @@ def table_of(kind: type[Section], key: str) -> type[Section] | None:
 
 
 @cache
-def _reader(kind: type[Section], key: str) -> TypeAdapter[Any]:
+def _reader(kind: type[Section], key: str) -> TypeAdapter[object]:
     """Make the reader of one key of a table."""
     return TypeAdapter(kind.model_fields[key].rebuild_annotation())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from typing import Any
 
 import numpy as np
 import shapely
@@ -20,7 +19,7 @@ _CUT_DEG = 0.05  # the same within a metre, for edges that bound nothing
 _LOOPS = 0.01  # of the area inside a ring: larger loops may mean that its corners are out of order
 
 
-def parts_of(geometry: BaseGeometry | Sequence[BaseGeometry] | None) -> Iterator[Any]:
+def parts_of(geometry: BaseGeometry | Sequence[BaseGeometry] | None) -> Iterator[BaseGeometry]:
     """Yield the single geometries of one that may hold several, without the empty ones."""
     for part in shapely.get_parts(geometry):
         if hasattr(part, "geoms"):
@@ -75,7 +74,7 @@ def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:
     return shapely.Polygon() if is_wall else shapely.segmentize(valid, _STRAIGHT_DEG), is_crossing
 
 
-def _valid(polygon: Polygon) -> Any:
+def _valid(polygon: Polygon) -> BaseGeometry:
     return shapely.make_valid(polygon, method="structure", keep_collapsed=False)
 
 
@@ -92,11 +91,11 @@ def near(polygon: Polygon, middle_deg: float) -> Polygon:
     return polygon if is_near else shapely.transform(polygon, moved)
 
 
-def box_about(lon_deg: float, lat_deg: float, radius_m: Any) -> Polygon:
+def box_about(lon_deg: float, lat_deg: float, radius_m: object) -> Polygon:
     """Return a box of degrees that a cylinder lies in; one about all where its radius is at fault."""
-    is_number = isinstance(radius_m, int | float) and not isinstance(radius_m, bool)
-    is_length = is_number and 0.0 <= radius_m < 4e7
-    half = radius_m / 1.1e5 if is_length else 360.0  # a degree of latitude has 110.57 km at least
+    half = 360.0
+    if isinstance(radius_m, int | float) and not isinstance(radius_m, bool) and 0.0 <= radius_m < 4e7:
+        half = radius_m / 1.1e5  # a degree of latitude has 110.57 km at least
     wide = half / max(np.cos(np.radians(min(abs(lat_deg) + half, 89.0))), 0.01)
     return shapely.box(lon_deg - wide, lat_deg - half, lon_deg + wide, lat_deg + half)
 

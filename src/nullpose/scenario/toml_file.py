@@ -9,10 +9,9 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from nullpose.files import MOST_BYTES, read_bytes
-from nullpose.scenario.faults import RawTable, refusal, require
+from nullpose.files import MOST_BYTES, PlainTable, read_bytes
+from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.wording import described, nearest
 
 _TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
@@ -48,7 +47,7 @@ class FileKind:
 SCENARIO_FILE = FileKind("a scenario file", "scenario.toml")
 
 
-def tables_of(text: str) -> RawTable:
+def tables_of(text: str) -> PlainTable:
     """Read the tables of a TOML text.
 
     Raises:
@@ -208,12 +207,13 @@ def _blocks(header: list[str], path: str, values: Mapping[str, object]) -> Itera
             yield from _blocks([f"[{name}]" if is_alone else f"[[{name}]]"], name, table)
 
 
-def _tables(value: Any) -> Sequence[Mapping[str, object]] | None:
+def _tables(value: object) -> Sequence[Mapping[str, object]] | None:
     """Return the tables that a value is, one or a list of them; None if it is a value of another kind."""
     if isinstance(value, Mapping):
         return [value]
-    is_list = isinstance(value, Sequence) and not isinstance(value, str)
-    return value if is_list and all(isinstance(member, Mapping) for member in value) else None
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return value if all(isinstance(member, Mapping) for member in value) else None
+    return None
 
 
 def toml_value(value: object) -> str:

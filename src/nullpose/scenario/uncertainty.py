@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import cached_property
 from typing import Annotated
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, TypeAdapter, WithJsonSchema
 
+from nullpose.files import PlainTable
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
 from nullpose.scenario.rules import Quantity
@@ -78,7 +79,7 @@ class Uncertain(Section):
         """The greatest distance of the true position from the stated one [m]."""
         return float(np.max(self.uncertainty_m)) if self.uncertainty_m is not None else 0.0
 
-    def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the fault that an attitude is given of what is no ellipsoid."""
         yield from super().faults(raw)
         is_sound = self.uncertainty_m is not None or raw.get("uncertainty_m") is None

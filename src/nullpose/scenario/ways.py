@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import chain, combinations
-from typing import Any
+
+from nullpose.files import PlainTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,7 @@ class Ways:
         if taken and (len(self.groups) == 2 or len(taken[0]) == 1):
             yield from chain.from_iterable(self._all(group) for group in self.groups if group not in taken)
 
-    def schema(self) -> dict[str, Any]:
+    def schema(self) -> PlainTable:
         """Write the same as a rule of JSON Schema."""
         groups = [self._whole(group) for group in self.groups]
         if self.most > 1:
@@ -75,7 +76,7 @@ class Ways:
     def _all(self, group: tuple[str, ...]) -> list[str]:
         return [alike for key in group for alike in self.alike(key)]
 
-    def _whole(self, group: tuple[str, ...]) -> dict[str, Any]:
+    def _whole(self, group: tuple[str, ...]) -> PlainTable:
         """Write the rule that all of a group is given, each key by itself or by a twin."""
         if self._all(group) == list(group):
             return {"required": list(group)}
