@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 from claims.claim import Claim
 from claims.claims import CLAIMS
 from claims.study import JammingStudy
-from nullpose.paper.figure2 import figure2_lines
-from nullpose.paper.reproduce import Reproduction
+from nullpose.paper.reproduce import Reproduction, figure2_lines
 from nullpose.report.document import Row
 
 _BEYOND = (

@@ -16,8 +16,7 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
-from nullpose.solver.certificate_from_proof import certificate_of
-from nullpose.solver.leaves_from_proof import leaves_of
+from nullpose.solver.certificate_from_proof import certificate_of, leaves_of
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.solve_and_prove import solve_and_prove
 

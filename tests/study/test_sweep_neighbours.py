@@ -5,7 +5,7 @@ import math
 import pytest
 
 from nullpose import Scenario, apply_overrides, load, solve, sweep
-from nullpose.study.neighbours import freedom
+from nullpose.study.sweep import freedom
 
 FIELD = load("examples/airframe.toml")
 TILT = "airframe.tilt_max_deg"

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from nullpose.certificate.certificate import FAR, WORLD
+from nullpose.solver.certificate_from_proof import leaves_of
 from nullpose.solver.kernels import node
-from nullpose.solver.leaves_from_proof import leaves_of
 
 
 def proof_of(

@@ -10,8 +10,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
-from nullpose.paper.figure2 import draw_figure2
-from nullpose.paper.reproduce import Reproduction
+from nullpose.paper.reproduce import Reproduction, draw_figure2
 from nullpose.paper.scene import paper_scenario
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES
