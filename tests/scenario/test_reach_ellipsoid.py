@@ -8,16 +8,14 @@ from scipy.spatial.transform import Rotation
 from nullpose.scenario.reach import distance_m
 
 
-def random_matrix(rng: np.random.Generator) -> np.ndarray:
-    """Returns the matrix of a turned ellipsoid with semi-axes over two decades."""
-    return Rotation.random(random_state=rng).as_matrix() @ np.diag(10.0 ** rng.uniform(-1.0, 1.0, 3))
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_against_a_general_minimiser(seed: int) -> None:
-    """A constrained minimiser comes to the same distance; inside it is none."""
+@pytest.mark.parametrize("flat", range(4))
+@pytest.mark.parametrize("seed", range(3))
+def test_against_a_general_minimiser(seed: int, flat: int) -> None:
+    """A constrained minimiser comes to the same distance from ellipsoids, discs, stretches and points."""
     rng = np.random.default_rng(seed)
-    matrix, centre, point = random_matrix(rng), rng.normal(size=3), rng.normal(0.0, 20.0, 3)
+    semi_axes_m = 10.0 ** rng.uniform(-1.0, 1.0, 3) * (np.arange(3) >= flat)
+    matrix = Rotation.random(random_state=rng).as_matrix() @ np.diag(semi_axes_m)
+    centre, point = rng.normal(size=3), rng.normal(0.0, 20.0, 3)
     found = minimize(
         lambda x: np.sum((centre + matrix @ x - point) ** 2),
         np.zeros(3),
@@ -29,19 +27,3 @@ def test_against_a_general_minimiser(seed: int) -> None:
     outer_m, inner_m = distance_m(np.array([point, inside]), centre, matrix)
     assert outer_m == pytest.approx(np.sqrt(found.fun), rel=1e-5)
     assert inner_m == pytest.approx(0.0, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("semi_axes", "point", "expected"),
-    [
-        ([0.0, 0.0, 0.0], [3.0, 4.0, 0.0], 5.0),
-        ([2.0, 0.0, 0.0], [5.0, 0.0, 4.0], 5.0),
-        ([2.0, 0.0, 0.0], [1.0, 0.0, 4.0], 4.0),
-        ([2.0, 2.0, 0.0], [5.0, 0.0, 4.0], 5.0),
-        ([2.0, 2.0, 0.0], [0.0, 1.0, 0.0], 0.0),
-    ],
-)
-def test_flat_sets(semi_axes: list[float], point: list[float], expected: float) -> None:
-    """A point, a stretch and a disc are ellipsoids too."""
-    (distance,) = distance_m(np.array([point]), np.zeros(3), np.diag(semi_axes))
-    assert distance == pytest.approx(expected, abs=1e-9)
