@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
-from nullpose.errors import ScenarioError
-from nullpose.scenario import Scenario
+from nullpose.errors import Fault, ScenarioError
+from nullpose.scenario import Scenario, load
 
 NODE: dict[str, Any] = {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}
 
@@ -30,6 +31,15 @@ def faults_of(data: dict[str, Any]) -> dict[str, str]:
     except ScenarioError as error:
         return {fault.path: fault.message for fault in error.faults}
     return {}
+
+
+def load_faults(path: str | os.PathLike[str]) -> list[Fault]:
+    """Return the faults with which a file is refused; the error names the file, and no library."""
+    with pytest.raises(ScenarioError) as caught:
+        load(path)
+    assert caught.value.source == os.fspath(path)
+    assert caught.value.__suppress_context__
+    return list(caught.value.faults)
 
 
 def require_fault(make: Callable[[], object], path: str, words: str) -> None:

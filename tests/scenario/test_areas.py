@@ -9,10 +9,10 @@ import pytest
 import shapely
 from geo_files import WRITERS, Feature, kml, placemark, write_geojson
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.errors import ScenarioError
 from nullpose.scenario import Airspace, NoFlyZone, Scenario, apply_overrides, load
 from nullpose.scenario.geodesy import enu_from_geodetic
-from scenes import small
+from scenes import load_faults, require_fault, small
 
 ORIGIN = [50.0, 14.5, 230.0]
 FENCE = [[49.999, 14.498], [49.999, 14.506], [50.003, 14.506], [50.003, 14.498]]
@@ -55,13 +55,6 @@ def scene(
     return path
 
 
-def faults_of(path: Path) -> list[Fault]:
-    """Return the faults of a file."""
-    with pytest.raises(ScenarioError) as caught:
-        load(path)
-    return list(caught.value.faults)
-
-
 def metres(corners: list[list[float]]) -> np.ndarray:
     """Return corners in degrees as east and north of the origin."""
     return enu_from_geodetic([[*corner, 230.0] for corner in corners], ORIGIN)[:, :2]
@@ -94,7 +87,7 @@ def test_inline_fences_and_zones(tmp_path: Path) -> None:
 
 
 def test_files_give_the_same_scene(tmp_path: Path) -> None:
-    """Inline, GeoJSON, KML, KMZ and GeoPackage state one scene."""
+    """Inline, GeoJSON, KML, KMZ and GeoPackage state one scene; a file's zones come after the scenario's."""
     zones = f'[[airspace.no_fly]]\nname = "wood"\npolygon_lat_lon_deg = {ZONE}\n'
     inline = load(scene(tmp_path, f"altitude_m = [20, 80]\ngeofence_lat_lon_deg = {FENCE}", zones=zones))
     for ending, write in WRITERS.items():
@@ -102,16 +95,27 @@ def test_files_give_the_same_scene(tmp_path: Path) -> None:
         write(tmp_path / f"zones{ending}", [area(ZONE, name="wood")])
         airspace = f'altitude_m = [20, 80]\ngeofence_from = "fence{ending}"\nno_fly_from = "zones{ending}"'
         assert load(scene(tmp_path, airspace)) == inline
-
-
-def test_zones_of_a_file_are_added(tmp_path: Path) -> None:
-    """They come after those of the scenario file; a point with a radius is a cylinder."""
     mast = shapely.Point(MAST[::-1]), {"radius_m": 20.0, "altitude_m": [0, 30]}
-    write_geojson(tmp_path / "zones.geojson", [mast])
-    zones = "[[airspace.no_fly]]\nx_m = [0.0, 9.0]\ny_m = [0.0, 9.0]\n"
-    scenario = load(scene(tmp_path, 'altitude_m = [20, 80]\nno_fly_from = "zones.geojson"', zones=zones))
-    assert [zone.shape for zone in scenario.airspace.no_fly] == ["box", "cylinder"]
-    assert scenario.airspace.no_fly[1].altitude_m == (0.0, 30.0)
+    write_geojson(tmp_path / "mast.geojson", [mast])
+    both = load(scene(tmp_path, 'altitude_m = [20, 80]\nno_fly_from = "mast.geojson"', zones=zones)).airspace
+    assert [(zone.shape, zone.altitude_m) for zone in both.no_fly] == [
+        ("polygon", None),
+        ("cylinder", (0.0, 30.0)),
+    ]
+
+
+def test_what_is_set_later(tmp_path: Path) -> None:
+    """When the origin moves, a fence in degrees stays on the Earth; metres drop what was stated there."""
+    scenario = load(scene(tmp_path, f"altitude_ellipsoid_m = [250, 310]\ngeofence_lat_lon_deg = {FENCE}"))
+    moved = apply_overrides(scenario, ["origin.lat_deg=50.001", "origin.alt_m=240"]).airspace
+    expected = enu_from_geodetic([[*corner, 240.0] for corner in FENCE], [50.001, 14.5, 240.0])[:, :2]
+    np.testing.assert_allclose(moved.geofence_m, expected, rtol=0, atol=1e-9)
+    assert moved.altitude_m == (10.0, 70.0)
+    fence = "airspace.geofence_m=[[-50, -50], [400, -50], [400, 300]]"
+    changed = apply_overrides(scenario, [fence, "airspace.altitude_m=[30, 40]"]).airspace
+    assert (changed.geofence_lat_lon_deg, changed.altitude_ellipsoid_m) == (None, None)
+    copied = scenario.airspace.model_copy(update={"geofence_m": ((0, 0), (9, 0), (9, 9))})
+    assert copied.geofence_lat_lon_deg is None
 
 
 @pytest.mark.parametrize(
@@ -130,15 +134,6 @@ def test_nodes_from_kml(mode: str, key: str, value: float, tmp_path: Path) -> No
     np.testing.assert_allclose(node.position_m, expected, rtol=0, atol=1e-9)
 
 
-def test_an_altitude_is_never_guessed(tmp_path: Path) -> None:
-    """A KML point that is clamped to the ground states no altitude, and is refused with what would do."""
-    (tmp_path / "nodes.kml").write_text(gauge(0.0), encoding="utf-8")
-    path = scene(tmp_path, "altitude_m = [20, 80]", top='nodes_from = "nodes.kml"', nodes="")
-    (fault,) = faults_of(path)
-    assert fault.path == 'nodes.kml: Placemark "gauge".geometry.coordinates'
-    assert "alt_m (ellipsoid), alt_msl_m (sea) or alt_agl_m (above the ground)" in fault.message
-
-
 def test_the_sea_is_below_the_ellipsoid_by_what_the_origin_says(tmp_path: Path) -> None:
     """Altitudes over the sea and over the ellipsoid go together where the origin states both."""
     nodes = NODES.replace("alt_agl_m = 1.5", "alt_msl_m = 186.5").replace("alt_agl_m = 2.0", "alt_m = 232.0")
@@ -147,26 +142,6 @@ def test_the_sea_is_below_the_ellipsoid_by_what_the_origin_says(tmp_path: Path) 
     assert scenario.node_positions_m[:, 2] == pytest.approx([1.5, 2.0], abs=0.02)  # the Earth is round
     place = scenario.origin.place([0.0, 0.0, 20.0])
     assert (place["alt_m"], place["alt_msl_m"]) == pytest.approx((250.0, 205.0))
-
-
-def test_what_is_drawn_moves_with_the_earth(tmp_path: Path) -> None:
-    """When the origin moves, a fence in degrees stays where it is on the Earth, as points do."""
-    scenario = load(scene(tmp_path, f"altitude_ellipsoid_m = [250, 310]\ngeofence_lat_lon_deg = {FENCE}"))
-    moved = apply_overrides(scenario, ["origin.lat_deg=50.001", "origin.alt_m=240"])
-    expected = enu_from_geodetic([[*corner, 240.0] for corner in FENCE], [50.001, 14.5, 240.0])[:, :2]
-    np.testing.assert_allclose(moved.airspace.geofence_m, expected, rtol=0, atol=1e-9)
-    assert moved.airspace.altitude_m == (10.0, 70.0)
-
-
-def test_metres_take_the_place_of_degrees(tmp_path: Path) -> None:
-    """A fence or an altitude that is set in metres drops what was stated on the Earth."""
-    scenario = load(scene(tmp_path, f"altitude_ellipsoid_m = [250, 310]\ngeofence_lat_lon_deg = {FENCE}"))
-    fence = "[[-50, -50], [400, -50], [400, 300]]"
-    changed = apply_overrides(scenario, [f"airspace.geofence_m={fence}", "airspace.altitude_m=[30, 40]"])
-    assert changed.airspace.geofence_lat_lon_deg is None
-    assert changed.airspace.altitude_ellipsoid_m is None
-    copied = scenario.airspace.model_copy(update={"geofence_m": ((0, 0), (9, 0), (9, 9))})
-    assert copied.geofence_lat_lon_deg is None
 
 
 @pytest.mark.parametrize(
@@ -185,18 +160,32 @@ def test_faults_of_a_fence_name_its_file(
 ) -> None:
     """What is wrong with a file of areas is told at its place in it, or at the fence as a whole."""
     write_geojson(tmp_path / "fence.geojson", features)
-    faults = faults_of(scene(tmp_path, 'altitude_m = [20, 80]\ngeofence_from = "fence.geojson"'))
+    faults = load_faults(scene(tmp_path, 'altitude_m = [20, 80]\ngeofence_from = "fence.geojson"'))
     assert any(words in fault.message for fault in faults)
     assert path in faults[0].path
     assert all(fault.path.startswith("airspace.geofence_from: fence.geojson") for fault in faults)
 
 
-def test_latitudes_beyond_90_are_told_once(tmp_path: Path) -> None:
-    """Where longitudes exceed 90 degrees an exchange shows at once, and is told once for all corners."""
-    corners = [[121.0, 25.0], [121.1, 25.0], [121.1, 25.1]]
-    (fault,) = faults_of(scene(tmp_path, f"altitude_m = [20, 80]\ngeofence_lat_lon_deg = {corners}"))
-    assert "got 121.0, must be a latitude" in fault.message
-    assert fault.message.endswith("are latitude and longitude exchanged?) (and so in 2 more)")
+SQUARE = [[0, 0], [100, 0], [100, 100], [0, 100]]
+EXCHANGED = "are latitude and longitude exchanged?) (and so in 2 more)"
+EAST = [[121.0, 25.0], [121.1, 25.0], [121.1, 25.1]]
+
+
+@pytest.mark.parametrize(
+    ("airspace", "path", "words"),
+    [
+        ('no_fly_from = "../zones.kml"', "airspace.no_fly_from: ../zones.kml", "outside the folder"),
+        (
+            f"geofence_m = {SQUARE}\ngeofence_lat_lon_deg = {FENCE}",
+            "airspace",
+            "geofence_m and geofence_lat_lon_deg are",
+        ),
+        (f"geofence_lat_lon_deg = {EAST}", "airspace.geofence_lat_lon_deg[0][0]", EXCHANGED),
+    ],
+)
+def test_faults_of_inline_areas(airspace: str, path: str, words: str, tmp_path: Path) -> None:
+    """A file elsewhere, metres that disagree with degrees, and an exchange, told once for all corners."""
+    require_fault(lambda: load(scene(tmp_path, f"altitude_m = [20, 80]\n{airspace}")), path, words)
 
 
 @pytest.mark.parametrize(
@@ -211,15 +200,8 @@ def test_latitudes_beyond_90_are_told_once(tmp_path: Path) -> None:
 def test_what_is_no_kml(text: str, tmp_path: Path) -> None:
     """Broken XML, and XML that declares entities, is refused."""
     (tmp_path / "fence.kml").write_text(text, encoding="utf-8")
-    (fault,) = faults_of(scene(tmp_path, 'altitude_m = [20, 80]\ngeofence_from = "fence.kml"'))
+    (fault,) = load_faults(scene(tmp_path, 'altitude_m = [20, 80]\ngeofence_from = "fence.kml"'))
     assert fault.path.startswith("airspace.geofence_from: fence.kml")
-
-
-def test_a_file_outside_the_folder_is_refused(tmp_path: Path) -> None:
-    """As files of nodes are."""
-    (fault,) = faults_of(scene(tmp_path, 'altitude_m = [20, 80]\nno_fly_from = "../zones.kml"'))
-    assert fault.path == "airspace.no_fly_from: ../zones.kml"
-    assert "outside the folder" in fault.message
 
 
 def test_degrees_need_an_origin() -> None:
@@ -230,13 +212,3 @@ def test_degrees_need_an_origin() -> None:
         NoFlyZone(centre_lat_lon_deg=MAST, radius_m=5.0)
     with pytest.raises(ScenarioError, match=r"origin: missing, but airspace is stated by altitude_msl_m"):
         Scenario.from_dict(small(airspace={"altitude_msl_m": [200, 300]}))
-
-
-def test_disagreeing_metres_are_refused(tmp_path: Path) -> None:
-    """Degrees and metres of one fence may both be given if they agree."""
-    square = [[0, 0], [100, 0], [100, 100], [0, 100]]
-    (fault,) = faults_of(
-        scene(tmp_path, f"altitude_m = [20, 80]\ngeofence_m = {square}\ngeofence_lat_lon_deg = {FENCE}")
-    )
-    assert fault.path == "airspace"
-    assert "geofence_m and geofence_lat_lon_deg are" in fault.message

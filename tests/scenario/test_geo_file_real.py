@@ -34,6 +34,7 @@ from shapely.geometry import mapping
 from nullpose.errors import ScenarioError
 from nullpose.scenario import load
 from nullpose.scenario.loading import files_of
+from scenes import require_fault
 
 
 @pytest.mark.parametrize("ending", [".geojson", ".kml", ".gpkg"])
@@ -276,18 +277,19 @@ def test_styles_and_measures_are_no_faults(tmp_path: Path) -> None:
         assert len(zones_of(tmp_path, file)[0].airspace.no_fly) == 1
 
 
-def test_a_point_without_a_name_is_clamped_to_the_ground_too(tmp_path: Path) -> None:
-    """Its height of 0 is none."""
-    point = f"<Placemark><Point><coordinates>{HERE[0]},{HERE[1]},0</coordinates></Point></Placemark>"
-    (tmp_path / "n.kml").write_text(kml(point))
+@pytest.mark.parametrize(("name", "shown"), [("", "[0]"), ("gauge", ' "gauge"')])
+def test_an_altitude_is_never_guessed(name: str, shown: str, tmp_path: Path) -> None:
+    """A KML point that is clamped to the ground states no altitude, and is refused with what would do."""
+    (tmp_path / "n.kml").write_text(kml(placemark(shapely.Point(*HERE, 0.0), {"name": name} if name else {})))
     text = SCENE.format(lat=HERE[1], lon=HERE[0], airspace="altitude_m = [10.0, 120.0]").partition(
         "[[nodes]]"
     )[0]
     (tmp_path / "scene.toml").write_text('nodes_from = "n.kml"\n' + text)
-    with pytest.raises(
-        ScenarioError, match=r"n.kml: Placemark\[0\].geometry.coordinates: there is no altitude"
-    ):
-        load(tmp_path / "scene.toml")
+    require_fault(
+        lambda: load(tmp_path / "scene.toml"),
+        f"n.kml: Placemark{shown}.geometry.coordinates",
+        "alt_m (ellipsoid), alt_msl_m (sea) or alt_agl_m (above the ground)",
+    )
 
 
 def test_zones_are_cut_to_the_airspace_with_its_changes(tmp_path: Path) -> None:

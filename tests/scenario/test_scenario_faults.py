@@ -2,13 +2,12 @@
 
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
 from hypothesis import given, strategies as st
 
 from nullpose.errors import Fault, ScenarioError
-from nullpose.scenario import load
+from nullpose.scenario.loading import scenario_from_text
 
 GOOD = """\
 name = "test"
@@ -126,12 +125,11 @@ CROSS_CASES = [
 CASES = FIELD_CASES + CROSS_CASES
 
 
-def faults_of(path: Path, text: str) -> tuple[Fault, ...]:
-    """Returns the faults with which loading the text as a file is refused."""
-    path.write_text(text, encoding="utf-8")
+def faults_of(text: str) -> tuple[Fault, ...]:
+    """Returns the faults with which the text of a scenario file is refused."""
     with pytest.raises(ScenarioError) as caught:
-        load(path)
-    assert caught.value.source == str(path)
+        scenario_from_text(text.encode(), "bad.toml")
+    assert caught.value.source == "bad.toml"
     return caught.value.faults
 
 
@@ -144,9 +142,9 @@ def edited(*cases: Case) -> str:
 
 
 @pytest.mark.parametrize("one", CASES, ids=str)
-def test_one_fault_is_one_message(one: Case, tmp_path: Path) -> None:
+def test_one_fault_is_one_message(one: Case) -> None:
     """Every fault is reported once, at its path, and says what was given and what is allowed."""
-    (fault,) = faults_of(tmp_path / "bad.toml", edited(one))
+    (fault,) = faults_of(edited(one))
     assert fault.path == one.path
     for words in one.words:
         assert words in fault.message
@@ -167,13 +165,13 @@ HEAD = GOOD.split("[[nodes]]", maxsplit=1)[0]
         (GOOD.replace("[airspace]", "[airspce]"), "airspce", 'did you mean "airspace"?'),
     ],
 )
-def test_missing_parts(text: str, path: str, words: str, tmp_path: Path) -> None:
+def test_missing_parts(text: str, path: str, words: str) -> None:
     """A part that is missing, empty or of another kind is named, with what is expected in its place."""
-    faults = {fault.path: fault.message for fault in faults_of(tmp_path / "bad.toml", text)}
+    faults = {fault.path: fault.message for fault in faults_of(text)}
     assert words in faults[path]
 
 
-def test_faults_come_in_the_order_of_the_file(tmp_path: Path) -> None:
+def test_faults_come_in_the_order_of_the_file() -> None:
     """Faults of all kinds are listed from the top of the file to its end."""
     text = GOOD
     for old, new in [
@@ -185,7 +183,7 @@ def test_faults_come_in_the_order_of_the_file(tmp_path: Path) -> None:
         (POWER, "power_dbm = nan"),
     ]:
         text = text.replace(old, new)
-    assert [fault.path for fault in faults_of(tmp_path / "bad.toml", text)] == [
+    assert [fault.path for fault in faults_of(text)] == [
         "airspace.altitude_m",
         "receiver.gain_db",
         "nodes[0].power_w",
@@ -207,9 +205,9 @@ INDEPENDENT = {
         lambda olds: st.tuples(*(st.sampled_from(INDEPENDENT[old]) for old in olds))
     )
 )
-def test_all_faults_at_once(tmp_path_factory: pytest.TempPathFactory, several: tuple[Case, ...]) -> None:
+def test_all_faults_at_once(several: tuple[Case, ...]) -> None:
     """However many lines are at fault, loading reports exactly the faults that each has alone."""
-    faults = faults_of(tmp_path_factory.mktemp("bad") / "bad.toml", edited(*several))
+    faults = faults_of(edited(*several))
     assert sorted(fault.path for fault in faults) == sorted(one.path for one in several)
 
 
@@ -217,10 +215,8 @@ def test_all_faults_at_once(tmp_path_factory: pytest.TempPathFactory, several: t
     st.sampled_from(CROSS_CASES),
     st.sampled_from([NOISE, GAIN]).flatmap(lambda o: st.sampled_from(INDEPENDENT[o])),
 )
-def test_broken_parts_hide_no_cross_fault(
-    tmp_path_factory: pytest.TempPathFactory, cross: Case, other: Case
-) -> None:
+def test_broken_parts_hide_no_cross_fault(cross: Case, other: Case) -> None:
     """Names, places and room are judged even when another part of the file cannot be read."""
     text = edited(cross, other).replace("power_w = 2.0", "power_w = 'much'")
-    faults = faults_of(tmp_path_factory.mktemp("bad") / "bad.toml", text)
+    faults = faults_of(text)
     assert {cross.path, other.path, "nodes[1].power_w"} == {fault.path for fault in faults}
