@@ -60,7 +60,7 @@ def parse_json(text: str, **options: Any) -> Any:
     """
     place, closed = "", 0
 
-    def table_of(pairs: list[tuple[str, Any]]) -> PlainTable:
+    def table_of(pairs: list[tuple[str, object]]) -> PlainTable:
         nonlocal closed
         closed += 1
         table = dict(pairs)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path, PurePath
-from typing import Any
 
 from nullpose.antenna.kind import AntennaKind
 from nullpose.antenna.pattern import (
@@ -15,6 +14,7 @@ from nullpose.antenna.pattern import (
     profile_harmonics,
     table_harmonics,
 )
+from nullpose.files import PlainTable
 
 # The readers of files are imported where one is read: most scenarios name none.
 
@@ -51,13 +51,13 @@ def pattern_antenna(
     return PatternAntenna(kind, label, normalised(found) if normalise == "peak" else found)
 
 
-def _read_profile(path: Path, _: Mapping[str, Any]) -> dict[str, Any]:
+def _read_profile(path: Path, _: PlainTable) -> PlainTable:
     from nullpose.antenna.files import read_profile
 
     return {"harmonics": profile_harmonics(*read_profile(path)).rows()}
 
 
-def _read_pattern(path: Path, table: Mapping[str, Any]) -> dict[str, Any]:
+def _read_pattern(path: Path, table: PlainTable) -> PlainTable:
     from nullpose.antenna.files import read_pattern
     from nullpose.antenna.files.block import refuse
 

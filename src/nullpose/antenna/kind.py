@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from nullpose.antenna.pattern import PatternAntenna
 from nullpose.antenna.quadratic import QuadraticAntenna
+from nullpose.files import PlainTable
 
 Antenna: TypeAlias = QuadraticAntenna | PatternAntenna
-"""Any antenna of the drone."""
+"""An antenna of the drone."""
 
 
 class AntennaKind(NamedTuple):
@@ -27,4 +28,4 @@ class AntennaKind(NamedTuple):
     summary: str
     make: Callable[..., Antenna]
     keys: tuple[str, ...] = ()
-    read: Callable[[Path, Mapping[str, Any]], dict[str, Any]] | None = None
+    read: Callable[[Path, PlainTable], PlainTable] | None = None

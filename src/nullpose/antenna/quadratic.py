@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
+
+from nullpose.antenna.harmonics import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,10 +32,10 @@ class QuadraticAntenna:
     label: str
     leak: float
 
-    def gain(self, sine_squared: Any) -> Any:
+    def gain(self, sine_squared: FloatArray) -> FloatArray:
         """Evaluate the power gain at an angle from the axis, 1 broadside.
 
         Args:
-            sine_squared: ``sin^2(gamma)``, a number or an array of any shape.
+            sine_squared: ``sin^2(gamma)``, of any shape.
         """
         return self.leak + (1.0 - self.leak) * sine_squared

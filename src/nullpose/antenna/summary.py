@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nullpose.antenna.harmonics import supported_degree
 from nullpose.antenna.pattern import deepest_null, table_harmonics
 from nullpose.antenna.table import PatternTable, mean_gain
+from nullpose.files import PlainTable
 
 _NONE = 1e-12  # of the peak; rounding errors of an exact null
 _LINEAR_DB = 20.0  # axial ratio from which a field counts as linear
@@ -64,7 +65,7 @@ class PatternSummary:
     step_deg: float
     largest_m: float | None
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return the summary as plain data, angles in radians, without the table's numbers."""
         names = ("source", "quantity", "frequency_hz", "notes")
         data = {name: getattr(self.table, name) for name in names}
@@ -122,13 +123,13 @@ def summary_of(table: PatternTable) -> PatternSummary:
     )
 
 
-def _place(table: PatternTable, at: Any) -> tuple[int, int]:
+def _place(table: PatternTable, at: np.intp) -> tuple[int, int]:
     """Return row and column of a flat index; at a pole, where all azimuths are one, those of azimuth 0."""
     row, column = divmod(int(at), len(table.phi_deg))
     return row, column if 0 < row < len(table.theta_deg) - 1 else 0
 
 
-def _polarisation(field: Any) -> tuple[str, float | None]:
+def _polarisation(field: NDArray[np.complex128] | None) -> tuple[str, float | None]:
     """Return a field's polarisation in words, and its axial ratio in dB."""
     if field is None:
         return "not known", None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,7 +145,7 @@ class Certificate:
     pitch_rad: float
     yaw_rad: float
     trees: tuple[Tree, ...]
-    provenance: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, object] = field(default_factory=dict)
 
 
 def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Mapping[str, AxisField] | None:

@@ -92,7 +92,7 @@ def _unpacked(data: bytes) -> bytes:
     return data
 
 
-def scenario_digest(data: Mapping[str, Any]) -> str:
+def scenario_digest(data: Mapping[str, object]) -> str:
     """Return the SHA-256 of a scenario's plain data, in canonical JSON."""
     return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
@@ -124,7 +124,7 @@ def certificate_text(certificate: Certificate) -> str:
     return _lines(data, 0) + "\n"
 
 
-def _lines(value: Any, depth: int) -> str:
+def _lines(value: object, depth: int) -> str:
     """Return JSON with the outer tables spread over lines and everything else on one line each."""
     if isinstance(value, dict):
         parts = [f"{json.dumps(key)}: {_lines(item, depth + 1)}" for key, item in value.items()]
@@ -182,18 +182,18 @@ def _finite(digits: str) -> float:
 
 
 # Returns what a plain value stands for, given its path for the message if it is wrong.
-Reader: TypeAlias = Callable[[Any, str], Any]
+Reader: TypeAlias = Callable[[object, str], Any]
 
 
 _MISSING = object()
 
 
-def _refusal(value: Any, path: str, words: str) -> CertificateError:
+def _refusal(value: object, path: str, words: str) -> CertificateError:
     what = "is missing" if value is _MISSING else "is wrong"
     return CertificateError(f"{path}: {what}; must be {words}")
 
 
-def _plain(value: Any, path: str, kinds: type | UnionType, words: str) -> Any:
+def _plain(value: object, path: str, kinds: type | UnionType, words: str) -> Any:
     """Return a value that is as it should be if it is of some kind."""
     if not isinstance(value, kinds):
         raise _refusal(value, path, words)
@@ -235,9 +235,9 @@ def _mixes(value: Any, path: str) -> tuple[dict[int, float], ...]:
     return mixes
 
 
-def _leaves(value: Any, path: str) -> dict[str, Any]:
+def _leaves(value: object, path: str) -> dict[str, Any]:
     """Return columns of equal length."""
-    columns: dict[str, Any] = _read(value, path, _LEAVES)
+    columns = _read(value, path, _LEAVES)
     for name in COLUMNS:
         if len(columns[name]) != len(columns["test"]):
             raise CertificateError(
@@ -246,15 +246,16 @@ def _leaves(value: Any, path: str) -> dict[str, Any]:
     return columns
 
 
-def _read(value: Any, path: str, layout: Mapping[str, Reader]) -> dict[str, Any]:
+def _read(value: object, path: str, layout: Mapping[str, Reader]) -> dict[str, Any]:
     """Return a table, each of whose keys is in the layout and the other way round."""
     place = f"{path}." if path else ""
-    for key in _table(value, path):
+    table = _table(value, path)
+    for key in table:
         if key not in layout:
             raise CertificateError(
                 f"{place}{printable(key)}: unknown key; the keys here are {', '.join(layout)}"
             )
-    return {key: read(value.get(key, _MISSING), place + key) for key, read in layout.items()}
+    return {key: read(table.get(key, _MISSING), place + key) for key, read in layout.items()}
 
 
 _text = partial(_plain, kinds=str, words="a text")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import isqrt
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from nullpose.certificate.profile import Profile
 
 # An array of fractions.
-Exact: TypeAlias = NDArray[Any]
+Exact: TypeAlias = NDArray[np.object_]
 
 _TERMS = 24  # of the series: for |x| <= 4 the rest is below 4^48/48! < 1e-32
 _BITS = 160

@@ -102,7 +102,7 @@ class Profile:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ProfileField(AxisField):
-    """Any axis of an antenna that is the same all round, as far as the airframe reaches.
+    """Every axis of an antenna that is the same all round, as far as the airframe reaches.
 
     Args:
         profile: its gain.

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
-from typing import Any
 
 from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.claim import VALUE_RTOL
 from nullpose.certificate.file import scenario_digest
+from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.problem.build import build_family
 from nullpose.problem.schemes import RECORDS
 from nullpose.scenario import Scenario
 
 
-def subject(certificate: Certificate) -> dict[str, Any]:
+def subject(certificate: Certificate) -> PlainTable:
     """Collect the claim of a certificate, its scenario and the scenario's digest as plain data."""
     scenario = certificate.scenario.to_dict()
     return {
@@ -57,7 +57,7 @@ def _problem(scenario: Scenario) -> tuple[object, ...]:
     return build_family(scenario).digest, scenario.objective, scenario.axis_band, reach
 
 
-def _values(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:
     if isinstance(value, dict):
         for key, inner in value.items():
             yield from _values(inner, f"{path}.{key}" if path else key)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from nullpose.errors import Fault, ScenarioError, UsageError
-from nullpose.objectives import FloatArray
+from nullpose.objectives import FloatArray, IntArray
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
@@ -63,7 +61,7 @@ def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     raise ScenarioError([Fault(path, message)])
 
 
-def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, Any]:
+def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, FloatArray | IntArray | float]:
     """Build the fields of a family that say where its positions may be.
 
     Args:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.objectives import FloatArray, Ratios
+from nullpose.objectives import FloatArray, IntArray, Ratios
 from nullpose.problem.records import Domain
 
 
@@ -33,7 +33,7 @@ class Family:
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a family is frozen; use changed({name}=...)")
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[partial[Family], tuple[()]]:
         return partial(Family, **self.fields), ()
 
     def __getattr__(self, name: str) -> Any:
@@ -44,7 +44,7 @@ class Family:
             return getattr(self.domain, name)
         raise AttributeError(f"a family has no {name!r}")
 
-    def changed(self, **fields: Any) -> Family:
+    def changed(self, **fields: object) -> Family:
         """Copy the family with other values in the fields named."""
         return Family(**self.fields | fields)
 
@@ -54,7 +54,7 @@ class Family:
         return Family(**self.arrays._asdict(), **place._asdict())
 
     @property
-    def fields(self) -> dict[str, Any]:
+    def fields(self) -> dict[str, FloatArray | IntArray | float | None]:
         """Every array by name, and the keep-out radius."""
         return self.arrays._asdict() | self.domain._asdict()
 
@@ -71,7 +71,7 @@ class Family:
         return sha.hexdigest()
 
 
-def _read_only(value: Any) -> Any:
+def _read_only(value: object) -> Any:
     if not isinstance(value, np.ndarray):
         return value
     if value.flags.writeable or not value.flags.c_contiguous or value.dtype not in _KINDS:

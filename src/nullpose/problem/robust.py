@@ -30,7 +30,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
 
     Moving the drone by d moves all points by -d, and turning its axis by R is the turn that the points see,
     so ratio s is that of ``points - d_s + offsets_s`` with the turn ``R_s``. Ratios share a denominator if
-    they do in the nominal family and their errors are the same. Any pose's smallest ratio here is at least
+    they do in the nominal family and their errors are the same. A pose's smallest ratio here is at least
     its guaranteed one; keep-outs and airspace are the nominal ones.
 
     Args:

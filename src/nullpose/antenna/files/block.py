@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any, NoReturn, TypeAlias
+from typing import NoReturn, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import Fault, ScenarioError
@@ -111,7 +111,7 @@ def rows_of(lines: Lines, start: int, count: float, width: int, what: str) -> Fl
     return numbers(lines[start : start + int(count)], width, what)
 
 
-def from_db(gain_db: Any) -> FloatArray:
+def from_db(gain_db: ArrayLike) -> FloatArray:
     """Return linear power; 0 for the floors that stand for none, -190 dB and below.
 
     Args:
