@@ -52,10 +52,11 @@ def test_rows_round_trip() -> None:
 
 def test_no_gain_is_above_the_peak_and_none_below_zero() -> None:
     """The peak bounds all directions; what is read is lifted where the fit would be negative."""
-    gain = np.maximum(0.0, closed_form(directions(THETA, PHI)) - 0.2)
-    table = PatternTable(theta_deg=THETA, phi_deg=PHI, gain=gain)
+    theta, phi = THETA[::3], PHI[::3]
+    gain = np.maximum(0.0, closed_form(directions(theta, phi)) - 0.2)
+    table = PatternTable(theta_deg=theta, phi_deg=phi, gain=gain)
     antenna = PatternAntenna("pattern", "any", table_harmonics(table))
-    everywhere = antenna.gain(directions(np.linspace(0.0, 180.0, 700), np.linspace(0.0, 360.0, 900)))
+    everywhere = antenna.gain(directions(np.linspace(0.0, 180.0, 350), np.linspace(0.0, 360.0, 450)))
     assert everywhere.min() >= 0.0
     assert everywhere.max() <= antenna.peak
     assert normalised(antenna.harmonics).gain(directions(THETA, PHI)).max() == pytest.approx(1.0)

@@ -3,25 +3,16 @@
 import math
 
 import pytest
-from hypothesis import given, strategies as st
+from hypothesis import example, given, strategies as st
 
 from nullpose.physics import from_db, to_db
 
 
-@pytest.mark.parametrize(("ratio", "ratio_db"), [(1.0, 0.0), (10.0, 10.0), (1e-3, -30.0), (1e12, 120.0)])
-def test_powers_of_ten(ratio: float, ratio_db: float) -> None:
-    """A factor of ten in power is ten decibels, both ways."""
-    assert to_db(ratio) == pytest.approx(ratio_db, abs=1e-13)
-    assert from_db(ratio_db) == pytest.approx(ratio, rel=1e-14)
-
-
+@example(-30.0)
+@example(120.0)
 @given(st.floats(-300.0, 300.0))
-def test_round_trip(ratio_db: float) -> None:
-    """Decibels to a ratio and back change nothing."""
+def test_ten_decibels_are_a_factor_of_ten(ratio_db: float) -> None:
+    """Both ways; a ratio of zero is minus infinity, without a warning."""
+    assert from_db(ratio_db) == pytest.approx(10.0 ** (ratio_db / 10.0), rel=1e-13)
     assert to_db(from_db(ratio_db)) == pytest.approx(ratio_db, abs=1e-12)
-
-
-def test_zero_is_minus_infinity() -> None:
-    """A ratio of zero is minus infinity, without a warning."""
-    assert to_db(0.0) == -math.inf
-    assert from_db(-math.inf) == 0.0
+    assert (to_db(0.0), from_db(-math.inf)) == (-math.inf, 0.0)

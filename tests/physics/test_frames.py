@@ -2,7 +2,6 @@
 
 import json
 import math
-from itertools import pairwise
 
 import numpy as np
 import pymap3d
@@ -13,14 +12,9 @@ from scipy.spatial.transform import Rotation
 from nullpose.physics import Pose, flu_from_frd, frd_from_flu, pose_frames, rotation_world_from_body
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import ned_from_enu
+from scenes import small
 
-LOCAL = Scenario.from_dict(
-    {
-        "airspace": {"altitude_m": [8.0, 30.0]},
-        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
-        "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
-    }
-)
+LOCAL = Scenario.from_dict(small())
 ON_EARTH = LOCAL.model_copy(update={"origin": Origin(lat_deg=50.0, lon_deg=14.5, alt_m=230.0)})
 
 angles = st.floats(-math.pi, math.pi)
@@ -43,22 +37,23 @@ def test_the_quaternion_is_the_rotation(pose: Pose) -> None:
 
 @given(poses, vectors)
 def test_ned_and_frd_see_the_same_vehicle(pose: Pose, body: tuple[float, float, float]) -> None:
-    """A vector fixed to the body, told in FRD and turned to NED, is the one told in FLU and turned to ENU."""
+    """A vector in FRD turned to NED is that in FLU turned to ENU; roll stays, and pitch changes its sign."""
     frames = pose_frames(LOCAL, pose)
     enu = Rotation.from_quat(frames.enu.quaternion_xyzw).apply(body)
     ned = Rotation.from_quat(frames.ned.quaternion_xyzw).apply(frd_from_flu(body))
     np.testing.assert_allclose(ned, ned_from_enu(enu), atol=1e-10)
+    assert flu_from_frd(frd_from_flu(body)).tolist() == list(body)
+    assert (frames.ned.roll_rad, frames.ned.pitch_rad) == (pose.roll_rad, -pose.pitch_rad)
 
 
-@given(poses)
-def test_angles_change_by_the_rule_that_is_stated(pose: Pose) -> None:
-    """Roll stays, pitch changes its sign, and yaw becomes the bearing of the nose."""
-    ned = pose_frames(LOCAL, pose).ned
-    assert (ned.roll_rad, ned.pitch_rad) == (pose.roll_rad, -pose.pitch_rad)
-    level = pose_frames(LOCAL, Pose(pose.position_m, 0.0, 0.0, pose.yaw_rad)).enu
-    east, north, _ = Rotation.from_quat(level.quaternion_xyzw).apply([1.0, 0.0, 0.0])
-    bearing = math.atan2(east, north)
-    assert math.cos(bearing - ned.yaw_rad) == pytest.approx(1.0, abs=1e-12)
+@pytest.mark.parametrize("turns", range(-3, 4))
+@pytest.mark.parametrize("yaw_rad", [0.0, 0.5, 1.0])
+def test_yaw_is_the_bearing_of_the_nose_within_one_turn(yaw_rad: float, turns: int) -> None:
+    """It counts clockwise from north in NED; no zero has a sign."""
+    frames = pose_frames(LOCAL, Pose((0.0, 0.0, 0.0), 0.0, 0.0, yaw_rad + turns * math.tau))
+    assert frames.enu.yaw_rad == pytest.approx(yaw_rad, abs=1e-12)
+    assert frames.ned.yaw_rad == pytest.approx(math.pi / 2.0 - yaw_rad, abs=1e-12)
+    assert math.copysign(1.0, frd_from_flu([0.0, 0.0, 0.0])[1]) == 1.0
 
 
 def test_a_level_vehicle_that_faces_north() -> None:
@@ -68,10 +63,7 @@ def test_a_level_vehicle_that_faces_north() -> None:
     np.testing.assert_allclose(frames.enu.quaternion_wxyz, [math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)])
     assert frames.enu.position_m == (1.0, 2.0, 3.0)
     assert frames.ned.position_m == (2.0, 1.0, -3.0)
-    assert list(frames.to_dict()) == [
-        "enu",
-        "ned",
-    ]  # without an origin no place on the Earth, nor an empty one
+    assert list(frames.to_dict()) == ["enu", "ned"]  # without an origin no place on the Earth
     earthly = pose_frames(ON_EARTH, Pose((1.0, 2.0, 3.0), 0.1, 0.2, 0.3)).to_dict()
     assert list(earthly["geodetic"]) == ["lat_deg", "lon_deg", "alt_m"]
     assert json.loads(json.dumps(earthly, allow_nan=False)) == earthly
@@ -84,19 +76,3 @@ def test_the_place_on_the_earth_is_that_of_the_position(pose: Pose) -> None:
     assert place is not None
     theirs = pymap3d.enu2geodetic(*pose.position_m, 50.0, 14.5, 230.0)
     assert (place.lat_deg, place.lon_deg, place.alt_m) == pytest.approx(tuple(map(float, theirs)), abs=1e-12)
-
-
-def test_body_frames() -> None:
-    """Left is minus right and up minus down; twice is nothing, and no zero gets a sign."""
-    assert frd_from_flu([1.0, 2.0, 3.0]).tolist() == [1.0, -2.0, -3.0]
-    assert flu_from_frd(frd_from_flu([[1.0, 0.0, 3.0]])).tolist() == [[1.0, 0.0, 3.0]]
-    assert math.copysign(1.0, frd_from_flu([0.0, 0.0, 0.0])[1]) == 1.0
-
-
-def test_turning_on_and_on_keeps_the_angle_in_range() -> None:
-    """Yaw far beyond a turn is reported as the same direction within one."""
-    for turns in range(-3, 4):
-        enu = pose_frames(LOCAL, Pose((0.0, 0.0, 0.0), 0.0, 0.0, 1.0 + turns * math.tau)).enu
-        assert enu.yaw_rad == pytest.approx(1.0, abs=1e-12)
-    headings = [pose_frames(LOCAL, Pose((0, 0, 0), 0, 0, yaw)).ned.yaw_rad for yaw in (0.0, 0.5, 1.0)]
-    assert all(later < earlier for earlier, later in pairwise(headings))

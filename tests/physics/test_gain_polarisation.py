@@ -1,5 +1,7 @@
 """The gain of a link between two antennas: patterns and polarisation."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
@@ -90,20 +92,14 @@ def test_the_limits_of_a_leak(seed: int) -> None:
     for point_m, broadside in zip(points_m, across, strict=True):
         whole = link_gain(position_m, broadside, point_m[None], LEAKING, ground_of(broadside[None], 0.3))
         assert whole == pytest.approx([1.0], abs=1e-14)
-
-
-def test_straight_above_a_whip_there_is_what_leaks() -> None:
-    """A level dipole above an upright whip receives its leak, in place of nothing."""
+    above = ([0.0, 0.0, 30.0], [1.0, 0.0, 0.0], [[0.0, 0.0, 0.0]])  # a level dipole above an upright whip
     whip = ground_of(np.array([[0.0, 0.0, 1.0]]), 0.01)
-    above = ([0.0, 0.0, 30.0], [1.0, 0.0, 0.0], [[0.0, 0.0, 0.0]])
     assert link_gain(*above, ground=whip) == pytest.approx([0.01], rel=1e-15)
 
 
 @given(axis=st.lists(st.floats(-1e9, 1e9), min_size=3, max_size=3).filter(any))
 def test_axes_are_of_unit_length(axis: list[float]) -> None:
     """Any direction that a file may state is brought to unit length, and none a hair longer."""
-    from fractions import Fraction
-
     unit = unit_axis((axis[0], axis[1], axis[2]))
     assert np.linalg.norm(unit) == pytest.approx(1.0, abs=1e-15)
     assert sum(Fraction(x) ** 2 for x in unit.tolist()) <= 1

@@ -23,31 +23,24 @@ def test_a_pose_from_an_axis_has_that_axis(seed: int, yaw: float, length: float)
     assert abs(pose.pitch_rad) <= math.pi / 2
 
 
-def test_a_pose_is_frozen() -> None:
-    """Neither the fields nor the position's numbers can be set, and the array given stays its owner's."""
+def test_a_pose_is_a_frozen_value() -> None:
+    """Its six numbers make equality and hash, cannot be set, and do not follow the array given."""
     given_m = np.array([1.0, 2.0, 3.0])
     pose = Pose(given_m, 0.1, 0.2)
     given_m[0] = 9.0
-    assert pose.position_m[0] == 1.0
+    same = Pose([1, 2, 3], np.float64(0.1), 0.2, 0.0)
+    others = [
+        Pose([1.0, 2.0, 3.5], 0.1, 0.2),
+        Pose(same.position_m, 0.15, 0.2),
+        Pose(same.position_m, 0.1, 0.25),
+    ]
+    assert pose == same
+    assert len({pose, same, *others}) == 4
+    assert pose != "a pose"
     with pytest.raises(ValueError, match="read-only"):
         pose.position_m[0] = 5.0
     with pytest.raises(AttributeError):
         pose.roll_rad = 0.0
-
-
-def test_equal_poses_are_equal_and_hash_alike() -> None:
-    """Equality and hash go by the six numbers, and nothing else equals a pose."""
-    pose = Pose([1.0, 2.0, 3.0], 0.1, 0.2)
-    same = Pose(np.array([1, 2, 3]), np.float64(0.1), 0.2, 0.0)
-    assert pose == same
-    assert hash(pose) == hash(same)
-    others = [
-        Pose([1.0, 2.0, 3.5], 0.1, 0.2),
-        Pose([1.0, 2.0, 3.0], 0.15, 0.2),
-        Pose([1.0, 2.0, 3.0], 0.1, 0.25),
-    ]
-    assert len({pose, same, *others}) == 4
-    assert pose != "a pose"
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from hypothesis import given, strategies as st
 
-from nullpose.physics import Reception, objective_value, received_power_w, secrecy_rate, sinr
+from nullpose.physics import Reception, objective_value, received_power_w, sinr
 from nullpose.physics.reception import node_values
 from nullpose.scenario import Scenario, apply_overrides
 
@@ -25,14 +25,6 @@ def test_margin_is_the_sinr_over_what_is_required(
     np.testing.assert_allclose(margins_db, ratios_db - [-4.0, 0.0, 10.0 * np.log10(2.5)], atol=1e-9)
     np.testing.assert_array_equal(objective_value(scene, *pose), sinr(scene, *pose).min(axis=-1))
     assert objective_value(demanding, *pose).shape == (4, 2)
-
-
-def test_with_the_secrecy_rate(paper: Scenario, random_poses: Callable) -> None:
-    """With that objective the value is the smallest secrecy rate over the nodes."""
-    changes = ["transmitter.power_w=1", "jammers=[]", "eavesdroppers=[{position_m = [17, 15, 4]}]"]
-    secret = apply_overrides(paper, ["objective=secrecy-rate", *changes])
-    pose = random_poses(np.random.default_rng(1), 20)
-    np.testing.assert_array_equal(objective_value(secret, *pose), secrecy_rate(secret, *pose).min(axis=-1))
 
 
 def test_received_power(paper: Scenario) -> None:
