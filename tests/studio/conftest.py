@@ -4,7 +4,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from nullpose.scenario import Airspace, Eavesdropper, Jammer, Node, Receiver, Scenario, Transmitter
+from nullpose.scenario import Eavesdropper, Node, Scenario, Transmitter, load
 
 collect_ignore = (
     [] if find_spec("playwright") else ["browser"]
@@ -14,15 +14,7 @@ collect_ignore = (
 @pytest.fixture
 def paper() -> Scenario:
     """The paper's section 4: two nodes and one jammer of equal power."""
-    return Scenario(
-        airspace=Airspace(altitude_m=(8.0, 30.0)),
-        receiver=Receiver(noise_w=1e-3, reference_gain_db=0.0),
-        nodes=(
-            Node(name="S1", position_m=(0.0, 0.0, 0.0), power_w=1.0),
-            Node(name="S2", position_m=(0.0, 50.0, 0.0), power_w=1.0),
-        ),
-        jammers=(Jammer(name="M", position_m=(17.0, 15.0, 4.0), power_w=1.0),),
-    )
+    return load("examples/paper.toml").model_copy(update={"name": ""})
 
 
 @pytest.fixture
@@ -36,3 +28,10 @@ def secret(paper: Scenario) -> Scenario:
         nodes=(Node(name="S1", position_m=(0.0, 0.0, 0.0)),),
         eavesdroppers=(Eavesdropper(name="E", position_m=(17.0, 15.0, 4.0)),),
     )
+
+
+@pytest.fixture
+def unsure(paper: Scenario) -> Scenario:
+    """The paper's scene with a jammer that is known up to two metres."""
+    jammer = paper.jammers[0].model_copy(update={"uncertainty_m": 2.0})
+    return paper.model_copy(update={"jammers": (jammer,)})

@@ -7,24 +7,14 @@ from nullpose.scenario import Scenario
 from nullpose.studio.case import CASES, OPTIMUM, case_named, cases_of
 
 
-def test_labels_are_unique() -> None:
-    """Every case is found by its label again."""
+def test_the_papers_cases_and_vehicles_are_offered(paper: Scenario, unsure: Scenario) -> None:
+    """Its four cases under labels of their own, the vehicles, and a robust one only if it states errors."""
     assert [case_named(case.label) for case in CASES] == list(CASES)
-
-
-def test_the_papers_cases_and_vehicles_are_offered(paper: Scenario) -> None:
-    """The paper's scene has its four cases and the vehicles, and no robust one, for it states no errors."""
+    assert "Robust pose" in [case.label for case in cases_of(unsure)]
     labels = [case.label for case in cases_of(paper)]
     assert labels[:4] == ["Optimum pose", "Zero interference", "Maximum gain", "Vertical"]
     assert "Robust pose" not in labels
     assert sum(label.startswith("Vehicle: ") for label in labels) == 5
-
-
-def test_errors_bring_the_robust_case(paper: Scenario) -> None:
-    """A jammer known only up to a ball makes the robust pose a case."""
-    unsure = paper.jammers[0].model_copy(update={"uncertainty_m": 1.0})
-    scenario = paper.model_copy(update={"jammers": (unsure,)})
-    assert "Robust pose" in [case.label for case in cases_of(scenario)]
 
 
 def test_a_secrecy_rate_leaves_few_cases(secret: Scenario) -> None:

@@ -39,13 +39,6 @@ class _Text(HTMLParser):
         self.text += data
 
 
-@pytest.fixture
-def unsure(paper: Scenario) -> Scenario:
-    """The paper's scene with a jammer that is known up to two metres."""
-    jammer = paper.jammers[0].model_copy(update={"uncertainty_m": 2.0})
-    return paper.model_copy(update={"jammers": (jammer,)})
-
-
 def test_two_cases_differ_by_what_is_known_of_both(unsure: Scenario) -> None:
     """A robust case counts with what it guarantees, once that is known, and it is said that it does."""
     robust = case_named("Robust pose")

@@ -105,27 +105,8 @@ def test_two_cases_are_answered(session: Session) -> None:
     assert first >= second
 
 
-def test_undo_and_redo_are_solved_too(session: Session) -> None:
-    """One step back is the scene before, with an answer of its own."""
-    session.change(lambda view: view.with_power_db(20.0))
-    session.undo()
-    assert session.state.power_db == pytest.approx(0.0)
-    assert session.history.future
-    session.redo()
-    assert session.state.power_db == pytest.approx(20.0)
-    wait(lambda: _certified(session))
-
-
-def test_a_refused_change_changes_nothing(session: Session) -> None:
-    """A place that makes no scenario leaves version and view as they were."""
-    state = session.state
-    with pytest.raises(ScenarioError):
-        session.change(lambda view: view.moved(JAMMER, (float("inf"), 0.0, 0.0)))
-    assert session.state == state
-
-
-def test_a_scene_without_a_pose_says_so(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the solver finds no pose, the status is its message, and the session goes on."""
+def test_a_session_goes_on_after_failures(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the solver finds no pose, or a change is refused, that is said, and the session goes on."""
     wait(lambda: _certified(session))
 
     def none(*_: object, **__: object) -> Answer:
@@ -136,7 +117,14 @@ def test_a_scene_without_a_pose_says_so(session: Session, monkeypatch: pytest.Mo
         session.change(lambda view: view.with_power_db(10.0))
         wait(lambda: session.state.status(OPTIMUM) == "no pose: no position was found")
     session.undo()
+    assert session.state.power_db == pytest.approx(0.0)
     wait(lambda: _certified(session))
+    session.redo()
+    state = session.state
+    assert state.power_db == pytest.approx(10.0)
+    with pytest.raises(ScenarioError, match="position_m"):
+        session.change(lambda view: view.moved(JAMMER, (float("inf"), 0.0, 0.0)))
+    assert session.state is state
 
 
 def test_a_closed_session_leaves_no_thread(paper: Scenario) -> None:
@@ -161,15 +149,11 @@ def test_a_closed_session_leaves_no_thread(paper: Scenario) -> None:
     ],
 )
 def test_a_loaded_file_may_name_no_other(text: str, path: str) -> None:
-    """What the page sends reads no file of this machine, and its faults show no folder of it."""
+    """What the page sends, of at most 10 MB, reads no file of this machine, and shows no folder of it."""
     with pytest.raises(ScenarioError) as raised:
         scenario_from_text(text.encode(errors="surrogateescape"), "mine.toml")
     assert path in [fault.path for fault in raised.value.faults]
     assert tempfile.gettempdir() not in str(raised.value)
-
-
-def test_a_loaded_file_is_bounded() -> None:
-    """More than 10 MB are refused unread."""
     with pytest.raises(ScenarioError, match="larger than 10 MB"):
         scenario_from_text(b"#" * 10_000_001, "mine.toml")
 

@@ -18,12 +18,6 @@ def test_a_moved_point_moves_alone(paper: Scenario) -> None:
     assert moved.moved(("jammers", 0), (17.0, 15.0, 4.0)).scenario == paper
 
 
-def test_a_place_that_makes_no_scenario_is_refused(paper: Scenario) -> None:
-    """A point that is put where the scenario is at fault raises with the path of the fault."""
-    with pytest.raises(ScenarioError, match="position_m"):
-        State(scenario=paper).moved(("nodes", 0), (float("nan"), 0.0, 0.0))
-
-
 def test_all_jammers_are_scaled_alike(paper: Scenario) -> None:
     """The power set is the strongest jammer's over the strongest node's; ratios of jammers stay."""
     weak = paper.jammers[0].model_copy(update={"name": "W", "position_m": (30.0, 40.0, 0.0), "power_w": 0.1})
@@ -33,6 +27,9 @@ def test_all_jammers_are_scaled_alike(paper: Scenario) -> None:
     assert louder.power_db == pytest.approx(20.0)
     assert [j.transmit_power_w for j in louder.scenario.jammers] == pytest.approx([100.0, 10.0])
     assert louder.with_power_db(0.0).scenario == both.scenario
+    silent = State(scenario=paper.model_copy(update={"jammers": ()}))
+    assert silent.power_db is None
+    assert silent.with_power_db(10.0) == silent
 
 
 @pytest.mark.parametrize(("text", "power_db"), [("12.3456", 12.3456), (" 1e1 ", 10.0), ("\u221230", -30.0)])
@@ -49,21 +46,6 @@ def test_a_typed_power_out_of_range_is_refused(paper: Scenario, text: str) -> No
     """It is said what was given, what is allowed, and what holds."""
     with pytest.raises(ScenarioError, match=rf"given {text or 'nothing'}; .*-30 to 40.* stays at 0"):
         State(scenario=paper).with_power_text(text)
-
-
-def test_a_power_in_dbm_stays_in_dbm(paper: Scenario) -> None:
-    """A jammer stated in dBm is scaled in dBm."""
-    jammer = paper.jammers[0].model_copy(update={"power_w": None, "power_dbm": 30.0})
-    view = State(scenario=paper.model_copy(update={"jammers": (jammer,)})).with_power_db(10.0)
-    assert view.scenario.jammers[0].power_dbm == 40.0
-    assert view.power_db == pytest.approx(10.0, abs=1e-9)
-
-
-def test_without_jammers_there_is_no_power(paper: Scenario) -> None:
-    """Nothing can be scaled where nothing jams."""
-    view = State(scenario=paper.model_copy(update={"jammers": ()}))
-    assert view.power_db is None
-    assert view.with_power_db(10.0) == view
 
 
 def test_another_scenario_keeps_the_cases_that_it_has(paper: Scenario, secret: Scenario) -> None:

@@ -86,7 +86,7 @@ EDITS = st.one_of(
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(edits=st.lists(EDITS, min_size=1, max_size=6))
 def test_what_is_saved_loads_as_it_was_and_keeps_its_comments(name: str, edits: list[Edit]) -> None:
     """After any edits, by themselves; its heading stays."""
@@ -159,39 +159,39 @@ power_w = 1_000e-3
 """
 
 
-def _hand_made(*edits: Edit) -> str:
-    scenario = scenario_from_text(HAND_MADE.encode(), "")
+def _saved(text: str, *edits: Edit) -> str:
+    scenario = scenario_from_text(text.encode(), "")
     for edit in edits:
         scenario = edit(scenario)
-    saved = toml_like(HAND_MADE, scenario)
+    saved = toml_like(text, scenario)
     assert scenario_from_text(saved.encode(), "") == scenario
     return saved
+
+
+MOVED = _listed("jammers", 0, {"position_m": (17.0, 15.5, 4.0)})
+IN_WATTS = _listed("nodes", 0, {"power_w": 0.3, "power_dbm": None})
 
 
 @pytest.mark.parametrize(
     ("edit", "before", "after"),
     [
-        (_listed("jammers", 0, {"position_m": (17.0, 15.5, 4.0)}), "[17, 15, 4]", "[17, 15.5, 4]"),
+        (MOVED, "[17, 15, 4]", "[17, 15.5, 4]"),
         (_airspace(geofence_m=((-60.0, -60.0), (60.0, -61.0), (0.0, 90.0))), "[60, -60]", "[60, -61.0]"),
         (_listed("nodes", 0, {"power_dbm": 20.0}), "power_dbm = 30   # one", "power_dbm = 20.0   # one"),
-        (
-            _listed("nodes", 0, {"power_w": 0.3, "power_dbm": None}),
-            "power_dbm = 30   # one",
-            "power_w = 0.3   # one",
-        ),
+        (IN_WATTS, "power_dbm = 30   # one", "power_w = 0.3   # one"),
     ],
 )
 def test_only_what_changed_is_written_anew(edit: Edit, before: str, after: str) -> None:
     """One number of a list, in its place; a corner of a fence over several lines; a power in either unit."""
-    assert _hand_made(edit) == HAND_MADE.replace(before, after)
+    assert _saved(HAND_MADE, edit) == HAND_MADE.replace(before, after)
 
 
 def test_a_point_that_is_gone_takes_its_comments_along() -> None:
     """The comment above it and those within it, but not the one above the list, nor one that stands alone."""
-    without = _hand_made(_listed("jammers", 0, None))
+    without = _saved(HAND_MADE, _listed("jammers", 0, None))
     assert "roof" not in without
     assert without.endswith("# Jammers follow.\n\n\n# the end\n")
-    first = _hand_made(_listed("nodes", 0, None))
+    first = _saved(HAND_MADE, _listed("nodes", 0, None))
     assert "one watt" not in first
     assert "# All nodes.\n[[nodes]]\n# the second\n" in first
     assert 'name = "S2"' in first
@@ -199,13 +199,13 @@ def test_a_point_that_is_gone_takes_its_comments_along() -> None:
 
 def test_a_new_point_stands_behind_the_others_of_its_kind() -> None:
     """With an empty line before it."""
-    added = _hand_made(_added("nodes", "new", (1.0, 2.0, 0.0), 0.1))
+    edit = _added("nodes", "new", (1.0, 2.0, 0.0), 0.1)
+    added = _saved(HAND_MADE, edit)
     block = '[[nodes]]\nname = "new"\nposition_m = [1.0, 2.0, 0.0]\npower_w = 0.1\n'
     head, tail = HAND_MADE.split("\n# Jammers follow.")
     assert added == f"{head}\n{block}\n# Jammers follow.{tail}"
     late = f"{HAND_MADE}\n[[airspace.no_fly]]\ncentre_m = [5, 5]\nradius_m = 3\n"
-    edit = _added("nodes", "new", (1.0, 2.0, 0.0), 0.1)
-    assert toml_like(late, edit(scenario_from_text(late.encode(), ""))) == late.replace(HAND_MADE, added)
+    assert _saved(late, edit) == late.replace(HAND_MADE, added)
 
 
 def test_powers_in_dbm_stay_in_dbm() -> None:
@@ -233,14 +233,11 @@ nodes = [
   {{ position_m = [9, 0, 0], power_w = 1 }},  # the second
 ]
 {head}"""
-    scenario = scenario_from_text(text.encode(), "")
-    for edit in (
+    moved, added = (
         _listed("nodes", 1, {"position_m": (8.0, 0.0, 0.0)}),
         _added("jammers", "M", (1.0, 2.0, 0.0), 2.0),
-    ):
-        scenario = edit(scenario)
-    saved = toml_like(text, scenario)
-    assert scenario_from_text(saved.encode(), "") == scenario
+    )
+    saved = _saved(text, moved, added)
     assert "  { position_m = [0, 0, 0], power_w = 1 },  # the first\n" in saved
     assert re.search("8.0, 0.0, 0.0.*},  # the second\n", saved)
     assert saved.endswith('[[jammers]]\nname = "M"\nposition_m = [1.0, 2.0, 0.0]\npower_w = 2.0\n')
