@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from importlib import import_module
-from typing import Any
+from types import ModuleType
 
 from nullpose.errors import UsageError
 
 _MOST_ROWS = 40
 
 
-def imported(package: str) -> Any:
+def imported(package: str) -> ModuleType:
     """Import an optional package, as in ``pandas``.
 
     Raises:

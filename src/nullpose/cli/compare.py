@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Callable
+from typing import Annotated
 
 import typer
 
 from nullpose.cli.options import Fast, FigureFile, JsonOutput, ProofOptions, SceneOptions, Width, expanded
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import Ticker
+from nullpose.files import PlainTable
 
 
 @expanded
@@ -33,9 +35,10 @@ def compare(
     prepare_outputs(scene, figure=figure, width=width)
     from nullpose.report.answer import answer_lines
     from nullpose.report.comparison import airframes_view, comparison_view
+    from nullpose.study import ResultTable
     from nullpose.study.vehicles import compare_airframes, compare_schemes, verdict
 
-    solver: Any = compare_airframes if airframes else compare_schemes
+    solver: Callable[..., ResultTable] = compare_airframes if airframes else compare_schemes
     with compiling_announced(), Ticker("comparing vehicles" if airframes else "solving") as ticker:
         found = solver(scenario, on_progress=ticker, **proof.keywords(fast))
     if figure is not None:
@@ -44,5 +47,5 @@ def compare(
 
         write_figure_file(draw_comparison(found, width), figure)
     view = airframes_view if airframes else comparison_view
-    answer: dict[str, Any] = {"answer": answer_lines(found), **verdict(found)} if airframes else {}
+    answer: PlainTable = {"answer": answer_lines(found), **verdict(found)} if airframes else {}
     tell(found, view, json_output, files=[] if figure is None else [figure], **answer)

@@ -32,7 +32,7 @@ _WRONG_USAGE: Any = typer.BadParameter.__mro__[1]  # what the parser raises of a
 class FaultReportingGroup(TyperGroup):
     """The command line's verbs; what they raise on purpose ends as a message, never as a traceback."""
 
-    def invoke(self, ctx: Any) -> Any:
+    def invoke(self, ctx: Any) -> object:
         """Run the verb, or end the process with a message and an exit code."""
         as_json = "--json" in [*ctx._protected_args, *ctx.args]
         # the compiler of the kernels calls back from native code, where an interrupt becomes another error

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import typer
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.printing import say
 from nullpose.errors import SolveError, UsageError
+from nullpose.files import PlainTable
 
 if TYPE_CHECKING:
     from nullpose.cli.options import SceneOptions
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 class Plain(Protocol):
     """What can be printed as JSON."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return plain data."""
 
 

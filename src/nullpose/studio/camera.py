@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,9 @@ from numpy.typing import NDArray
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
 from nullpose.studio.ground import grid_m, scene_size_m
+
+if TYPE_CHECKING:
+    from viser import CameraHandle, InitialCameraConfig
 
 FloatArray = NDArray[np.float64]
 
@@ -27,7 +31,7 @@ _DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for
 """Ends of the drone's label and pattern, from its position, sizes of the scene."""
 
 
-def canvas_px(camera: Any) -> FloatArray:
+def canvas_px(camera: CameraHandle | InitialCameraConfig | SimpleNamespace) -> FloatArray:
     """Return the width and the height of a camera's canvas, (2,) pixels.
 
     Args:
@@ -37,7 +41,9 @@ def canvas_px(camera: Any) -> FloatArray:
     return np.array(size if all(size) else _CANVAS_PX, dtype=float)
 
 
-def aim(camera: Any, scenario: Scenario, pose: Pose | None = None) -> None:
+def aim(
+    camera: CameraHandle | InitialCameraConfig | SimpleNamespace, scenario: Scenario, pose: Pose | None = None
+) -> None:
     """Point a camera at the whole of a scene: points, drone, and the ground between them.
 
     The card covers nothing of it: where it would, the scene stands right of it or below it, whichever is

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from nullpose.studio.edits import ADDED
 from nullpose.studio.field_map import MAPS
 from nullpose.studio.picking import FENCE
@@ -12,7 +10,7 @@ from nullpose.studio.state import POWER_DB
 NO_CASE = "nothing"
 """In the choice of a second case: there is none."""
 
-TABS: dict[str, dict[str, tuple[str, str, str, dict[str, Any]]]] = {
+TABS: dict[str, dict[str, tuple[str, str, str, dict[str, object]]]] = {
     "Scene": {
         "power": (
             "multi_slider",  # of one handle: viser's other one has a field that takes every keystroke

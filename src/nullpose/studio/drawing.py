@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,7 +27,7 @@ class Shape(NamedTuple):
     """
 
     kind: str
-    values: dict[str, Any]
+    values: Mapping[str, object]
     key: Key | None = None
 
 
@@ -47,7 +48,7 @@ def frame(position_m: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = 
     return Shape("frame", values)
 
 
-def mesh(surface: Mesh, colour: ArrayLike, **style: Any) -> Shape:
+def mesh(surface: Mesh, colour: ArrayLike, **style: object) -> Shape:
     """Describe a mesh.
 
     Args:

@@ -75,7 +75,7 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
         turn_rad = 0.0 if antenna.is_axisymmetric else _TURN_RAD * round(azimuth_rad / _TURN_RAD)
         towards = turn_about_z(azimuth_rad if antenna.is_axisymmetric else 0.0)
         surface = _pattern(antenna, turn_rad, look.slots[1] if slot else None)
-        sized = surface._replace(values=surface.values | {"scale": _FULL * size_m})
+        sized = surface._replace(values={**surface.values, "scale": _FULL * size_m})
         shapes |= {"body/antenna/pattern": frame(rotation=towards), "body/antenna/pattern/surface": sized}
     if _has_null(antenna):
         shapes |= _null(result, body @ mount, size_m, look, has_angle=slot == 0)

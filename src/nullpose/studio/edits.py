@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import count
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,7 +33,7 @@ ADDED: dict[str, Kind] = {
 }
 """What a click on the ground can add, with the list of the scenario that it goes to."""
 
-_TABLES: dict[Kind, Any] = {
+_TABLES: dict[Kind, type[GroundPoint] | type[NoFlyZone]] = {
     "nodes": Node,
     "jammers": Jammer,
     "eavesdroppers": Eavesdropper,
@@ -103,7 +102,7 @@ def with_added(state: State, what: str, place_m: ArrayLike, size_m: float) -> St
     table, members = _TABLES[kind], state.members(kind)
     taken = {member.name for each in KINDS for member in state.members(each)}
     east, north = (round(float(number), 2) for number in np.asarray(place_m))
-    values: dict[str, Any] = {
+    values: dict[str, object] = {
         "name": next(name for i in count(1) if (name := f"{table.letter}{i}") not in taken)
     }
     if kind == "no_fly":
@@ -158,7 +157,7 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
     member, path = state.members(kind)[index], f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
     labels = {"name": "name"} | _keys(member)
     entries = [Entry(f"{path}.{key}", label, _text(getattr(member, key))) for key, label in labels.items()]
-    if kind == "no_fly":
+    if isinstance(member, NoFlyZone):
         return tuple(entries)
     place = [
         Entry(f"{path}.position_m[{i}]", *each)
@@ -193,7 +192,7 @@ def _vehicle_entries(scenario: Scenario) -> Iterator[Entry]:
         yield Entry(path, label, _text(value))
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     """Return a number or a list as it is typed; empty for None."""
     if value is None:
         return ""

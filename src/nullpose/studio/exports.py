@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from io import BytesIO
 from textwrap import fill
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ from nullpose.studio.state import State
 from nullpose.studio.toml_like import toml_like
 
 if TYPE_CHECKING:
-    from viser import ClientHandle
+    from viser import CameraHandle, ClientHandle
 
 _PHONE_PX = {"image_width": 390, "image_height": 844}
 
@@ -87,7 +88,7 @@ def figure_png(state: State) -> bytes:
     return picture.getvalue()
 
 
-def scene_html(state: State, look: Look = LIGHT, camera: Any = None) -> bytes:
+def scene_html(state: State, look: Look = LIGHT, camera: CameraHandle | None = None) -> bytes:
     """Write the scene with its card as one HTML file that needs neither a server nor a network.
 
     Args:
@@ -157,7 +158,7 @@ def scene_png(state: State, client: ClientHandle, look: Look) -> bytes:
     return _with_legend(drawn, state, look)
 
 
-def _with_legend(drawn: NDArray[Any], state: State, look: Look) -> bytes:
+def _with_legend(drawn: NDArray[np.uint8], state: State, look: Look) -> bytes:
     """Set a picture on the page's ground, with rows of text and the map's colours below it."""
     from matplotlib.colors import to_rgb
     from matplotlib.figure import Figure
@@ -173,19 +174,18 @@ def _with_legend(drawn: NDArray[Any], state: State, look: Look) -> bytes:
     figure = Figure(figsize=(width / 100, (height + strip) / 100), dpi=100, facecolor=ground)
     figure.figimage(share * drawn[..., :3] / 255.0 + (1.0 - share) * np.array(to_rgb(ground)), 0, strip)
     size, tall, row_tall = 0.011 * width, strip / (height + strip), _ROW * width / (height + strip)
-    style: dict[str, Any] = {"color": ink, "va": "top", "size": size}
+    write = partial(figure.text, color=ink, va="top")
     for row, text in enumerate(rows):
         weight = "normal" if row % 2 else "bold"
-        figure.text(0.02, tall - row_tall * (row + 0.5), text, weight=weight, **style)
+        write(0.02, tall - row_tall * (row + 0.5), text, weight=weight, size=size)
     if state.scale is not None:
         (low, high), unit = state.scale.ends, state.scale.field.unit
         bar = figure.add_axes((0.62, 0.72 * tall, 0.36, 0.12 * tall))
         bar.imshow(scale_colours(np.linspace(0.0, 1.0, 256), 0.0, 1.0)[None], aspect="auto")
         bar.set_axis_off()
-        style["size"] = 0.75 * size
         ends = f"{low:g} to {high:g} {unit}".replace("-", MINUS)
         words = f"{ends}: {fill(state.scale.field.title, _LONGEST_TITLE)}"
-        figure.text(0.62, tall - 1.7 * row_tall, words, **style)
+        write(0.62, tall - 1.7 * row_tall, words, size=0.75 * size)
     picture = BytesIO()
     figure.savefig(picture, format="png", dpi=100, facecolor=ground)
     return picture.getvalue()

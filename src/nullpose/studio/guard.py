@@ -13,8 +13,14 @@ from functools import cache, partial
 from http import HTTPStatus
 from importlib.resources import files
 from ipaddress import ip_address
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 from urllib.parse import parse_qs
+
+if TYPE_CHECKING:
+    from websockets.asyncio.server import ServerConnection
+    from websockets.http11 import Request, Response
+
+_Answer: TypeAlias = "Callable[[ServerConnection, Request], Response | None]"
 
 _LOOPBACK_NAMES = {"localhost", "127.0.0.1", "::1"}
 _ALIVE = "/alive"  # where a page asks whether its studio still runs
@@ -66,7 +72,7 @@ class Guard:
 
         serve = server.serve
 
-        def guarded(*arguments: Any, process_request: Any = None, **options: Any) -> Any:
+        def guarded(*arguments: object, process_request: Any = None, **options: object) -> object:
             self.stands = process_request is not None
             options |= {"process_request": partial(self._answer, process_request), "logger": _log}
             return serve(*arguments, **options)
@@ -78,7 +84,7 @@ class Guard:
             finally:
                 server.serve = serve
 
-    def _answer(self, viser: Callable[[Any, Any], Any], connection: Any, request: Any) -> Any:
+    def _answer(self, viser: _Answer, connection: ServerConnection, request: Request) -> Response | None:
         """Return the response to a request; None lets a websocket be opened."""
         hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
         if not self._ours(hosts, origins, connection.local_address[1]):
@@ -106,7 +112,7 @@ class Guard:
         return self._anywhere or hosts[0].lower() in allowed
 
 
-def _page(viser: Callable[[Any, Any], Any], connection: Any, request: Any) -> Any:
+def _page(viser: _Answer, connection: ServerConnection, request: Request) -> Response | None:
     """Return viser's page with what the studio adds to it; None for a websocket."""
     request.headers.pop("Accept-Encoding", None)
     response = viser(connection, request)

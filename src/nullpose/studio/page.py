@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from viser import ClientHandle
+from viser import ClientHandle, SceneClickEvent, UploadedFile
 
 from nullpose.errors import NullposeError, ScenarioError
 from nullpose.scenario import Scenario
@@ -186,7 +186,7 @@ class Page:
             getattr(panel, name).on_click(lambda event, press=press: press())
         panel.add.on_click(lambda event: self.take_tool(event.target.value))
         panel.upload.on_upload(lambda event: self._load(event.target.value))
-        commands: list[tuple[str, Callable[[], object], str, Any]] = [
+        commands: list[tuple[str, Callable[[], object], str, str | None]] = [
             ("Undo", session.undo, "Z", "cmd/ctrl"),
             ("Redo", session.redo, "Z", "cmd/ctrl+shift"),
             ("Delete what is selected", self._delete, "delete", None),
@@ -235,7 +235,7 @@ class Page:
         if key is not None:
             self.change(lambda state: without(state, key), name="Deleting")
 
-    async def _clicked(self, event: Any) -> None:  # in order, since it runs in the loop
+    async def _clicked(self, event: SceneClickEvent) -> None:  # in order, since it runs in the loop
         eye_m, direction = np.array(event.ray_origin), np.array(event.ray_direction)
         name = "The fence" if self.session.state.corners_m else "The new point"
         self.change(lambda state: clicked(state, self.stage.size_m, eye_m, direction), name=name)
@@ -265,7 +265,7 @@ class Page:
         except NullposeError as error:
             self._notify("Not exported", str(error))
 
-    def _load(self, file: Any) -> None:
+    def _load(self, file: UploadedFile) -> None:
         def loaded(state: State) -> State:
             return state.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
 

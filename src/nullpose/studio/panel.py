@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Awaitable, Callable, Iterable
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ from nullpose.studio.session import History
 from nullpose.studio.state import POWER_DB
 
 if TYPE_CHECKING:
-    from viser import GuiApi
+    from viser import GuiApi, GuiDropdownHandle, GuiEvent, GuiFolderHandle, GuiTextHandle
 
 _HOW = "Click on the ground to place the {}. Escape ends it."
 _FENCE_HOW = (
@@ -111,10 +111,14 @@ class Panel(SimpleNamespace):
 class _Fields:
     """Values as fields in a folder of the panel: typed or chosen, and taken one by one."""
 
-    def __init__(self, gui: GuiApi, folder: Any, on_typed: Callable[[Entry, str], object]) -> None:
+    def __init__(
+        self, gui: GuiApi, folder: GuiFolderHandle, on_typed: Callable[[Entry, str], object]
+    ) -> None:
         self._gui, self._folder, self._on_typed = gui, folder, on_typed
         self._entries: dict[_Look, Entry] = {}
-        self._fields: dict[_Look, Any] = {}  # hidden and kept: to remove one costs more
+        self._fields: dict[
+            _Look, GuiDropdownHandle | GuiTextHandle
+        ] = {}  # hidden and kept: to remove one costs more
 
     def render(self, entries: Iterable[Entry]) -> None:
         """Show values; what is being typed stays while they are as they were."""
@@ -128,12 +132,12 @@ class _Fields:
                 self._fields[look] = self._added(entry)
             put(self._fields[look], value=entry.text, order=float(place))
 
-    def _added(self, entry: Entry) -> Any:
+    def _added(self, entry: Entry) -> GuiDropdownHandle | GuiTextHandle:
         gui, look = self._gui, (entry.label, entry.options)
         hint = f"{entry.path.rpartition('.')[2]}; Enter takes it, and so does leaving the field."
         add = partial(gui.add_dropdown, options=entry.options) if entry.options else gui.add_text
         with self._folder:
-            field: Any = add(entry.label, initial_value=entry.text, hint=hint)
+            field = add(entry.label, initial_value=entry.text, hint=hint)
         field.on_update(by_hand(partial(self._typed, look)))
         return field
 
@@ -144,7 +148,7 @@ class _Fields:
         self._fields[look].value = self._entries[look].text  # also if viser has it already
 
 
-def put(handle: Any, **values: object) -> None:
+def put(handle: object, **values: object) -> None:
     """Set what differs of a control: what is set as it was would be sent all the same.
 
     Args:
@@ -156,14 +160,14 @@ def put(handle: Any, **values: object) -> None:
             setattr(handle, name, value)
 
 
-def by_hand(action: Callable[[Any], object]) -> Any:
+def by_hand(action: Callable[[Any], object]) -> Callable[[GuiEvent], Awaitable[None]]:
     """Return a callback of a control for what a user does, and not the program; called in order, in the loop.
 
     Args:
         action: called with the control's new value.
     """
 
-    async def callback(event: Any) -> None:
+    async def callback(event: GuiEvent) -> None:
         if event.client is not None:
             action(event.target.value)
 

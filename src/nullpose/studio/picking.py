@@ -69,7 +69,7 @@ def picked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) 
     ground_m = ground_place_m(size_m, eye_m, direction)
     if ground_m is None:
         return None
-    for i, zone in enumerate(state.members("no_fly")):
+    for i, zone in enumerate(state.scenario.airspace.no_fly):
         if zone.depth_m([*ground_m, np.clip(0.0, zone.floor_m, zone.ceiling_m)]) >= 0.0:
             return "no_fly", i
     return None

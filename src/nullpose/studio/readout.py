@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from nullpose.solver import Result
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.look import DARK, LIGHT, css, either
 from nullpose.studio.state import State
+
+if TYPE_CHECKING:
+    from jinja2.environment import TemplateModule
 
 _MOST_NULLS = 4
 
@@ -145,7 +148,7 @@ def failure_html(error: ScenarioError | None, name: str = "") -> str:
 
 
 @cache
-def macros(template: str = "page.html.jinja") -> Any:
+def macros(template: str = "page.html.jinja") -> TemplateModule:
     """Load the macros of a template; a text of a scenario is never markup.
 
     Args:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from viser import SceneApi
+from viser import SceneApi, SceneNodeHandle, TransformControlsEvent
 
 from nullpose.report.numbers import MINUS
 from nullpose.studio.drawing import FLAT, Shape, Shapes, label, lines
@@ -47,7 +46,7 @@ class Stage:
     def __init__(self, scene: SceneApi, look: Look = LIGHT, on_drag: OnDrag | None = None) -> None:
         self._scene, self._look, self._on_drag = scene, look, on_drag
         self._shapes: Shapes = {}
-        self._handles: dict[str, Any] = {}
+        self._handles: dict[str, SceneNodeHandle] = {}
         self.size_m = np.inf
         self.eye_m: ArrayLike = np.ones(3)
 
@@ -85,16 +84,18 @@ class Stage:
         handle = self._handles[name] = getattr(self._scene, f"add_{shape.kind}")(name, **shape.values)
         if shape.key is not None and self._on_drag is not None:
 
-            async def on_update(event: Any, key: Key = shape.key, on_drag: OnDrag = self._on_drag) -> None:
+            async def on_update(
+                event: TransformControlsEvent, key: Key = shape.key, on_drag: OnDrag = self._on_drag
+            ) -> None:
                 on_drag(key, np.array(event.target.position, dtype=float), event.phase)
 
             handle.on_update(on_update)
 
 
-def _same(before: Any, value: Any) -> bool:
+def _same(before: object, value: object) -> bool:
     if before is value:
         return True
-    return np.array_equal(before, value) if isinstance(value, np.ndarray) else before == value
+    return np.array_equal(np.asarray(before), value) if isinstance(value, np.ndarray) else before == value
 
 
 @lru_cache(8)

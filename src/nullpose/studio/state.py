@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, TypeVar
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from nullpose.errors import Fault, ScenarioError
 from nullpose.physics import from_db, to_db
 from nullpose.report.numbers import MINUS
-from nullpose.scenario import GroundPoint, Scenario
+from nullpose.scenario import GroundPoint, NoFlyZone, Scenario
 from nullpose.studio.answer import Answer, Notice, PowerCurve, Progress, status_words
 from nullpose.studio.case import OPTIMUM, Case, cases_of
 from nullpose.studio.field_map import MAPS, FieldMap, Scale
@@ -153,20 +153,20 @@ class State:
     def points(self) -> Iterator[tuple[Key, GroundPoint]]:
         """Yield every ground point with its key."""
         for kind in KINDS[:-1]:
-            for index, point in enumerate(self.members(kind)):
+            for index, point in enumerate(getattr(self.scenario, kind)):
                 yield (kind, index), point
 
-    def members(self, kind: Kind) -> tuple[Any, ...]:
+    def members(self, kind: Kind) -> tuple[GroundPoint | NoFlyZone, ...]:
         """Return a list of the scenario."""
         return tuple(getattr(self.scenario.airspace if kind == "no_fly" else self.scenario, kind))
 
-    def with_members(self, kind: Kind, members: Iterable[Any]) -> State:
+    def with_members(self, kind: Kind, members: Iterable[GroundPoint | NoFlyZone]) -> State:
         """Return the state with another list in the scenario.
 
         Raises:
             ScenarioError: the scenario would be faulty.
         """
-        update: dict[str, Any] = {kind: tuple(members)}
+        update: dict[str, object] = {kind: tuple(members)}
         if kind == "no_fly":
             update = {"airspace": self.scenario.airspace.model_copy(update=update)}
         return self.with_scenario(self.scenario.model_copy(update=update))

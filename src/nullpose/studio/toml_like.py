@@ -7,11 +7,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
+from nullpose.files import PlainTable
 from nullpose.scenario import Scenario
 from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.toml_file import tables_of
-
-_Table = dict[str, Any]
 
 _FILES = re.compile(r"^[ \t]*(?:airspace\.)?(?:nodes|geofence|no_fly)_from\b.*\n", re.MULTILINE)
 _HEADER = re.compile(r"^([ \t]*\[\[?[ \t]*[\"'A-Za-z].*\n)", re.MULTILINE)  # and no line of a list of numbers
@@ -55,7 +54,7 @@ def toml_like(text: str, scenario: Scenario) -> str:
     return scenario.to_toml()
 
 
-def _stated_values(raw: _Table, new: _Table) -> _Table:
+def _stated_values(raw: PlainTable, new: PlainTable) -> PlainTable:
     """Return the plain values of what a file states by itself, without the files that it names."""
     if "file" in raw.get("antenna", {}):
         raw["antenna"].setdefault("harmonics", [[-1.0]])  # in place of those in the file
@@ -67,7 +66,7 @@ def _stated_values(raw: _Table, new: _Table) -> _Table:
     return old if "nodes" in raw else old | {"nodes": []}
 
 
-def _updated(text: str, old: _Table, new: _Table) -> str:
+def _updated(text: str, old: PlainTable, new: PlainTable) -> str:
     blocks = _blocks(f"{text}\n")
     for path in _PATHS:
         _update(blocks, path, _tables(old, path), _tables(new, path))
@@ -84,14 +83,14 @@ def _blocks(text: str) -> list[_Block]:
     return list(map(_Block, paths, ["", *gaps], ["", *leads], headers, [*bodies, ""]))
 
 
-def _tables(values: Any, path: str) -> list[_Table]:
+def _tables(values: Any, path: str) -> list[PlainTable]:
     """Return the tables of a path, none if there are none."""
     for key in path.split(".") if path else ():
         values = values.get(key, [])
     return [table for table in (values if isinstance(values, list) else [values]) if isinstance(table, dict)]
 
 
-def _update(blocks: list[_Block], path: str, old: list[_Table], new: list[_Table]) -> None:
+def _update(blocks: list[_Block], path: str, old: list[PlainTable], new: list[PlainTable]) -> None:
     """Bring the tables of one path up to date."""
     members, stay = [block for block in blocks[:-1] if block.path == path], _staying(old, new)
     if len(members) != len(old):
@@ -112,7 +111,7 @@ def _update(blocks: list[_Block], path: str, old: list[_Table], new: list[_Table
         blocks.insert(after + 1, _Block(path, "\n", "", header, _edited("", {}, table)))
 
 
-def _staying(old: list[_Table], new: list[_Table]) -> dict[int, int]:
+def _staying(old: list[PlainTable], new: list[PlainTable]) -> dict[int, int]:
     """Map the tables that stay from old place to new: those of the same name, or renamed in place."""
     before, after = ([table.get("name") for table in tables] for tables in (old, new))
     return {
@@ -122,7 +121,7 @@ def _staying(old: list[_Table], new: list[_Table]) -> dict[int, int]:
     }
 
 
-def _edited(body: str, old: _Table, new: _Table) -> str:
+def _edited(body: str, old: PlainTable, new: PlainTable) -> str:
     """Return the keys of a table with their new values; a key that gives way to another has its place."""
     import tomlkit
 
@@ -144,7 +143,7 @@ def _edited(body: str, old: _Table, new: _Table) -> str:
     return str(tomlkit.dumps(table))
 
 
-def _put(holder: Any, key: Any, old: Any, new: Any) -> None:
+def _put(holder: Any, key: str | int, old: object, new: object) -> None:
     """Replace a value, or of a list only the parts of it that are others now."""
     if isinstance(new, list) and isinstance(old, list) and len(holder[key]) == len(old) == len(new):
         for place, value in enumerate(new):
