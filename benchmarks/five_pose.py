@@ -17,8 +17,8 @@ from nullpose.physics import Pose
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
-from nullpose.solver.kernels.jit import heap_kernel
-from nullpose.solver.kernels.links import derivatives, min_log_ratio
+from nullpose.solver.kernels.compiler.jit import heap_kernel
+from nullpose.solver.kernels.linear_algebra.links import derivatives, min_log_ratio
 
 DIMENSIONS = 5
 

@@ -5,8 +5,8 @@ import pytest
 
 from nullpose.antenna.caps import pattern_arrays
 from nullpose.antenna.harmonics import Harmonics
-from nullpose.solver.kernels.harmonics import cap_bounds, gain_at, gain_jet
-from nullpose.solver.kernels.jit import kernel
+from nullpose.solver.kernels.compiler.jit import kernel
+from nullpose.solver.kernels.linear_algebra.harmonics import cap_bounds, gain_at, gain_jet
 
 STEP = 2e-3  # of differences, radians
 

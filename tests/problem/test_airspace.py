@@ -7,7 +7,7 @@ from hypothesis import given, settings, strategies as st
 from nullpose.problem.airspace import FENCE, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, airspace_zones
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
-from nullpose.solver.kernels.zones import in_zone
+from nullpose.solver.kernels.search.zones import in_zone
 
 SEEDS = st.integers(0, 2**32 - 1)
 HIGH_M = 40.0

@@ -18,7 +18,7 @@ from nullpose.scenario import Array, Scenario
 from nullpose.solver import Result, Status, solve
 from nullpose.solver.array import array_bound
 from nullpose.solver.array_search import ArraySearch
-from nullpose.solver.kernels.domain import walls
+from nullpose.solver.kernels.search.domain import walls
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

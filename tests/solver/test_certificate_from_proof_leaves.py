@@ -6,7 +6,7 @@ import numpy as np
 
 from nullpose.certificate.certificate import FAR, WORLD
 from nullpose.solver.certificate_from_proof import leaves_of
-from nullpose.solver.kernels import node
+from nullpose.solver.kernels.bounds import node
 
 
 def proof_of(

@@ -16,7 +16,7 @@ from nullpose.solver.compiling import PREPARING, working_clock
 PAPER = Path(__file__).parents[2] / "examples" / "paper.toml"
 
 KERNELS = """
-from nullpose.solver.kernels.jit import kernel
+from nullpose.solver.kernels.compiler.jit import kernel
 
 
 @kernel

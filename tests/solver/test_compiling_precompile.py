@@ -8,11 +8,11 @@ import pytest
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.solver.compiling import compile_proof, compile_search, precompile
-from nullpose.solver.kernels.branch import branch
-from nullpose.solver.kernels.links import min_log_ratio
-from nullpose.solver.kernels.node import keep_largest
-from nullpose.solver.kernels.root import fill_root
-from nullpose.solver.kernels.search import search_and_climb
+from nullpose.solver.kernels.bounds.branch import branch
+from nullpose.solver.kernels.bounds.node import keep_largest
+from nullpose.solver.kernels.bounds.root import fill_root
+from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.search.search import search_and_climb
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.solve_and_prove import solve_and_prove
 

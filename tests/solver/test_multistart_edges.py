@@ -9,7 +9,7 @@ import pytest
 
 from nullpose.physics import sinr
 from nullpose.solver import Scheme, solve
-from nullpose.solver.kernels.axis import best_axis, best_axis_of_forms
+from nullpose.solver.kernels.linear_algebra.axis import best_axis, best_axis_of_forms
 
 UP = np.array([0.0, 0.0, 1.0])
 BOXED_NODES = [

@@ -9,9 +9,9 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario, apply_overrides, load
-from nullpose.solver.kernels import node
-from nullpose.solver.kernels.axis import best_axis
-from nullpose.solver.kernels.links import min_log_ratio
+from nullpose.solver.kernels.bounds import node
+from nullpose.solver.kernels.linear_algebra.axis import best_axis
+from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.multistart import multistart
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import Proof, prove

@@ -168,7 +168,7 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
         WrongTypeError: no scenario was given, but the path of one, say.
         UsageError: the position is not three finite numbers, or is too close to a ground point.
     """
-    from nullpose.solver.kernels.axis import best_axis as kernel
+    from nullpose.solver.kernels.linear_algebra.axis import best_axis as kernel
 
     position = as_position(position_m)
     family = build_family(scenario)

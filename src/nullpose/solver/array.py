@@ -150,7 +150,7 @@ def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
     """Bound the smallest ratio over all positions, yaws and weights, by branch and bound.
 
     A branch and bound over positions and yaws, the best first
-    (:mod:`nullpose.solver.kernels.array_enclosure` bounds a box): it stops at the gap asked for or
+    (:mod:`nullpose.solver.kernels.bounds.array_enclosure` bounds a box): it stops at the gap asked for or
     at a number of boxes, with the bound reached. Turning the vehicle by half a turn, or a circle by one of
     its elements, changes nothing; so that much yaw is looked at. One element is the vertical case, whose own
     branch and bound is used.
@@ -163,7 +163,7 @@ def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
     upright = _vertical_bound(search, gap)
     if search.elements == 1 or upright.value <= value * (1.0 + gap):
         return upright
-    from nullpose.solver.kernels.array_branch import branch_array
+    from nullpose.solver.kernels.bounds.array_branch import branch_array
 
     most = _WORK / (nodes * (1 + len(search.problem.points_m) - nodes) * search.elements)
     low_m, high_m = search.box(search.best)

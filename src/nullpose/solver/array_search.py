@@ -73,7 +73,7 @@ class ArraySearch(EpigraphSearch):
 
     def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the smallest log ratio of states."""
-        from nullpose.solver.kernels.array_response import judge_array
+        from nullpose.solver.kernels.search.array_response import judge_array
 
         values = np.empty(len(states))
         judge_array(self.problem, self.family.domain, states, values)
@@ -86,7 +86,7 @@ class ArraySearch(EpigraphSearch):
 
     def ratios(self, state: FloatArray, step: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Evaluate the log ratios of a moved state, and their slopes."""
-        from nullpose.solver.kernels.array_response import respond
+        from nullpose.solver.kernels.search.array_response import respond
 
         logs, slopes = np.empty(self.problem.nodes), np.empty((self.problem.nodes, 4))
         respond(self.problem, self.move(state, step), logs, slopes)

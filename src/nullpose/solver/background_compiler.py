@@ -15,8 +15,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from nullpose.solver.kernels import interpreted
-from nullpose.solver.kernels.notices import UNCACHED, warn_once
+from nullpose.solver.kernels.compiler import interpreted
+from nullpose.solver.kernels.compiler.notices import UNCACHED, warn_once
 
 _LOOK_S = 0.1  # between two looks at the processes
 _QUIET_S = 3.0  # nobody is told of what takes no longer
@@ -78,8 +78,9 @@ class BackgroundCompiler:
             if request not in self._requests:  # otherwise it was compiled in vain, unless it still is
                 if not self._is_busy():
                     self._began, self._looked = time.monotonic(), time.monotonic() - _LOOK_S
+                if not self._requests:  # all commands begin with the same kernels, and meet at this folder
+                    self._folder = kernel.stats.cache_path
                 self._requests.append(request)
-                self._folder = kernel.stats.cache_path
         return self.is_busy()
 
     def is_busy(self) -> bool:

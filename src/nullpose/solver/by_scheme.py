@@ -99,7 +99,7 @@ def solve_scheme(
 
 def _by_values(record: SchemeRecord, family: Family, options: SolveOptions) -> Outcome:
     """Search by values, the axis serving the nodes best, and take the bound of a free axis."""
-    from nullpose.solver.kernels.maximum_gain import maximum_gain_value
+    from nullpose.solver.kernels.search.maximum_gain import maximum_gain_value
 
     axis = np.empty(3)
     log_value = partial(maximum_gain_value, family.arrays, axis=axis)

@@ -37,7 +37,7 @@ def leaves_of(proof: Proof, axis: str) -> Leaves:
 
 
 def _of_dipole(proof: Proof) -> Leaves:
-    from nullpose.solver.kernels import node
+    from nullpose.solver.kernels.bounds import node
 
     rows = proof.leaves
     test = rows[:, node.KIND].astype(np.int64)
@@ -66,7 +66,7 @@ def _of_dipole(proof: Proof) -> Leaves:
 
 def _of_profile(proof: Proof) -> Leaves:
     """Convert leaves of an antenna that is the same all round; they all hold at the bound."""
-    from nullpose.solver.kernels.attitude import ANCHOR, CHART, HALF, WARM
+    from nullpose.solver.kernels.bounds.attitude import ANCHOR, CHART, HALF, WARM
 
     rows, none = proof.leaves, np.zeros(len(proof.leaves))
     widest = math.pi / 2.0 if proof.is_even else math.pi

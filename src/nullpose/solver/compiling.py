@@ -15,7 +15,7 @@ import numpy as np
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.background_compiler import BackgroundCompiler
-from nullpose.solver.kernels import interpreted
+from nullpose.solver.kernels.compiler import interpreted
 
 _ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
 
@@ -89,7 +89,7 @@ def precompile(dipoles: bool) -> None:
     """
     from numba.core import event
 
-    from nullpose.solver.kernels.branch import branch
+    from nullpose.solver.kernels.bounds.branch import branch
 
     if _is_compiled(branch, dipoles):
         return
@@ -115,8 +115,8 @@ def compile_proof(dipoles: bool) -> None:
     Args:
         dipoles: whether for ratios of points with dipoles.
     """
-    from nullpose.solver.kernels import branch, node
-    from nullpose.solver.kernels.records import Goal
+    from nullpose.solver.kernels.bounds import branch, node
+    from nullpose.solver.kernels.bounds.records import Goal
 
     family, field = _smallest_family(dipoles), AxisField.free()
     row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
@@ -130,10 +130,10 @@ def compile_search(dipoles: bool) -> None:
     Args:
         dipoles: whether for ratios of points with dipoles.
     """
-    from nullpose.solver.kernels.links import min_log_ratio
-    from nullpose.solver.kernels.node import COLUMNS, keep_largest
-    from nullpose.solver.kernels.root import fill_root
-    from nullpose.solver.kernels.search import search_and_climb
+    from nullpose.solver.kernels.bounds.node import COLUMNS, keep_largest
+    from nullpose.solver.kernels.bounds.root import fill_root
+    from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+    from nullpose.solver.kernels.search.search import search_and_climb
     from nullpose.solver.multistart import climb
 
     if _is_compiled(search_and_climb, dipoles):

@@ -58,7 +58,7 @@ class LocalSearch(ABC):
 
     def box(self, log_value: float) -> tuple[FloatArray, FloatArray]:
         """Return corners of a box outside which no state has its smallest log ratio above a value."""
-        from nullpose.solver.kernels.search import cut_box
+        from nullpose.solver.kernels.search.search import cut_box
 
         low_m, high_m, family = np.empty(3), np.empty(3), self.family
         cut_box(self.loudest.arrays, family.low_m, family.high_m, log_value - _ROUNDING, low_m, high_m)
@@ -74,7 +74,7 @@ class LocalSearch(ABC):
         Returns:
             The best value that a climb ended at.
         """
-        from nullpose.solver.kernels.domain import push_out
+        from nullpose.solver.kernels.search.domain import push_out
 
         points_m, ends = self.family.points_m, [-math.inf]
         around_m = float(np.max(np.ptp(points_m, axis=0))) + 10.0 * self.family.keep_out_m
@@ -112,7 +112,7 @@ class LocalSearch(ABC):
 
     def _repair(self, position_m: FloatArray) -> FloatArray:
         """Move a position into the domain if it is a little outside."""
-        from nullpose.solver.kernels.domain import walls
+        from nullpose.solver.kernels.search.domain import walls
 
         low_m, high_m = self.family.low_m, self.family.high_m
         position_m = np.clip(position_m, low_m, high_m)
@@ -150,7 +150,7 @@ class EpigraphSearch(LocalSearch):
         """Climb to a local optimum, and keep it if it is the best so far; return its value."""
         from scipy.optimize import minimize
 
-        from nullpose.solver.kernels.domain import walls
+        from nullpose.solver.kernels.search.domain import walls
 
         value, unit_m, size = self.take(state), self.unit_m(state), 3 + self.angles
 

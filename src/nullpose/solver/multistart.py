@@ -185,8 +185,8 @@ def _run(
     steps: int = _CLIMB_STEPS,
     pose: tuple[FloatArray, FloatArray] | None = None,
 ) -> Incumbent:
-    from nullpose.solver.kernels.jit import entry_of
-    from nullpose.solver.kernels.search import search_and_climb
+    from nullpose.solver.kernels.compiler.jit import entry_of
+    from nullpose.solver.kernels.search.search import search_and_climb
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
     ratios = family.arrays

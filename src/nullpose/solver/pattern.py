@@ -85,8 +85,8 @@ class PatternRun(BranchAndBound):
 
     def outcome(self) -> Outcome:
         """Return the best pose and what is proved of it."""
-        from nullpose.solver.kernels.pattern_branch import branch_pattern
-        from nullpose.solver.kernels.root import reach_by_distance
+        from nullpose.solver.kernels.bounds.pattern_branch import branch_pattern
+        from nullpose.solver.kernels.bounds.root import reach_by_distance
 
         self.branch = branch_pattern
         self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
@@ -188,7 +188,7 @@ class PatternRun(BranchAndBound):
 
     def _roots(self, low_m: FloatArray, high_m: FloatArray) -> Iterator[FloatArray]:
         """Yield cells of positions in a box and of all attitudes, to begin with."""
-        from nullpose.solver.kernels import attitude as a
+        from nullpose.solver.kernels.bounds import attitude as a
 
         middle, half = 0.5 * (low_m + high_m), 0.5 * (high_m - low_m)
         anchor = self.search.anchor

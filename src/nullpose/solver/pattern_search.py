@@ -71,7 +71,7 @@ class PatternSearch(EpigraphSearch):
 
     def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the smallest log ratio of states."""
-        from nullpose.solver.kernels.pattern_search import judge
+        from nullpose.solver.kernels.search.pattern_search import judge
 
         values = np.empty(len(states))
         judge(self.family.arrays, self.family.domain, self.pattern, states, values)
@@ -80,7 +80,7 @@ class PatternSearch(EpigraphSearch):
 
     def move(self, state: FloatArray, step: FloatArray) -> FloatArray:
         """Move a state by a step."""
-        from nullpose.solver.kernels.pattern_search import move
+        from nullpose.solver.kernels.search.pattern_search import move
 
         position_m, rotation = np.empty(3), np.empty((3, 3))
         move(self.reach, state, step, self.unit_m(state), position_m, rotation)
@@ -88,7 +88,7 @@ class PatternSearch(EpigraphSearch):
 
     def ratios(self, state: FloatArray, step: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Evaluate the log ratios of a moved state, and their slopes."""
-        from nullpose.solver.kernels.pattern_search import fill_slopes
+        from nullpose.solver.kernels.search.pattern_search import fill_slopes
 
         count = len(self.family.numerator_point)
         logs, slopes = np.empty(count), np.empty((count, 6))
@@ -142,7 +142,7 @@ class PatternSearch(EpigraphSearch):
 
     def _bring_within_reach(self, rotations: FloatArray) -> FloatArray:
         """Turn rotations, (..., 3, 3), to the nearest that the airframe reaches, exact to rounding."""
-        from nullpose.solver.kernels.pattern_search import bring_within_reach
+        from nullpose.solver.kernels.search.pattern_search import bring_within_reach
 
         nearest = np.array(rotations, order="C")
         for each in nearest.reshape(-1, 3, 3):

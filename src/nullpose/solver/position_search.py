@@ -51,7 +51,7 @@ class PositionSearch(LocalSearch):
 
     def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the objective at positions."""
-        from nullpose.solver.kernels.domain import contains
+        from nullpose.solver.kernels.search.domain import contains
 
         self.evaluations += len(states)
         allowed = (contains(self.family.domain, state) for state in states)

@@ -85,8 +85,8 @@ class _Run(BranchAndBound):
         bound: float,
         search: Callable[[], Incumbent] | None,
     ) -> None:
-        from nullpose.solver.kernels import branch, node, root
-        from nullpose.solver.kernels.jit import entry_of
+        from nullpose.solver.kernels.bounds import branch, node, root
+        from nullpose.solver.kernels.compiler.jit import entry_of
 
         super().__init__(limits, began, nodes)
         ratios = family.arrays
@@ -161,7 +161,7 @@ class _Run(BranchAndBound):
         return workers.size_bytes + self.leaves.nbytes <= _MOST_BYTES
 
     def exclusion_kernel(self, gap: float) -> Kernel:
-        from nullpose.solver.kernels.records import Goal
+        from nullpose.solver.kernels.bounds.records import Goal
 
         goal = Goal(self.value * (1.0 + self.rounding), self.incumbent_row)
         family, level = self.family, self.value * (1.0 + gap)
@@ -172,7 +172,7 @@ class _Run(BranchAndBound):
 
     def _climb_from(self, position_m: FloatArray, axis: FloatArray, mu: float) -> None:
         """Take up a pose, or the local maximum that it leads to."""
-        from nullpose.solver.kernels.links import min_log_ratio
+        from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 
         family = self.family.arrays
         logs = np.empty(len(family.denominator_isotropic)), np.empty(len(family.numerator_point))

@@ -59,7 +59,7 @@ class _Worker:
 
     def work(self, kernel: Kernel, budget: int) -> int:
         """Work off a budget of nodes, or less if one beats the incumbent; return how many it was."""
-        from nullpose.solver.kernels.branch import BETTER
+        from nullpose.solver.kernels.bounds.branch import BETTER
 
         self.better, total = False, 0
         while self.top and total < budget and not self.better:

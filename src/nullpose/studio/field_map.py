@@ -101,7 +101,7 @@ def map_kernel_is_ready() -> bool:
 @cache
 def _compiler() -> BackgroundCompiler:
     """Return the compiler of the kernel, after one call that needs it."""
-    from nullpose.solver.kernels.axis import best_axis
+    from nullpose.solver.kernels.linear_algebra.axis import best_axis
 
     compiler = BackgroundCompiler()
     with compiler.in_use():

@@ -178,7 +178,7 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
 
 
 def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
-    from nullpose.solver.kernels.axis import best_axis
+    from nullpose.solver.kernels.linear_algebra.axis import best_axis
 
     arrays = build_family(scenario).arrays
     axes = np.empty_like(positions_m)

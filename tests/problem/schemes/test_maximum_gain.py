@@ -10,7 +10,7 @@ from scipy.optimize import differential_evolution
 from nullpose.physics import antenna_gain, maximum_gain_sinr
 from nullpose.problem.build import build_family
 from nullpose.solver import Scheme, Status, solve
-from nullpose.solver.kernels.maximum_gain import maximum_gain_value
+from nullpose.solver.kernels.search.maximum_gain import maximum_gain_value
 
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 3.0, 10.0])

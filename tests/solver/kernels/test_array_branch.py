@@ -8,8 +8,8 @@ import pytest
 
 from nullpose.scenario import Array, Scenario
 from nullpose.solver.array_search import ArraySearch
-from nullpose.solver.kernels.array_branch import branch_array
-from nullpose.solver.kernels.array_response import array_value
+from nullpose.solver.kernels.bounds.array_branch import branch_array
+from nullpose.solver.kernels.search.array_response import array_value
 
 LOW, HIGH = np.array([0.0, 0.0, 8.0, -math.pi / 2]), np.array([60.0, 60.0, 12.0, math.pi / 2])
 

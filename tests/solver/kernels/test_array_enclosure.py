@@ -9,8 +9,8 @@ import pytest
 
 from nullpose.scenario import Array, Scenario
 from nullpose.solver.array_search import ArraySearch
-from nullpose.solver.kernels.array_enclosure import box_bound
-from nullpose.solver.kernels.array_response import array_value, respond
+from nullpose.solver.kernels.bounds.array_enclosure import box_bound
+from nullpose.solver.kernels.search.array_response import array_value, respond
 
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=4)))
 

@@ -8,7 +8,7 @@ import pytest
 from nullpose.physics.array import digital_sinr, element_positions
 from nullpose.scenario import Array
 from nullpose.solver.array_search import ArraySearch
-from nullpose.solver.kernels.array_response import array_value, respond
+from nullpose.solver.kernels.search.array_response import array_value, respond
 
 CASES = [(1, "linear"), (2, "linear"), (5, "circular"), (8, "linear")]
 

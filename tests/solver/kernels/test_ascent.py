@@ -8,12 +8,12 @@ import pytest
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.ascent import POOL, Pool, ascend
-from nullpose.solver.kernels.dual import dual_multipliers
-from nullpose.solver.kernels.forms import congruence, fill_forms, inverse_factor
-from nullpose.solver.kernels.jit import heap_kernel
-from nullpose.solver.kernels.node import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
-from nullpose.solver.kernels.symmetric import top_eigenvector
+from nullpose.solver.kernels.bounds.ascent import POOL, Pool, ascend
+from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
+from nullpose.solver.kernels.compiler.jit import heap_kernel
+from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
+from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
+from nullpose.solver.kernels.linear_algebra.symmetric import top_eigenvector
 
 TOLERANCE = 1e-6
 

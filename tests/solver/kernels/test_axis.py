@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.axis import best_axis
+from nullpose.solver.kernels.linear_algebra.axis import best_axis
 
 SEEDS = st.integers(0, 2**32 - 1)
 ABOVE = np.array([0.0, 0.0, 10.0])

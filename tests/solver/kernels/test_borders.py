@@ -7,11 +7,11 @@ from hypothesis import given, strategies as st
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
-from nullpose.solver.kernels.borders import borders, choose_border, slope_and_rest
-from nullpose.solver.kernels.domain import forbidding
-from nullpose.solver.kernels.jit import kernel
-from nullpose.solver.kernels.node import BALL, CENTRE, COLUMNS, HALF, LEVEL
-from nullpose.solver.kernels.zones import MOST_ALTERNATIVES
+from nullpose.solver.kernels.bounds.borders import borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.bounds.node import BALL, CENTRE, COLUMNS, HALF, LEVEL
+from nullpose.solver.kernels.compiler.jit import kernel
+from nullpose.solver.kernels.search.domain import forbidding
+from nullpose.solver.kernels.search.zones import MOST_ALTERNATIVES
 
 SEEDS = st.integers(0, 2**32 - 1)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nullpose.certificate import lemmas
-from nullpose.solver.kernels import constants
+from nullpose.solver.kernels.bounds import constants
 
 ANGLES = np.linspace(0.0, math.pi, 20_001)
 K, M = np.cos(ANGLES), np.sin(ANGLES)  # of the angle between the line and the way to the point

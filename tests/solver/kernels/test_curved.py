@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from nullpose.solver.kernels.curved import box_maximum
-from nullpose.solver.kernels.enclosure import JET
+from nullpose.solver.kernels.bounds.curved import box_maximum
+from nullpose.solver.kernels.bounds.enclosure import JET
 
 
 def quadratic(

@@ -10,12 +10,12 @@ from nullpose.certificate.forms import matrices
 from nullpose.certificate.shear import shear_of
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.exclusion import add_dipole_sum
-from nullpose.solver.kernels.expansion import frame_at
-from nullpose.solver.kernels.jit import kernel
-from nullpose.solver.kernels.links import add_form, link_form
-from nullpose.solver.kernels.node import CENTRE, COLUMNS, COUNT, FACE, HALF, INDEX, LEVEL, WEIGHT
-from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD
+from nullpose.solver.kernels.bounds.exclusion import add_dipole_sum
+from nullpose.solver.kernels.bounds.expansion import frame_at
+from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, COUNT, FACE, HALF, INDEX, LEVEL, WEIGHT
+from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
+from nullpose.solver.kernels.compiler.jit import kernel
+from nullpose.solver.kernels.linear_algebra.links import add_form, link_form
 
 SEEDS = st.integers(0, 2**32 - 1)
 

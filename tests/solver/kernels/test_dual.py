@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from nullpose.certificate.forms import matrices
-from nullpose.solver.kernels.axis import best_axis_of_forms
-from nullpose.solver.kernels.dual import dual_multipliers
+from nullpose.solver.kernels.linear_algebra.axis import best_axis_of_forms
+from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 
 ISOTROPIC = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
 

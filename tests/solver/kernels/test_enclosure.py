@@ -7,7 +7,7 @@ import pytest
 
 from nullpose.objectives import Ratios
 from nullpose.problem.axis_field import AxisField
-from nullpose.solver.kernels.enclosure import JET, axis_clearance, link_jet
+from nullpose.solver.kernels.bounds.enclosure import JET, axis_clearance, link_jet
 
 POINT = np.array([[17.0, 15.0, 4.0]])
 DIPOLES = (None, np.array([[0.0, 0.0, 1.0]]), np.array([[0.36, -0.48, 0.8]]))

@@ -15,9 +15,8 @@ from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.scenario import Airspace
-from nullpose.solver.kernels.branch import examine, workspace_of
-from nullpose.solver.kernels.jit import heap_kernel
-from nullpose.solver.kernels.node import (
+from nullpose.solver.kernels.bounds.branch import examine, workspace_of
+from nullpose.solver.kernels.bounds.node import (
     AFFINE,
     BALL,
     BAND,
@@ -36,7 +35,8 @@ from nullpose.solver.kernels.node import (
     SIDE,
     WEIGHT,
 )
-from nullpose.solver.kernels.records import Goal
+from nullpose.solver.kernels.bounds.records import Goal
+from nullpose.solver.kernels.compiler.jit import heap_kernel
 
 EXCLUDED = 0
 JUST_BELOW = 1.0 - 1e-9

@@ -6,8 +6,8 @@ from tests.certificate.plain import carried, link_matrix
 
 from nullpose.certificate.forms import matrices
 from nullpose.objectives import Ratios
-from nullpose.solver.kernels.expansion import expand_point, frame_at
-from nullpose.solver.kernels.records import TOWARDS_POINT, WORLD
+from nullpose.solver.kernels.bounds.expansion import expand_point, frame_at
+from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
 
 POINTS = np.array([[0.0, 0.0, 0.0], [40.0, 10.0, 2.0], [17.0, 15.0, 4.0], [-20.0, 30.0, 1.0]])
 FRAMES = [(WORLD, -1), (TOWARDS_POINT, 2)]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from nullpose.objectives import Ratios
-from nullpose.solver.kernels.links import link_form
+from nullpose.solver.kernels.linear_algebra.links import link_form
 
 
 def test_division_by_zero_follows_ieee(ratios_over: Callable[..., Ratios]) -> None:

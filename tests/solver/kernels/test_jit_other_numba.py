@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import nullpose
-from nullpose.solver.kernels.jit import LINKED_BEFORE, LINKED_FROM
-from nullpose.solver.kernels.notices import OTHER_NUMBA
+from nullpose.solver.kernels.compiler.jit import LINKED_BEFORE, LINKED_FROM
+from nullpose.solver.kernels.compiler.notices import OTHER_NUMBA
 
 ROOT = Path(__file__).parents[3]
 SCENES = ("paper", "eavesdropper", "no-fly")

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[3]
 
 KERNELS = """
-from nullpose.solver.kernels.jit import kernel
+from nullpose.solver.kernels.compiler.jit import kernel
 
 
 @kernel
@@ -127,7 +127,7 @@ def test_a_folder_without_locks_keeps_kernels(tmp_path: Path) -> None:
 
 
 SLOW = """
-from nullpose.solver.kernels.jit import heap_kernel, inner_heap_kernel
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel
 import numpy as np
 
 
@@ -169,8 +169,8 @@ def test_an_interrupt_leaves_arrays_as_they_were() -> None:
     """What Python has done of half a step is taken back: a proof goes on from there, or states its bound."""
     import numpy as np
 
-    from nullpose.solver.kernels.interpreted import interpret
-    from nullpose.solver.kernels.jit import kernel
+    from nullpose.solver.kernels.compiler.interpreted import interpret
+    from nullpose.solver.kernels.compiler.jit import kernel
 
     @kernel
     def interrupted(numbers: np.ndarray) -> None:

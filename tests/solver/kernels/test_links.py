@@ -12,7 +12,7 @@ from hypothesis import given, settings, strategies as st
 from nullpose.certificate.pose_value import exact, link
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.links import derivatives, log_ratios, min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import derivatives, log_ratios, min_log_ratio
 
 SEEDS = st.integers(0, 2**32 - 1)
 

@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 from nullpose.physics import maximum_gain_axis, maximum_gain_sinr
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.maximum_gain import maximum_gain_value
+from nullpose.solver.kernels.search.maximum_gain import maximum_gain_value
 
 
 def received(family: Family, p: np.ndarray, axes: np.ndarray) -> np.ndarray:

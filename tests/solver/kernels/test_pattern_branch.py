@@ -8,10 +8,10 @@ from nullpose.antenna.caps import pattern_arrays
 from nullpose.antenna.harmonics import Harmonics
 from nullpose.problem.family import Family
 from nullpose.problem.records import Reach
-from nullpose.solver.kernels.attitude import ANCHOR, CHART, FACE, HALF, WARM
-from nullpose.solver.kernels.branch import BETTER, DONE
-from nullpose.solver.kernels.pattern_branch import branch_pattern
-from nullpose.solver.kernels.pattern_search import judge
+from nullpose.solver.kernels.bounds.attitude import ANCHOR, CHART, FACE, HALF, WARM
+from nullpose.solver.kernels.bounds.branch import BETTER, DONE
+from nullpose.solver.kernels.bounds.pattern_branch import branch_pattern
+from nullpose.solver.kernels.search.pattern_search import judge
 
 ANY = Reach(np.pi, 0.0, np.array([0.0, 0.0, 1.0]), False, False)
 

@@ -12,9 +12,9 @@ from nullpose.physics import sinr
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.axis import best_axis
-from nullpose.solver.kernels.links import min_log_ratio
-from nullpose.solver.kernels.polish import polish
+from nullpose.solver.kernels.linear_algebra.axis import best_axis
+from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.search.polish import polish
 
 SEEDS = st.integers(0, 2**32 - 1)
 VERTICAL = AxisField.affine([0.0, 0.0, 1.0], np.zeros((3, 3)))

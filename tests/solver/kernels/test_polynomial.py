@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, strategies as st
 from numpy.polynomial import Polynomial
 
-from nullpose.solver.kernels.polynomial import real_roots
+from nullpose.solver.kernels.linear_algebra.polynomial import real_roots
 
 SEEDS = st.integers(0, 2**32 - 1)
 EDGE = 1.0 + 1e-9

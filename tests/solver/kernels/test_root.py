@@ -6,8 +6,8 @@ import numpy as np
 
 from nullpose.physics import sinr
 from nullpose.problem.build import build_family
-from nullpose.solver.kernels.node import COLUMNS
-from nullpose.solver.kernels.root import fill_root, reach_by_distance
+from nullpose.solver.kernels.bounds.node import COLUMNS
+from nullpose.solver.kernels.bounds.root import fill_root, reach_by_distance
 
 
 def test_no_pose_exceeds_what_distances_allow(random_scene: Callable) -> None:

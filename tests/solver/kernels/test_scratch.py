@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numba.core.errors import NumbaError
 
-from nullpose.solver.kernels.jit import heap_kernel, kernel
-from nullpose.solver.kernels.scratch import scratch, scratch_int, zeroed
+from nullpose.solver.kernels.compiler.jit import heap_kernel, kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 
 LENGTH = 5
 

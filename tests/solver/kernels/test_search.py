@@ -7,10 +7,10 @@ from hypothesis import given, settings, strategies as st
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.axis import best_axis
-from nullpose.solver.kernels.domain import push_out
-from nullpose.solver.kernels.links import min_log_ratio
-from nullpose.solver.kernels.search import cut_box
+from nullpose.solver.kernels.linear_algebra.axis import best_axis
+from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.search.domain import push_out
+from nullpose.solver.kernels.search.search import cut_box
 
 SEEDS = st.integers(0, 2**32 - 1)
 

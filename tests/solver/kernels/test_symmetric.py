@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.solver.kernels.symmetric import cholesky_factor, cholesky_solve, eigen3, gauss_solve
+from nullpose.solver.kernels.linear_algebra.symmetric import (
+    cholesky_factor,
+    cholesky_solve,
+    eigen3,
+    gauss_solve,
+)
 
 SEEDS = st.integers(0, 2**32 - 1)
 

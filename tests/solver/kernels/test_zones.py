@@ -10,9 +10,15 @@ from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import depth_m
-from nullpose.solver.kernels.jit import kernel
-from nullpose.solver.kernels.node import CENTRE, COLUMNS, HALF, LEVEL
-from nullpose.solver.kernels.zones import FORBIDDEN, MOST_ALTERNATIVES, OUTSIDE, UNCLEAR, zone_alternatives
+from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, HALF, LEVEL
+from nullpose.solver.kernels.compiler.jit import kernel
+from nullpose.solver.kernels.search.zones import (
+    FORBIDDEN,
+    MOST_ALTERNATIVES,
+    OUTSIDE,
+    UNCLEAR,
+    zone_alternatives,
+)
 
 SEEDS = st.integers(0, 2**32 - 1)
 HAIR_M = 1e-8

@@ -180,7 +180,7 @@ def test_a_file_that_names_others_is_refused_in_words(hand: Hand) -> None:
 FIRST_RUN = f"""
 import os, threading
 from nullpose import load
-from nullpose.solver.kernels.branch import branch
+from nullpose.solver.kernels.bounds.branch import branch
 from nullpose.studio.answer import Answer
 from nullpose.studio.session import Session
 from nullpose.studio.state import State

@@ -1,0 +1,280 @@
+"""Branch and bound: boxes of positions, and where multipliers alone cannot decide, cells of axes.
+
+Depth first at one fixed level: a node is excluded (see ``exclusion`` and ``curved``), or its box is halved,
+or, where the gap between the dual and what one axis reaches outweighs the size of the box, it is split into
+cells of axes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, FREE_AXIS, Axes
+from nullpose.solver.kernels.bounds.curved import curved_multipliers, denominator_jet, excludes_curved, impact
+from nullpose.solver.kernels.bounds.denominators import expand_denominator
+from nullpose.solver.kernels.bounds.enclosure import JET, MOST, axis_clearance
+from nullpose.solver.kernels.bounds.exclusion import excludes, has_horizontal_axes, out_of_reach, will_fail
+from nullpose.solver.kernels.bounds.expansion import best_frame, frame_at, min_square
+from nullpose.solver.kernels.bounds.multipliers import free_multipliers
+from nullpose.solver.kernels.bounds.node import (
+    AFFINE,
+    ANCHOR,
+    BALL,
+    BAND,
+    CELL,
+    CENTRE,
+    COLUMNS,
+    COUNT,
+    FACE,
+    HALF,
+    INDEX,
+    KIND,
+    LEVEL,
+    OFF_BAND,
+    WEIGHT,
+    longest_side,
+    off_band,
+    split_across,
+    split_axis,
+    split_position,
+)
+from nullpose.solver.kernels.bounds.records import Workspace
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
+from nullpose.solver.kernels.linear_algebra.forms import add_denominator
+from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
+from nullpose.solver.kernels.linear_algebra.vectors import fill_affine, norm
+from nullpose.solver.kernels.search.domain import contains
+
+DONE, LIMIT, FULL = 0, 1, 2  # why a run over a stack ended; or BETTER
+EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes of a node
+
+_HALVINGS = 3
+
+_COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
+_CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
+_CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
+_BEATS = 1e-9
+
+
+@inner_kernel
+def examine(family, domain, axis_field, goal, row, workspace, axis):
+    """Return (what becomes of a node, the side to split, whether multipliers were sought).
+
+    Fills the node's kind, its multipliers, and an axis if it beats the best.
+    """
+    side = longest_side(row)
+    kind = out_of_reach(family, domain, row)
+    if kind >= 0:
+        row[KIND] = kind
+        return EXCLUDED, side, 0
+    half = row[HALF:LEVEL]
+    radius = norm(half)
+    nearest = math.inf
+    for j in range(family.points_m.shape[0]):
+        nearest = min(nearest, min_square(family.points_m, j, row[CENTRE:HALF], half))
+    nearest = math.sqrt(nearest)
+    if not nearest > _CLOSE * radius:
+        return BY_POSITION, side, 0
+    if axis_field.kind == AFFINE_AXIS:
+        length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
+        if length > _CLEAR * change:  # where it may vanish any axis is allowed for
+            return examine_affine(family, domain, axis_field, goal, row, workspace, axis)
+    if axis_field.kind >= BAND_AXIS and off_band(axis_field.offset, row):
+        row[KIND] = OFF_BAND
+        return EXCLUDED, side, 0
+    coarseness = _COARSENESS * radius / nearest
+    verdict, sought = examine_free(family, domain, axis_field, goal, row, coarseness, workspace, axis)
+    return verdict, side, sought
+
+
+@inner_kernel
+def same_multipliers(row, other):
+    """Check whether two rows have the same multipliers."""
+    same = row[COUNT] == other[COUNT] and row[BAND] == other[BAND]
+    for s in range(int(row[COUNT])):
+        same = same and row[INDEX + s] == other[INDEX + s] and row[WEIGHT + s] == other[WEIGHT + s]
+    return same
+
+
+@inner_kernel
+def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, axis):
+    """Examine a box whose axis is free; return the verdict and how often multipliers were sought."""
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    basis = scratch(3, 3)
+    is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
+    if not is_free:  # an affine axis that may vanish in the box
+        axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
+    kind, anchor = best_frame(family, has_horizontal_axes(axis_field), row)
+    frame = frame_at(family, kind, anchor, centre, half, basis)
+    denominator, slopes = zeroed(6), zeroed(3, 6)
+    rests = (0.0, 0.0)
+    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes is not None:
+        add_denominator(family, np.int64(0), -row[LEVEL], centre, basis, denominator)
+    elif family.denominator_isotropic.shape[0] == 1:
+        first = np.int64(0)
+        rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
+    row[KIND], row[ANCHOR] = kind, anchor
+    below = (denominator, slopes, rests)
+    if excludes(family, domain, axis_field, frame, row, below, workspace):
+        return EXCLUDED, 0
+    if row[FACE] < 0.0 and not same_multipliers(row, goal.multipliers):
+        copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
+        if excludes(family, domain, axis_field, frame, row, below, workspace):
+            return EXCLUDED, 0
+    primal, reached, followed = free_multipliers(
+        family, axis_field, basis, row, denominator, coarseness, workspace, axis
+    )
+    if is_free and followed and contains(domain, centre):
+        value = reached * row[LEVEL]
+        if family.denominator_isotropic.shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
+            logs = workspace.log_denominators, workspace.values
+            value = math.exp(min_log_ratio(family, centre, axis, logs[0], logs[1]))
+        if value > goal.best * (1.0 + _BEATS):
+            return BETTER, 1
+    if primal == math.inf:  # no axis was met that is inside both cell and band
+        wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
+        return (BY_AXIS if is_free and wide else BY_POSITION), 1
+    if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
+        return EXCLUDED, 1
+    # Where multipliers exclude the centre, they exclude the halves of the box soon: axes need not be split.
+    # With several denominators that takes long, unless they do so by more than the size of the box.
+    spare = coarseness if family.denominator_isotropic.shape[0] > 1 else 0.0
+    split_axes = followed and primal - reached > coarseness and primal > 1.0 - spare
+    # two forms have no duality gap (Brickman), unless a cell or a band is in force
+    split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
+    split_axes = split_axes or coarseness == 0.0  # one position has no halves
+    if split_axes and is_free:
+        return BY_AXIS, 1
+    if primal >= 1.0:
+        workspace.rest[0] = math.inf
+    return FORESEEN, 1
+
+
+@inner_kernel
+def lone_ratio(family, row, below):
+    """Check whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
+    for k in range(family.numerator_weight.shape[0]):
+        square = min_square(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
+        most = family.numerator_isotropic[k] + family.numerator_weight[k] / square
+        if most < -below[family.denominator_of[k], MOST] * (1.0 - 1e-13):
+            row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
+            return True
+    return False
+
+
+@inner_kernel
+def examine_affine(family, domain, axis_field, goal, row, workspace, axis):
+    """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
+    half = row[HALF:LEVEL]
+    jet, below, total = scratch(JET), workspace.jets, scratch(JET)
+    denominator_jet(family, axis_field, row, jet, below)
+    row[KIND] = AFFINE
+    if lone_ratio(family, row, below):
+        return EXCLUDED, 0, 0
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        return EXCLUDED, 0, 0
+    copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        return EXCLUDED, 0, 0
+    reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
+    if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
+        fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+        return BETTER, 0, 1
+    if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        return EXCLUDED, 0, 1
+    return BY_POSITION, impact(total, half), 1
+
+
+@inner_heap_kernel
+def workspace_of(family):
+    """Return scratch space for a family."""
+    ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
+    return Workspace(
+        np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
+        np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
+        np.empty(6), np.empty((3, 6)), np.empty(6),
+    )  # fmt: skip
+
+
+@inner_kernel
+def split_foreseen(row, side, forecast, is_horizontal, stack, top):
+    """Push the parts of a box; halves of which it is foreseen that they fail are halved again unseen."""
+    halvings, place = scratch_int(9), top
+    top = split_position(row, side, stack, top)
+    halvings[0] = halvings[1] = 1
+    first = place
+    while place < top:
+        done = halvings[place - first]
+        if done < _HALVINGS and will_fail(forecast, row, stack[place], is_horizontal):
+            halve(stack, place, top)
+            halvings[place - first] = halvings[top - first] = done + 1
+            top += 1
+        else:
+            place += 1
+    return top
+
+
+@inner_kernel
+def halve(stack, place, top):
+    """Halve a box of the stack across its longest side: one half in its place, the other on the top."""
+    side = longest_side(stack[place])
+    split_across(stack[place], CENTRE + side, HALF + side, stack[place], stack[top])
+
+
+@heap_kernel
+def branch(
+    family, domain, axis_field, level, goal, stack, top, leaves, filled, most, better_p, better_u
+):  # fmt: skip
+    """Work off the stack at one level until it is empty or a limit is met.
+
+    Args:
+        family: the ratios.
+        domain: the positions.
+        axis_field: the axes.
+        level: the ratio to exclude.
+        goal: what the run is after.
+        stack: (s, COLUMNS) boxes still to do.
+        top: how many there are.
+        leaves: (l, COLUMNS) output, excluded boxes.
+        filled: how many leaves there are already.
+        most: boxes to work off at most.
+        better_p: output, (3,): position of a pose that beats the incumbent, or of the last box at the limit.
+        better_u: output, (3,): its axis; zero if there is none, or the position is not allowed.
+
+    Returns:
+        (code, top, filled, boxes worked off, boxes in which new multipliers were sought).
+    """
+    workspace, row, axis = workspace_of(family), scratch(COLUMNS), zeroed(3)
+    boxes = sought = 0
+    while top > 0:
+        if boxes >= most:
+            copy_into(row[CENTRE:HALF], better_p)
+            for m in range(3):
+                better_u[m] = axis[m] if contains(domain, better_p) else 0.0
+            return LIMIT, top, filled, boxes, sought
+        if top + 9 > stack.shape[0] or filled >= leaves.shape[0]:
+            return FULL, top, filled, boxes, sought
+        boxes += 1
+        top -= 1
+        copy_into(stack[top], row)
+        row[LEVEL] = level
+        verdict, side, new = examine(family, domain, axis_field, goal, row, workspace, axis)
+        sought += new
+        if verdict == EXCLUDED:
+            copy_into(row, leaves[filled])
+            filled += 1
+        elif verdict == BETTER:
+            copy_into(row[CENTRE:HALF], better_p)
+            copy_into(axis, better_u)
+            return BETTER, top + 1, filled, boxes, sought
+        elif verdict == BY_AXIS:
+            top = split_axis(row, has_horizontal_axes(axis_field), stack, top)
+        elif verdict == FORESEEN:
+            top = split_foreseen(row, side, workspace, has_horizontal_axes(axis_field), stack, top)
+        else:
+            top = split_position(row, side, stack, top)
+    return DONE, top, filled, boxes, sought

@@ -1,0 +1,267 @@
+"""The test that excludes a box under an affine axis field: a weighted sum that stays negative all over it.
+
+With the axis given by the position, ``G(p) = sum_k lambda_k (N_k(p) - t D(p))`` is a number. Over a box of
+half sides h, ``G <= f + g.x + x^T H x / 2`` with ``|x_i| <= 1`` and every Hessian within bounds. For any
+``mu >= 0`` that makes ``A = diag(mu) - H`` positive definite, ``f + sum(mu) / 2 + g^T A^-1 g / 2`` is an
+upper bound, since ``mu_i (1 - x_i^2) >= 0``: concave directions count in our favour, so that boxes do not
+cluster around a smooth optimum.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.solver.kernels.bounds.borders import borders, weigh_borders
+from nullpose.solver.kernels.bounds.constants import ROUNDING
+from nullpose.solver.kernels.bounds.enclosure import BEND, JET, LEAST, MOST, RADIUS, SLOPE, link_jet
+from nullpose.solver.kernels.bounds.node import (
+    BALL,
+    CENTRE,
+    COUNT,
+    HALF,
+    INDEX,
+    LEVEL,
+    NU,
+    WEIGHT,
+    keep_largest,
+)
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
+from nullpose.solver.kernels.linear_algebra.forms import entry
+from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, copy_into, eigen3
+from nullpose.solver.kernels.search.zones import MOST_ALTERNATIVES
+
+_SHARES = 5  # sizes of mu that are tried along concave directions
+_LESS = 0.25
+
+
+@inner_kernel
+def add_jet(weight, jet, total):
+    """Add a weighted jet to another; radii add up whatever the sign."""
+    add_scaled(weight, jet[:RADIUS], total[:RADIUS])
+    add_scaled(abs(weight), jet[RADIUS:LEAST], total[RADIUS:LEAST])
+    total[LEAST] += weight * (jet[LEAST] if weight > 0.0 else jet[MOST])
+    total[MOST] += weight * (jet[MOST] if weight > 0.0 else jet[LEAST])
+
+
+@inner_kernel
+def denominator_jet(family, axis_field, row, jet, totals):
+    """Fill the jet of ``-t D_g`` of each denominator over a row's box."""
+    for g in range(totals.shape[0]):
+        total = totals[g]
+        total[:] = 0.0
+        total[0] = total[LEAST] = total[MOST] = -row[LEVEL] * family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            j = family.denominator_point[e]
+            link_jet(family, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+            add_jet(-row[LEVEL] * family.denominator_weight[e], jet, total)
+
+
+@inner_kernel
+def scaled_bound(jet, half, gradient, hessian):
+    """Fill gradient and Hessian in units of the half sides; return the value and the radii's part."""
+    rest = 0.0
+    for i in range(3):
+        gradient[i] = jet[SLOPE + i] * half[i]
+        hessian[i, i] = jet[BEND + i] * half[i] * half[i]
+        rest += 0.5 * jet[RADIUS + i] * half[i] * half[i]
+    for e in range(3, 6):
+        i, k = entry(e)
+        hessian[i, k] = hessian[k, i] = jet[BEND + e] * half[i] * half[k]
+        rest += jet[RADIUS + e] * half[i] * half[k]
+    return jet[0] + rest
+
+
+@inner_kernel
+def dual_bound(base, gradient, hessian, mu):
+    """Return ``base + sum(mu) / 2 + g^T (diag(mu) - H)^-1 g / 2``, infinity if that is not definite."""
+    a, b, c = mu[0] - hessian[0, 0], mu[1] - hessian[1, 1], mu[2] - hessian[2, 2]
+    d, e, f = -hessian[0, 1], -hessian[0, 2], -hessian[1, 2]
+    minor = a * b - d * d
+    det = c * minor - a * f * f - b * e * e + 2.0 * d * e * f
+    if not (a > 0.0 and minor > 1e-13 * a * b and det > 1e-13 * a * b * c):
+        return math.inf
+    x, y, z = gradient[0], gradient[1], gradient[2]
+    form = x * x * (b * c - f * f) + y * y * (a * c - e * e) + z * z * minor
+    form += 2.0 * (x * y * (e * f - d * c) + x * z * (d * f - b * e) + y * z * (d * e - a * f))
+    return base + 0.5 * (mu[0] + mu[1] + mu[2]) + 0.5 * form / det
+
+
+@kernel
+def box_maximum(jet, half):
+    """Return an upper bound on a jet over its box."""
+    gradient, hessian, mu = scratch(3), scratch(3, 3), scratch(3)
+    base = scaled_bound(jet, half, gradient, hessian)
+    if not base < 0.0:  # not even at the centre
+        return base
+    tiny = -1e-6 * base  # keeps the matrix definite where nothing bends
+    # diagonally dominant: cheap, and enough for most boxes
+    for i in range(3):
+        lean = hessian[i, i]
+        for k in range(3):
+            lean += abs(hessian[i, k]) if k != i else 0.0
+        mu[i] = abs(gradient[i]) + max(0.0, lean) + tiny
+    bound = dual_bound(base, gradient, hessian, mu)
+    if bound < 0.0:
+        return bound
+    # the convex part of the Hessian is paid for in full, the concave part kept
+    values, vectors = scratch(3), scratch(3, 3)
+    eigen3(hessian, values, vectors)
+    convex = zeroed(3)
+    for i in range(3):
+        for k in range(3):
+            part = 0.0
+            for m in range(3):
+                part += max(0.0, values[m]) * vectors[i, m] * vectors[k, m]
+            convex[i] += abs(part)
+    share = 1.0  # along concave directions a smaller mu is better, how small depends on the slope
+    for _ in range(_SHARES):
+        for i in range(3):
+            mu[i] = share * abs(gradient[i]) + convex[i] + tiny
+        bound = min(bound, dual_bound(base, gradient, hessian, mu))
+        if bound < 0.0:
+            break
+        share *= _LESS
+    return bound
+
+
+@inner_kernel
+def excludes_curved(family, domain, axis_field, row, below, jet, total):
+    """Check whether the row's multipliers exclude its box; fill its border's, and the jet of their sum.
+
+    ``below`` has the jets of ``-t D_g``; ``jet`` is scratch.
+    """
+    if not row[COUNT] > 0.0:
+        return False
+    total[:] = 0.0
+    for s in range(int(row[COUNT])):
+        add_scaled(row[WEIGHT + s], below[family.denominator_of[int(row[INDEX + s])]], total)
+    size = -total[0]  # of what numerators are set off against: that much is lost by rounding
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        j, isotropic = family.numerator_point[k], row[WEIGHT + s] * family.numerator_isotropic[k]
+        link_jet(family, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+        total[0], total[MOST] = total[0] + isotropic, total[MOST] + isotropic
+        add_jet(row[WEIGHT + s] * family.numerator_weight[k], jet, total)
+    total[0], total[MOST] = total[0] + ROUNDING * size, total[MOST] + ROUNDING * size
+    row[NU] = 0.0
+    # plain bounds on every part are often enough, and cost nothing more
+    if total[MOST] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
+        return True
+    return row[BALL] >= 0.0 and excludes_allowed(domain, row, total)
+
+
+@inner_kernel
+def excludes_allowed(domain, row, total):
+    """Check whether a jet is negative wherever a border allows positions; fill its multiplier."""
+    sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
+    alternatives = borders(domain, row, sides, counts)
+    bent, border = scratch(JET), scratch(7)
+    for a in range(alternatives):
+        row[NU] = weigh_borders(sides[a], counts[a], row, total[1:4], border)
+        if row[NU] < 0.0:
+            return False
+        copy_into(total, bent)
+        for m in range(7):  # a jet begins with the same numbers
+            bent[m] += border[m]
+        if not box_maximum(bent, row[HALF:LEVEL]) < 0.0:
+            return False
+    if alternatives > 0 and int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
+        row[NU] = 1.0  # a zone's multipliers are found again by the verifier
+    return alternatives > 0
+
+
+@inner_kernel
+def impact(total, half):
+    """Return the side whose halving lowers the bound of a sum most."""
+    side = 0
+    most = -1.0
+    for i in range(3):
+        change = abs(total[SLOPE + i]) * half[i] + (abs(total[BEND + i]) + total[RADIUS + i]) * half[i] ** 2
+        for e in range(3, 6):
+            j, k = entry(e)
+            if i in (j, k):
+                change += (abs(total[BEND + e]) + total[RADIUS + e]) * half[j] * half[k]
+        if change > most:
+            side, most = i, change
+    return side
+
+
+@inner_kernel
+def linear_bound(value, slopes, half):
+    """Return the largest value of a linear function over the box."""
+    return value + half[0] * abs(slopes[0]) + half[1] * abs(slopes[1]) + half[2] * abs(slopes[2])
+
+
+@inner_kernel
+def curved_multipliers(family, axis_field, row, below, jet, workspace):
+    """Fill new multipliers into the row: the least upper bound of a mix of linear functions.
+
+    Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
+    smallest ratio at the centre relative to the level.
+    """
+    n0, nw, ratios = family.numerator_isotropic, family.numerator_weight, family.numerator_weight.shape[0]
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    weights, values, gradients = workspace.weights, workspace.values, workspace.gradients
+    smallest = math.inf
+    for k in range(ratios):
+        link_jet(family, family.numerator_point[k], axis_field, centre, half, jet)
+        minus = below[family.denominator_of[k]]
+        smallest = min(smallest, (n0[k] + nw[k] * jet[0]) / -minus[0])
+        values[k] = minus[0] + n0[k] + nw[k] * jet[0]
+        for i in range(3):
+            gradients[k, i] = minus[SLOPE + i] + nw[k] * jet[SLOPE + i]
+        for e in range(6):
+            i, j = entry(e)
+            radius = nw[k] * jet[RADIUS + e] + minus[RADIUS + e]
+            if i == j:  # concave along a side counts for nothing here: the mix is of linear functions
+                radius = max(0.0, radius + nw[k] * jet[BEND + e] + minus[BEND + e])
+            values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
+    lead = 0
+    weights[:ratios] = 0.0
+    for k in range(ratios):
+        if linear_bound(values[k], gradients[k], half) < linear_bound(values[lead], gradients[lead], half):
+            lead = k
+    weights[lead] = 1.0
+    mix_in(values, gradients, half, np.int64(lead), weights)
+    keep_largest(weights, ratios, row)
+    return smallest
+
+
+@inner_kernel
+def mix_in(values, gradients, half, lead, weights):
+    """Lower the bound of a mix of linear functions, beginning with one of them, by exact line searches."""
+    ratios = values.shape[0]
+    value = values[lead]
+    gradient = scratch(3)
+    copy_into(gradients[lead], gradient)
+    bound = linear_bound(value, gradient, half)
+    trial = scratch(3)
+    for _ in range(3):
+        before = bound
+        for k in range(ratios):
+            best_share = 0.0
+            for i in range(4):  # the bound is piecewise linear in the share: its kinks, and the end
+                if i < 3:
+                    change = gradients[k, i] - gradient[i]
+                    share = -gradient[i] / change if change != 0.0 else -1.0
+                else:
+                    share = 1.0
+                if not 0.0 < share <= 1.0:
+                    continue
+                for m in range(3):
+                    trial[m] = gradient[m] + share * (gradients[k, m] - gradient[m])
+                candidate = linear_bound(value + share * (values[k] - value), trial, half)
+                if candidate < bound:
+                    bound, best_share = candidate, share
+            if best_share > 0.0:
+                for m in range(ratios):
+                    weights[m] *= 1.0 - best_share
+                weights[k] += best_share
+                value += best_share * (values[k] - value)
+                for m in range(3):
+                    gradient[m] += best_share * (gradients[k, m] - gradient[m])
+        if bound < 0.0 or bound >= before:
+            break

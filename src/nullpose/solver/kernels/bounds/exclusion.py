@@ -1,0 +1,319 @@
+"""The test that excludes a node of a free axis: a weighted sum of forms that is negative all over its box.
+
+Multipliers ``lambda`` (one per ratio, summing to one) and ``mu`` (one per side of the cell of axes, one for
+the band of elevations) exclude a box at the ratio t if ``sum_k lambda_k (N_k(p) - t D_k(p)) + sum mu_q Q_q``
+is negative definite for every position p in it: then no pose there has all its ratios at t or above. ``Q_q``
+are the forms that no axis of the cell or the band makes negative. The matrix is expanded to the first order
+at the box's centre; with a bound on the remainder, and a margin for rounding, it is tested at the eight
+corners. Where all axes are horizontal, it only needs to be negative definite in the horizontal plane.
+
+A form is six numbers: xx, yy, zz, xy, xz, yz. Forms stand in a frame that turns with the direction to one
+ground point, the anchor, whose null stands still in it (docs/certificate.md, lemma 2).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.problem.records import BAND_AXIS, CONE_AXIS
+from nullpose.solver.kernels.bounds.borders import borders, choose_border, weigh_borders
+from nullpose.solver.kernels.bounds.constants import CONSTANT_FORM_BEND, ROUNDING
+from nullpose.solver.kernels.bounds.denominators import (
+    add_mixed_denominators,
+    add_scaled as add_with_slopes,
+    sharpen,
+)
+from nullpose.solver.kernels.bounds.dipoles import add_constant, add_links, centre_form
+from nullpose.solver.kernels.bounds.expansion import expand_point, min_square
+from nullpose.solver.kernels.bounds.link_vectors import Shear, shear_at
+from nullpose.solver.kernels.bounds.node import (
+    ANCHOR,
+    BALL,
+    BAND,
+    CELL,
+    CENTRE,
+    COUNT,
+    FACE,
+    FAR,
+    HALF,
+    INDEX,
+    KEPT_OUT,
+    LEVEL,
+    NU,
+    SIDE,
+    WEIGHT,
+    cell_side,
+)
+from nullpose.solver.kernels.bounds.records import WORLD
+from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
+from nullpose.solver.kernels.linear_algebra.forms import congruence, form_value
+from nullpose.solver.kernels.linear_algebra.symmetric import (
+    add_identity,
+    add_scaled,
+    copy_into,
+    copy_table,
+    form_product,
+    top_eigenvector,
+)
+from nullpose.solver.kernels.linear_algebra.vectors import corner_of, dot, minus
+from nullpose.solver.kernels.search.domain import forbidding
+from nullpose.solver.kernels.search.zones import MOST_ALTERNATIVES
+
+_FORESEEN_SHARE = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
+_CENTRE = (0.0, 0.0, 0.0)  # as a step from it
+_DEFINITE = 1e-13  # least minor over the products that it consists of: many times its rounding
+
+
+@inner_kernel
+def has_horizontal_axes(axis_field):
+    """Check whether an axis field holds the level axes only."""
+    return axis_field.kind == CONE_AXIS and axis_field.offset[1] == 0.0
+
+
+@inner_kernel
+def negative_at(matrix, slopes, step, is_horizontal):
+    """Check whether the linear matrix is negative definite at a step from the centre."""
+    x, y, z = step
+    a0 = matrix[0] + x * slopes[0, 0] + y * slopes[1, 0] + z * slopes[2, 0]
+    a1 = matrix[1] + x * slopes[0, 1] + y * slopes[1, 1] + z * slopes[2, 1]
+    a3 = matrix[3] + x * slopes[0, 3] + y * slopes[1, 3] + z * slopes[2, 3]
+    # leading minors, not eigenvalues: this runs eight times for every box
+    minor = a0 * a1 - a3 * a3
+    if not (a0 < 0.0 and minor > _DEFINITE * a0 * a1):
+        return False
+    if is_horizontal:
+        return True
+    a2 = matrix[2] + x * slopes[0, 2] + y * slopes[1, 2] + z * slopes[2, 2]
+    a4 = matrix[4] + x * slopes[0, 4] + y * slopes[1, 4] + z * slopes[2, 4]
+    a5 = matrix[5] + x * slopes[0, 5] + y * slopes[1, 5] + z * slopes[2, 5]
+    negated_determinant = -a2 * minor + a0 * a5 * a5 + a1 * a4 * a4 - 2.0 * a3 * a4 * a5
+    return negated_determinant > -_DEFINITE * a0 * a1 * a2
+
+
+@inner_kernel
+def failing_corner(matrix, slopes, middle, half, is_horizontal):
+    """Return the first corner of a box at which the linear matrix is not negative definite, or -1."""
+    for corner in range(8):
+        if not negative_at(matrix, slopes, corner_of(middle, half, corner), is_horizontal):
+            return corner
+    return -1
+
+
+@inner_kernel
+def passes_without(matrix, slopes, half, corner, remainder, is_horizontal):
+    """Check whether a failing corner passes without a part of the remainder."""
+    rest = scratch(6)
+    copy_into(matrix, rest)
+    add_identity(-remainder, rest)
+    return negative_at(rest, slopes, corner_of(_CENTRE, half, corner), is_horizontal)
+
+
+@inner_kernel
+def will_fail(forecast, row, part, is_horizontal):
+    """Foresee whether a part of a box fails the test, from the matrix of the whole box."""
+    half, whole, matrix = part[HALF:LEVEL], row[HALF:LEVEL], scratch(6)
+    if forecast.rest[0] == math.inf:  # no multipliers exclude even the centre
+        return True
+    middle = minus(part[CENTRE:HALF], row[CENTRE:HALF])
+    share = _FORESEEN_SHARE * dot(half, half) / dot(whole, whole)  # remainders are of the second order
+    copy_into(forecast.matrix, matrix)
+    add_scaled(share, forecast.rest, matrix)
+    return failing_corner(matrix, forecast.slopes, middle, half, is_horizontal) >= 0
+
+
+@inner_kernel
+def add_side(form, weight, frame, matrix, matrix_slopes):
+    """Add a weighted side of a cell, turned into the frame, and its slopes; return its remainder."""
+    q, basis = scratch(6), frame.basis
+    congruence(form, basis, q)
+    add_scaled(weight, q, matrix)
+    if frame.kind == WORLD:
+        return 0.0
+    for i in range(3):
+        x, y = basis[i, 0] / frame.radius_m, basis[i, 1] / frame.radius_m
+        matrix_slopes[i, 0] += weight * 2.0 * x * q[4]
+        matrix_slopes[i, 1] += weight * 2.0 * y * q[5]
+        matrix_slopes[i, 2] -= weight * 2.0 * (x * q[4] + y * q[5])
+        matrix_slopes[i, 3] += weight * (y * q[4] + x * q[5])
+        matrix_slopes[i, 4] += weight * (x * (q[2] - q[0]) - y * q[3])
+        matrix_slopes[i, 5] += weight * (y * (q[2] - q[1]) - x * q[3])
+    size = math.sqrt(2.0 * form_product(q, q))
+    return weight * CONSTANT_FORM_BEND * size / (frame.least_radius_m * frame.least_radius_m)
+
+
+@inner_kernel
+def add_numerators(family, axis_field, frame, row, matrix, slopes):
+    """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
+    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    form, form_slopes = scratch(6), scratch(3, 6)
+    half_square = 0.5 * dot(half, half)  # a remainder is this times a second derivative
+    everywhere = 0.0
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        weight = row[WEIGHT + s]
+        isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
+        j = family.numerator_point[k]
+        bend, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
+        add_with_slopes(weight * strength, form, form_slopes, matrix, slopes)
+        add_identity(weight * isotropic, matrix)
+        size = isotropic + strength * (form[0] + form[1] + form[2])
+        everywhere += weight * (half_square * strength * bend + ROUNDING * size)
+    for number in range(3):
+        weight, level = constraint_of(axis_field, row, number, form)
+        if weight > 0.0:
+            add_identity(weight * level, matrix)  # which no frame turns
+            everywhere += half_square * add_side(form, weight, frame, matrix, slopes)
+            everywhere += 4.0 * ROUNDING * weight  # a form's entries are at most 1
+    return everywhere
+
+
+@inner_kernel
+def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
+    """Fill the row's sum and its slopes and rest; return how much of the rest is the denominators'."""
+    copy_into(below[0], matrix)
+    copy_table(below[1], slopes)
+    below_rest, across = below[2]
+    if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
+        below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
+    everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
+    rest[:] = 0.0
+    rest[0] = rest[1] = everywhere + across  # the anchor's remainder lies across its own null only
+    rest[2] = everywhere
+    return below_rest
+
+
+@inner_kernel
+def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
+    """Fill the row's sum and its slopes and rest where points have dipoles."""
+    if axes is not None:
+        v, weights, turned, half = scratch(3), scratch(3), scratch(3, 6), row[HALF:LEVEL]
+        shear = shear_at(
+            family, frame, row[CENTRE:HALF], half,
+            Shear(np.int64(WORLD), False, scratch(3), scratch(3, 3), scratch(6, 3), scratch(4)),
+        )  # fmt: skip
+        matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
+        jamming = centre_form(family, frame, row, matrix)
+        q = scratch(6)
+        for number in range(3):
+            weights[number], level = constraint_of(axis_field, row, number, q)
+            add_identity(level, q)
+            congruence(q, frame.basis, turned[number])
+            add_scaled(weights[number], turned[number], matrix)
+        top_eigenvector(matrix, v)
+        matrix[:] = 0.0
+        for number in range(3):
+            if weights[number] > 0.0:
+                add_constant(shear, half, weights[number], turned[number], matrix, slopes, rest)
+        add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
+
+
+@inner_kernel
+def constraint_of(axis_field, row, number, form):
+    """Fill the form of a cell's side (0 or 1) or of the band (2), but for a multiple of the identity.
+
+    Return its multiplier, zero where it is not in force, and that multiple.
+    """
+    form[:] = 0.0
+    if number < 2:
+        if row[FACE] < 0.0 or not row[SIDE + number] > 0.0:
+            return 0.0, 0.0
+        cell_side(int(row[FACE]), row[CELL:SIDE], number, form)
+        return row[SIDE + number], 0.0
+    if axis_field.kind < BAND_AXIS or has_horizontal_axes(axis_field):
+        return 0.0, 0.0
+    upper = row[BAND] > 0.0  # its sign tells the end of the band that is in force
+    form[2] = -1.0 if upper else 1.0
+    return abs(row[BAND]), axis_field.offset[1] if upper else -axis_field.offset[0]
+
+
+@inner_kernel
+def excludes(family, domain, axis_field, frame, row, below, forecast):
+    """Check whether the row's multipliers exclude its box and cell; fill its border's, and the forecast.
+
+    ``below`` is ``-t D``, its slopes and its remainders, where all ratios share a denominator.
+    """
+    if not row[COUNT] > 0.0:
+        return False
+    matrix, slopes = scratch(6), forecast.slopes
+    dipoles = family.ground_axes is not None
+    row[NU] = below_rest = 0.0
+    half, is_horizontal = row[HALF:LEVEL], has_horizontal_axes(axis_field)
+    if dipoles:
+        add_dipole_sum(family, family.ground_axes, axis_field, frame, row, matrix, slopes, forecast.rest)
+    else:
+        below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
+    # without a remainder, at the centre: what fails there fails in every box about it, however small
+    if row[BALL] < 0.0 and not negative_at(matrix, slopes, _CENTRE, is_horizontal):
+        forecast.rest[0] = math.inf
+        return False
+    copy_into(matrix, forecast.matrix)
+    add_scaled(1.0, forecast.rest, matrix)
+    corner = failing_corner(matrix, slopes, _CENTRE, half, is_horizontal)
+    if corner < 0:
+        return True
+    # sharper remainders cost as much as the test so far: only where none at all would let the corner pass
+    if not dipoles and passes_without(matrix, slopes, half, corner, below_rest, is_horizontal):
+        if is_horizontal:  # what is off the level plane does not count
+            matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
+            matrix[4] = matrix[5] = 0.0
+        slopes = scratch(3, 6)
+        copy_table(forecast.slopes, slopes)
+        sharpen(family, frame, row, matrix, slopes)
+        if failing_corner(matrix, slopes, _CENTRE, half, is_horizontal) < 0:
+            return True
+    return row[BALL] >= 0.0 and excludes_within_borders(domain, row, matrix, slopes, is_horizontal)
+
+
+@inner_kernel
+def excludes_within_borders(domain, row, matrix, slopes, is_horizontal):
+    """Check whether the matrix is negative wherever a border allows positions; fill its multiplier."""
+    sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)
+    alternatives = borders(domain, row, sides, counts)
+    if alternatives == 0:
+        return False
+    v, gradient, border = scratch(3), scratch(3), scratch(7)
+    half = row[HALF:LEVEL]
+    if is_horizontal:
+        matrix[2], matrix[4], matrix[5] = min(matrix[0], matrix[1]) - abs(matrix[3]), 0.0, 0.0
+    # the border is to cancel the slope along the axis that fails worst
+    top_eigenvector(matrix, v)
+    for i in range(3):
+        gradient[i] = form_value(slopes, i, v)
+    bordered, bordered_slopes = scratch(6), scratch(3, 6)
+    for a in range(alternatives):
+        row[NU] = weigh_borders(sides[a], counts[a], row, gradient, border)
+        if row[NU] < 0.0:
+            return False
+        copy_into(matrix, bordered)
+        copy_table(slopes, bordered_slopes)
+        rest = border[0]
+        for i in range(3):
+            rest += 0.5 * border[4 + i] * half[i] ** 2
+            add_identity(border[1 + i], bordered_slopes[i])
+        add_identity(rest, bordered)
+        if failing_corner(bordered, bordered_slopes, _CENTRE, half, is_horizontal) >= 0:
+            return False
+    if int(row[BALL]) >= domain.keep_out_points_m.shape[0]:
+        row[NU] = 1.0  # any positive number: the verifier finds a zone's multipliers itself
+    return True
+
+
+@inner_kernel
+def out_of_reach(family, domain, row):
+    """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
+    centre, half, row[NU] = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
+    for k in range(family.numerator_weight.shape[0]):
+        square = min_square(family.points_m, family.numerator_point[k], centre, half)
+        least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
+        if (family.numerator_isotropic[k] - least) * square + family.numerator_weight[k] < 0.0:
+            row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
+            return FAR
+    border = forbidding(domain, centre, half)
+    if border >= 0:
+        row[ANCHOR] = border
+        return KEPT_OUT
+    choose_border(domain, row)
+    return -1

@@ -1,0 +1,204 @@
+"""Link forms over a box of positions: value, first derivatives and a bound on the second.
+
+The frame may stand still, or turn with the direction to a point, so that the form of that point keeps its
+null along the third axis. Along a straight line through the box's centre that direction turns about a fixed
+axis, at a rate of at most 1/rho and with an angular acceleration of at most 1/rho^2; from this the second
+derivative of ``R^T T R`` is bounded. The proof is in the documentation, "The certificate explained" (lemmas
+1 and 2).
+
+Forms are kept as (xx, yy, zz, xy, xz, yz), in the frame at the box's centre.
+"""
+
+from __future__ import annotations
+
+import math
+
+from nullpose.solver.kernels.bounds.constants import (
+    ANCHOR_FALL,
+    ANCHOR_RISE,
+    FORM_FALL,
+    FORM_RISE,
+    MIXED_FALL,
+    MIXED_RISE,
+    SWING_FALL,
+    SWING_RISE,
+)
+from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
+from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD, Frame
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.scratch import scratch
+from nullpose.solver.kernels.linear_algebra.forms import seen_from
+from nullpose.solver.kernels.linear_algebra.links import isotropic_share
+from nullpose.solver.kernels.linear_algebra.symmetric import squared_distance, tangents
+from nullpose.solver.kernels.linear_algebra.vectors import (
+    along,
+    cross,
+    dot,
+    minus,
+    norm,
+    over,
+    row as row_of,
+    square_range,
+    store,
+    unit,
+)
+
+
+@inner_kernel
+def min_square(points, j, centre, half):
+    """Return the squared distance from point j to the nearest point of the box."""
+    return square_range(points[j], centre, half, 3)[0]
+
+
+@kernel
+def min_distance(points, j, centre, half):
+    """Return the distance from point j to the nearest point of the box."""
+    return math.sqrt(min_square(points, j, centre, half))
+
+
+@inner_kernel
+def turn_to_form(axes, j, c):
+    """Put the direction along which point j's dipole is seen in place of that to the point."""
+    if axes is not None:
+        v = row_of(axes, j)
+        store(unit(along(v, -dot(v, c), c)), c)
+
+
+@kernel
+def frame_at(family, kind, anchor, centre, half, basis):
+    """Return a frame at the centre, whose axes are filled into ``basis``.
+
+    The third points at the anchor, or along the form of an anchor with a dipole.
+    """
+    points = family.points_m
+    if kind == WORLD:
+        for i in range(3):
+            for m in range(3):
+                basis[i, m] = 1.0 if i == m else 0.0
+        return Frame(kind, anchor, basis, math.inf, math.inf)
+    a, b, c = scratch(3), scratch(3), scratch(3)
+    r = minus(row_of(points, anchor), centre)
+    rho = norm(r)
+    store(over(r, rho), c)
+    if isotropic_share(family.ground_leaks, anchor) < 1.0:
+        turn_to_form(family.ground_axes, anchor, c)
+    tangents(c, a, b)
+    for i in range(3):
+        basis[i, 0], basis[i, 1], basis[i, 2] = a[i], b[i], c[i]
+    return Frame(kind, anchor, basis, rho, min_distance(points, anchor, centre, half))
+
+
+@inner_kernel
+def fill_anchor(leak, frame, form, slopes):
+    """Fill the anchor's form and its derivatives, exactly zero where they vanish, however strong it is."""
+    form[:], slopes[:, :] = 0.0, 0.0
+    form[0] = form[1] = 1.0 / (frame.radius_m * frame.radius_m)
+    form[2] = leak * form[0]
+    for i in range(3):
+        slopes[i, 0] = slopes[i, 1] = 2.0 * frame.basis[i, 2] * form[0] / frame.radius_m
+        slopes[i, 2] = leak * slopes[i, 0]
+
+
+@kernel
+def expand_point(family, j, frame, centre, half, form, slopes):
+    """Fill the form of point j at the centre and its derivative along each world axis.
+
+    Points with a turn of their own are looked at in the frame at rest only.
+
+    Returns an upper and a lower bound on the second derivative along any unit direction, anywhere in the
+    box. For the anchor of a frame that turns towards it they hold on the first two axes, and multiplied by
+    the leak on the third, as the form does.
+    """
+    points, turn, leak = family.points_m, family.turn, family.leak
+    bent = 1.0 - leak
+    x, y, z = seen_from(points, turn, j, centre, frame.basis)
+    basis, turns = turn[j] if turn.shape[0] > 0 else frame.basis, frame.kind == TOWARDS_POINT
+    square = min_square(points, j, centre, half)
+    beyond = 1.0 / (square * square)
+    if turns and j == frame.anchor:
+        fill_anchor(leak, frame, form, slopes)
+        return ANCHOR_RISE * beyond, -ANCHOR_FALL * beyond
+    i2 = 1.0 / (x * x + y * y + z * z)
+    i4 = i2 * i2
+    form[0] = (leak * x * x + y * y + z * z) * i4
+    form[1] = (x * x + leak * y * y + z * z) * i4
+    form[2] = (x * x + y * y + leak * z * z) * i4
+    b4 = bent * i4
+    form[3], form[4], form[5] = -x * y * b4, -x * z * b4, -y * z * b4
+    for i in range(3):
+        q0, q1, q2 = basis[i, 0], basis[i, 1], basis[i, 2]
+        u, v, w = -q0, -q1, -q2
+        if turns:
+            u += q0 * z / frame.radius_m
+            v += q1 * z / frame.radius_m
+            w -= (q1 * y + q0 * x) / frame.radius_m
+        dot = x * u + y * v + z * w
+        k = 4.0 * dot * b4 * i2
+        base = -2.0 * dot * i4
+        slopes[i, 0] = base - 2.0 * x * u * b4 + k * x * x
+        slopes[i, 1] = base - 2.0 * y * v * b4 + k * y * y
+        slopes[i, 2] = base - 2.0 * z * w * b4 + k * z * z
+        slopes[i, 3] = -(x * v + y * u) * b4 + k * x * y
+        slopes[i, 4] = -(x * w + z * u) * b4 + k * x * z
+        slopes[i, 5] = -(y * w + z * v) * b4 + k * y * z
+    if not turns:
+        return FORM_RISE * beyond, -FORM_FALL * beyond
+    swing = 1.0 / (square * frame.least_radius_m * frame.least_radius_m)
+    mixed = math.sqrt(beyond * swing)  # 1 / (a^3 rho), for a the distance and rho that of the anchor
+    rise = FORM_RISE * beyond + MIXED_RISE * mixed + SWING_RISE * swing
+    return rise, -(FORM_FALL * beyond + MIXED_FALL * mixed + SWING_FALL * swing)
+
+
+@inner_kernel
+def strongest_point(family, centre):
+    """Return the denominators' point that is received most strongly at the centre, or -1."""
+    strongest = 0.0
+    anchor = -1
+    for e in range(family.denominator_weight.shape[0]):
+        j, weight = family.denominator_point[e], family.denominator_weight[e]
+        d = squared_distance(family.points_m[j], centre)
+        if weight > strongest * d:
+            strongest, anchor = weight / d, j
+    return anchor
+
+
+@inner_kernel
+def dipole_sine(axes, j, away):
+    """Return the sine of the angle between point j's dipole and a direction."""
+    if axes is not None:
+        return norm(cross(axes[j], away)) / norm(away)
+    return 1.0
+
+
+@inner_kernel
+def best_frame(family, is_horizontal, row):
+    """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
+
+    A frame that turns spares us the remainder of the point that it turns towards, and makes all others
+    larger: worth it where one interferer outweighs the rest.
+    """
+    points, centre, half = family.points_m, row[CENTRE:HALF], row[HALF:LEVEL]
+    anchor = strongest_point(family, centre)
+    if anchor < 0 or family.turn.shape[0] > 0 or is_horizontal:
+        return WORLD, anchor
+    rho = min_distance(points, anchor, centre, half)
+    if isotropic_share(family.ground_leaks, anchor) < 1.0:
+        # the nearer to its own null, the faster its form turns
+        rho *= dipole_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
+        if not rho > 0.0:
+            return WORLD, anchor
+    still = turning = 0.0
+    for s in range(int(row[COUNT])):
+        k = int(row[INDEX + s])
+        square = min_square(points, family.numerator_point[k], centre, half)
+        a = math.sqrt(square)
+        scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
+        still += FORM_RISE * scale
+        turning += scale * (FORM_RISE + a / rho * (MIXED_RISE + SWING_RISE * a / rho))
+    for e in range(family.denominator_weight.shape[0]):
+        a = min_distance(points, family.denominator_point[e], centre, half)
+        scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
+        still += FORM_FALL * scale
+        if family.denominator_point[e] != anchor:
+            turning += scale * (FORM_FALL + a / rho * (MIXED_FALL + SWING_FALL * a / rho))
+    return (TOWARDS_POINT if turning < still else WORLD), anchor

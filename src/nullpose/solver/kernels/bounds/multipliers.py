@@ -1,0 +1,252 @@
+"""New multipliers for a box of a free axis: from the dual at its centre."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nullpose.problem.records import BAND_AXIS
+from nullpose.solver.kernels.bounds.ascent import POOL, Pool, ascend, lowest_missing, put_weights
+from nullpose.solver.kernels.bounds.exclusion import has_horizontal_axes
+from nullpose.solver.kernels.bounds.node import (
+    BAND,
+    CELL,
+    CENTRE,
+    FACE,
+    HALF,
+    LEVEL,
+    SIDE,
+    keep_largest,
+)
+from nullpose.solver.kernels.bounds.whitened import (
+    axis_of,
+    constraint_forms,
+    fill_values,
+    half_width,
+    ratio_form,
+    whiten,
+    whiten_axis,
+)
+from nullpose.solver.kernels.compiler.jit import inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
+from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers, positive_definite
+from nullpose.solver.kernels.linear_algebra.forms import form_value
+from nullpose.solver.kernels.linear_algebra.symmetric import (
+    add_square,
+    copy_into,
+    form_product,
+    top_eigenvector,
+)
+from nullpose.solver.kernels.linear_algebra.vectors import dot
+from nullpose.solver.kernels.search.local_coordinates import clamp_axis
+
+_MANY = 16  # ratios that are taken at first, if there are more
+_FEW = 6  # and in each later round at most
+_ROUNDS = 5
+_SLIGHT = 1e-3
+_FINE = 1e-5  # accuracy of the multipliers
+_FINEST = 1e-10  # and at one position
+_LOOSE = 0.03  # and in units of a box's size
+_INTERIOR = 0.01  # and of an interior point's, likewise
+_GRID = 9  # of lines across a cell
+
+
+@inner_kernel
+def add_axis(basis, back, u, start):
+    """Add the whitened square of an axis to a matrix."""
+    w = scratch(3)
+    whiten_axis(basis, back, u, w)
+    add_square(1.0 / dot(w, w), w, start)
+
+
+@inner_kernel
+def add_band_axes(basis, back, row, least, greatest, along, start):
+    """Add the whitened squares of axes inside both a cell and a band.
+
+    On lines across the cell, of which the band leaves an interval or two of the side ``along``.
+    """
+    face, other = int(row[FACE]), 1 - along
+    u = scratch(3)
+    for line in range(_GRID):
+        low, high = row[CELL + 2 * other], row[CELL + 2 * other + 1]
+        x = low + (high - low) * (0.02 + 0.96 * line / (_GRID - 1))
+        if face == 2:  # u_z = 1: the squares of the others sum to 1 / u_z^2 - 1
+            bottom = 1.0 / greatest - 1.0 - x * x
+            top = (1.0 / least - 1.0 if least > 0.0 else 2.0) - x * x
+        else:
+            bottom = least / (1.0 - least) * (1.0 + x * x)
+            top = (greatest / (1.0 - greatest) if greatest < 0.5 else 2.0) * (1.0 + x * x)
+        far, near = math.sqrt(max(0.0, top)), math.sqrt(max(0.0, bottom))
+        for sign in range(2):
+            a = max(near if sign else -far, row[CELL + 2 * along])
+            b = min(far if sign else -near, row[CELL + 2 * along + 1])
+            for part in range(2 if b > a else 0):
+                u[face] = 1.0
+                u[(face + 1 + other) % 3] = x
+                u[(face + 1 + along) % 3] = a + (0.25 if part else 0.75) * (b - a)
+                add_axis(basis, back, u, start)
+
+
+@inner_kernel
+def cell_start(axis_field, basis, back, row, start):
+    """Fill a positive definite matrix of unit trace inside the row's cell and band; return whether there is.
+
+    In whitened coordinates: the mean of the squares of axes inside. None may have been met in a thin cell.
+    """
+    face, has_band, is_horizontal = (
+        int(row[FACE]),
+        axis_field.kind >= BAND_AXIS,
+        has_horizontal_axes(axis_field),
+    )
+    start[:] = 0.0
+    if face < 0 and (is_horizontal or not has_band):
+        start[:3] = 1.0 / 3.0
+        return True
+    half = half_width(axis_field)
+    least, greatest = max(0.0, axis_field.offset[0] - half), min(1.0, axis_field.offset[1] + half)
+    u = scratch(3)
+    if face < 0:
+        for turn in range(12):
+            share = least + (greatest - least) * (0.25 if turn & 1 else 0.75)
+            across, azimuth = math.sqrt(1.0 - share), turn * math.pi / 3.0
+            u[0], u[1] = across * math.cos(azimuth), across * math.sin(azimuth)
+            u[2] = math.sqrt(share) if turn < 6 else -math.sqrt(share)
+            add_axis(basis, back, u, start)
+    elif has_band and not is_horizontal:
+        if face != 1:
+            add_band_axes(basis, back, row, least, greatest, 1 if face == 0 else 0, start)
+        if face != 0:
+            add_band_axes(basis, back, row, least, greatest, 1 if face == 2 else 0, start)
+    else:
+        for corner in range(5):
+            u[face] = 1.0
+            for side in range(2):
+                low, wide = row[CELL + 2 * side], row[CELL + 2 * side + 1] - row[CELL + 2 * side]
+                fraction = 0.5 if corner == 4 else (0.02 if (corner >> side) & 1 else 0.98)
+                u[(face + 1 + side) % 3] = low + fraction * wide
+            if is_horizontal:
+                u[2] = 0.0
+            add_axis(basis, back, u, start)
+    if is_horizontal:
+        start[2] += 0.1
+    trace = start[0] + start[1] + start[2]
+    for m in range(6):
+        start[m] /= trace
+    return positive_definite(start)
+
+
+@inner_kernel
+def take_smallest(forms, every, below, most, pool, sides, total):
+    """Add the ratios lowest at a matrix, if below a value, to the pool; return how many forms there are."""
+    for _ in range(min(most, POOL - total)):
+        ratio = lowest_missing(every, below, pool, sides, total)
+        if ratio < 0:
+            break
+        copy_into(forms[ratio], pool.forms[total])
+        pool.members[total] = ratio
+        total += 1
+    return total
+
+
+@inner_kernel
+def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matrix):
+    """Return the dual's primal value and how many forms it took: few at a time if there are many.
+
+    Begins with the pool and the ratios smallest at the start, and adds what turns out to be smaller.
+    """
+    copy_into(start, matrix)
+    below, found, counted = math.inf, math.inf, np.int64(0)
+    for _ in range(_ROUNDS):
+        for k in range(every.shape[0]):
+            every[k] = form_product(forms[k], matrix)
+        total = take_smallest(forms, every, below, max(_FEW, _MANY + sides - total), pool, sides, total)
+        if total == counted:
+            break
+        found = dual_multipliers(pool.forms, sides, total, level, stop, gap, start, pool.shares, matrix)
+        below, counted = found - _SLIGHT * level, total
+    return found, total
+
+
+@inner_heap_kernel
+def interior_multipliers(
+    family, axis_field, basis, row, whitening, pool, sides, total, coarseness, every, weights, v
+):
+    """Fill the dual's multipliers and the axis that its matrix suggests; return the primal value."""
+    ratios, level = every.shape[0], row[LEVEL]
+    matrix, start, forms = scratch(6), scratch(6), np.empty((ratios, 6))
+    if not cell_start(axis_field, basis, whitening[2], row, start):
+        return math.inf
+    for k in range(ratios):
+        ratio_form(family, has_horizontal_axes(axis_field), basis, row, whitening, k, forms[k])
+    # multipliers as sloppy as that exclude a box so small no sooner than its halves, for ever
+    accuracy = max(_INTERIOR * coarseness, min(_FINE, max(_FINEST, coarseness)))
+    primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix)
+    top_eigenvector(matrix, v)
+    reached = math.inf
+    for k in range(ratios):
+        reached = min(reached, form_value(forms, k, v))
+    if primal > level and primal - reached > coarseness * level:
+        # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
+        primal, total = sparse_dual(forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix)
+        top_eigenvector(matrix, v)
+    put_weights(pool, sides, total, ratios, weights)
+    return primal
+
+
+@inner_kernel
+def free_multipliers(family, axis_field, basis, row, denominator, coarseness, workspace, axis):
+    """Fill new multipliers for a free axis into the row; return (primal, rank-one value, whether known).
+
+    Both values are at the centre and relative to the level: the first is what multipliers cannot beat, the
+    second is what one axis reaches, which is filled in world coordinates. A first value of infinity: no
+    multipliers were found. Where the last is false, the first is only what the multipliers found come to,
+    well below the level, and there is no axis.
+    """
+    level, ratios = row[LEVEL], family.numerator_isotropic.shape[0]
+    weights, every = workspace.weights, workspace.values
+    pool = Pool(
+        scratch(POOL, 6), scratch_int(POOL), scratch(POOL), scratch(POOL), scratch(POOL, 2), scratch(3),
+        scratch_int(3),
+    )  # fmt: skip
+    mean, back, v, places = scratch(6), scratch(3, 3), scratch(3), scratch_int(4)
+    whitening = (workspace.denominators, mean, back)
+    whiten(family, basis, row, denominator, workspace.denominators, mean, back)
+    sides = constraint_forms(axis_field, basis, row, back, pool.forms, places)
+    for c in range(sides):
+        pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])
+    tolerance = max(_FINE, _LOOSE * coarseness)
+    primal, followed, total = ascend(
+        family,
+        has_horizontal_axes(axis_field),
+        basis,
+        row,
+        whitening,
+        pool,
+        sides,
+        tolerance,
+        every,
+        weights,
+        v,
+    )
+    if primal == math.inf:
+        primal = interior_multipliers(
+            family, axis_field, basis, row, whitening, pool, sides, total, coarseness, every, weights, v
+        )
+        followed = True
+        if primal == math.inf:
+            return math.inf, 0.0, False
+    row[SIDE] = row[SIDE + 1] = row[BAND] = 0.0
+    for c in range(sides):  # the multipliers of the cell's sides and of the band
+        row[abs(places[c])] += math.copysign(weights[ratios + c], places[c])
+    keep_largest(weights, ratios, row)
+    if not followed:
+        return primal / level, 0.0, False
+    axis_of(basis, back, v, axis)
+    square = 1.0
+    if axis_field.kind >= BAND_AXIS:
+        clamp_axis(axis_field, axis)
+        whiten_axis(basis, back, axis, v)
+        square = dot(v, v)
+    reached = fill_values(family, row[CENTRE:HALF], level, axis, square, every)
+    return primal / level, reached / (square * level), True

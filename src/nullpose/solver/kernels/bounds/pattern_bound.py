@@ -1,0 +1,326 @@
+"""Whether no pose of a cell reaches a level, for an antenna with any pattern.
+
+The ratios ``N_k / D_k`` are all below t wherever ``F = sum_k l_k (N_k - t D_k)`` is negative for
+multipliers l of sum one. F is a weighted sum of ``g(b_j) / |r_j|^2`` over the ground points: expanded
+to second order about the cell's middle with a bound on the third, and maximised over the cell coordinate
+by coordinate.
+"""
+
+from __future__ import annotations
+
+import math
+
+from nullpose.solver.kernels.bounds.attitude import (
+    ANCHOR,
+    CHART,
+    FACE,
+    HALF,
+    WARM,
+    cyclic,
+    direction_rate,
+    fill_frame,
+    in_body,
+    move,
+    rates,
+    third,
+)
+from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.linear_algebra.harmonics import cap_bounds, gain_at, gain_jet
+from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
+from nullpose.solver.kernels.linear_algebra.vectors import (
+    dot,
+    norm,
+    over,
+    row as row_of,
+    scaled,
+    square_range,
+    unit,
+)
+
+_WIDEST = 1.0  # radians: directions in wider caps are not expanded
+_HALVINGS = 14
+_PACE = 2.0
+_STEPS = 40
+
+LEAST, MOST, REST = 0, 1, 2  # columns of a point's bounds over a cell
+
+
+@inner_kernel
+def vector_to(points, j, row):
+    """Return the way from a cell's middle to a point, in the chart's order."""
+    first = int(row[CHART])
+    point, middle = cyclic(points[j], first), cyclic(row, first)
+    return point[0] - middle[0], point[1] - middle[1], point[2] - middle[2]
+
+
+@inner_kernel
+def fill_points(family, pattern, row, space):
+    """Fill every point's bounds over the cell.
+
+    Of ``g / r^2``: least and largest over the cell, and the bound on a sixth of the third derivative. Returns
+    how far the whole may turn, radians.
+    """
+    points = family.points_m
+    anchor = int(row[ANCHOR])
+    anchor_m = vector_to(points, anchor, row)
+    fill_frame(row, anchor_m, space.frame)
+    reach = norm(row[HALF:])
+    near, _ = square_range(points[anchor], row, row[HALF:], 3)
+    held, whole = rates(row, reach, anchor_m, math.sqrt(near))
+    for j in range(points.shape[0]):
+        a = in_body(space.frame, vector_to(points, j, row))
+        near, far = square_range(points[j], row, row[HALF:], 3)
+        e = reach / math.sqrt(near) if near > 0.0 else math.inf
+        is_anchor = j == anchor
+        width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
+        cap_bounds(pattern, unit(a), min(width, math.pi), space.caps)
+        least, most = -space.caps[0], space.caps[1]
+        space.wide[j, LEAST] = max(0.0, least) / far if least >= 0.0 else least / near
+        space.wide[j, MOST] = most / near if most >= 0.0 else most / far
+        space.wide[j, REST] = math.inf
+        if width < _WIDEST and e < 0.5:  # in wider cells the third derivative's bound is of no use
+            turning = held if is_anchor else whole
+            g0 = max(abs(least), abs(most))
+            away = 0.0 if is_anchor else e
+            rest = third(turning, width, e, away, g0, space.caps[2], space.caps[3], space.caps[4])
+            space.wide[j, REST] = rest / near
+    return whole[0]
+
+
+@inner_kernel
+def weak_ratio(family, level, space):
+    """Return a ratio that stays below a level by the bounds of its points over the cell, or -1."""
+    for k in range(family.numerator_point.shape[0]):
+        g = family.denominator_of[k]
+        below = family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            below += family.denominator_weight[e] * space.wide[family.denominator_point[e], LEAST]
+        above = family.numerator_isotropic[k]
+        above += family.numerator_weight[k] * space.wide[family.numerator_point[k], MOST]
+        if above < level * below * (1.0 - 1e-12):
+            return k
+    return -1
+
+
+@inner_kernel
+def middle(family, pattern, level, row, space):
+    """Return the smallest ratio at a cell's middle, and whether it is to be expanded there.
+
+    It is if some ratio with its remainders is below the level: no multipliers would do otherwise. Fills the
+    points' values.
+    """
+    for j in range(family.points_m.shape[0]):
+        a = in_body(space.frame, vector_to(family.points_m, j, row))
+        square = dot(a, a)
+        x, y, z = over(a, math.sqrt(square))
+        space.value[j] = gain_at(pattern, x, y, z) / square
+    least, promising = math.inf, False  # an expansion costs ten times as much as this look
+    for k in range(family.numerator_point.shape[0]):
+        g, j = family.denominator_of[k], family.numerator_point[k]
+        isotropic, weight = family.numerator_isotropic[k], family.numerator_weight[k]
+        above = isotropic + weight * min(space.wide[j, MOST], space.value[j] + space.wide[j, REST])
+        value = isotropic + weight * space.value[j]
+        below = base = family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            j, weight = family.denominator_point[e], family.denominator_weight[e]
+            below += weight * max(space.wide[j, LEAST], space.value[j] - space.wide[j, REST])
+            base += weight * space.value[j]
+        promising = promising or above < level * below
+        least = min(least, value / base)
+    return least, promising
+
+
+@inner_kernel
+def expand(family, pattern, row, space):
+    """Fill value, gradient and Hessian of every point's ``g / r^2`` at a cell's middle."""
+    points, first, stiff = family.points_m, int(row[CHART]), space.stiff
+    for j in range(points.shape[0]):
+        a = in_body(space.frame, vector_to(points, j, row))
+        square = dot(a, a)
+        length = math.sqrt(square)
+        move(space.frame, a, space.firsts, space.seconds)
+        space.value[j] = gain_jet(pattern, over(a, length), space.pull, stiff) / square
+        p1, p2 = 1.0 / (square * length), 1.0 / (square * square)
+        pull = scaled(p1, space.pull)
+        for m in range(6):
+            i, f = (first + m) % 3 if m < 3 else m, row_of(space.firsts, m)
+            space.slope[j, i] = dot(pull, f)
+            pushed = scaled(p2, (dot(stiff[0], f), dot(stiff[1], f), dot(stiff[2], f)))
+            for n in range(m, 6):
+                k = (first + n) % 3 if n < 3 else n
+                bend = dot(pushed, row_of(space.firsts, n)) + dot(pull, row_of(space.seconds[m], n))
+                space.bend[j, i, k] = bend
+                space.bend[j, k, i] = bend
+
+
+@inner_kernel
+def add_point(space, k, j, weight):
+    """Add the constant of a point's ``g / r^2`` times a weight to that of ``N_k - t D_k``, from above.
+
+    Where the bound over the cell alone is nearer than the expansion's remainder, it takes the place of both.
+    """
+    value, limit = space.value[j], space.wide[j, MOST] if weight > 0.0 else space.wide[j, LEAST]
+    rest = space.wide[j, REST]
+    if space.one_sided[j] and abs(limit - value) < rest:
+        rest = abs(limit - value)
+        for i in range(6):
+            space.slope[j, i] = 0.0
+            space.bend[j, i] = 0.0
+    space.f[k] += weight * value + abs(weight) * rest
+    space.rest[k] += abs(weight) * rest
+
+
+@inner_kernel
+def fill_constants(family, level, space):
+    """Fill the constants of ``N_k - t D_k`` from above, and how much of them is remainder."""
+    for k in range(family.numerator_point.shape[0]):
+        g = family.denominator_of[k]
+        space.f[k] = family.numerator_isotropic[k] - level * family.denominator_isotropic[g]
+        space.rest[k] = 0.0
+        add_point(space, k, family.numerator_point[k], family.numerator_weight[k])
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            add_point(space, k, family.denominator_point[e], -level * family.denominator_weight[e])
+
+
+@inner_kernel
+def weigh(family, level, multipliers, space):
+    """Fill every point's factor in ``sum_k l_k (N_k - t D_k)``; return the sum of the constants."""
+    space.factor[:] = 0.0
+    total = 0.0
+    for k in range(multipliers.shape[0]):
+        total += multipliers[k] * space.f[k]
+        g = family.denominator_of[k]
+        space.factor[family.numerator_point[k]] += multipliers[k] * family.numerator_weight[k]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            space.factor[family.denominator_point[e]] -= level * multipliers[k] * family.denominator_weight[e]
+    return total
+
+
+@inner_kernel
+def upper(family, level, half, multipliers, space):
+    """Return an upper bound of ``sum_k l_k (N_k - t D_k)`` over the cell, convex in l; fill its slopes by l.
+
+    With ``|x_i| <= h_i`` the Hessian's mixed terms are
+    ``|x_i x_j| <= (x_i^2 h_j / h_i + x_j^2 h_i / h_j) / 2``: what is left is one parabola for each
+    coordinate.
+    """
+    total = weigh(family, level, multipliers, space)
+    slope, bend, parts = space.sum_slope, space.sum_bend, space.parts
+    slope[:] = 0.0
+    bend[:] = 0.0
+    points = space.factor.shape[0]
+    for j in range(points):
+        c = space.factor[j]
+        if c != 0.0:
+            for i in range(6):
+                slope[i] += c * space.slope[j, i]
+                for n in range(i, 6):
+                    bend[i, n] += c * space.bend[j, i, n]
+    for i in range(6):
+        h, mixed = half[i], 0.0
+        if h == 0.0:
+            space.at[i] = space.score[i] = 0.0
+            continue
+        for n in range(6):
+            if n != i:
+                mixed += abs(bend[min(i, n), max(i, n)]) * half[n] / h
+        curve, x = bend[i, i] + mixed, h
+        if curve < 0.0 and abs(slope[i]) < -curve * h:
+            x = -abs(slope[i]) / curve
+        total += abs(slope[i]) * x + 0.5 * curve * x * x
+        space.score[i] = abs(slope[i]) * h + (abs(bend[i, i]) + mixed) * h * h
+        space.at[i] = math.copysign(x, slope[i])
+    # by Danskin's theorem the slopes by l are those at the maximum
+    for i in range(6):
+        for n in range(i + 1, 6):
+            share = 0.0
+            if half[i] > 0.0 and half[n] > 0.0:
+                share = 0.5 * (space.at[i] ** 2 * half[n] / half[i] + space.at[n] ** 2 * half[i] / half[n])
+            bend[n, i] = math.copysign(share, bend[i, n])
+    for j in range(points):
+        part = 0.0
+        for i in range(6):
+            part += space.slope[j, i] * space.at[i] + 0.5 * space.at[i] ** 2 * space.bend[j, i, i]
+            for n in range(i + 1, 6):
+                part += bend[n, i] * space.bend[j, i, n]
+        parts[j] = part
+    for k in range(multipliers.shape[0]):
+        g = family.denominator_of[k]
+        by = space.f[k] + family.numerator_weight[k] * parts[family.numerator_point[k]]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            by -= level * family.denominator_weight[e] * parts[family.denominator_point[e]]
+        space.by_l[k] = by
+    return total
+
+
+@inner_kernel
+def excluded_by_sum(family, level, row, space):
+    """Check whether some multipliers keep the sum negative over the cell; leave the best in its row."""
+    multipliers, half = row[WARM:], row[HALF:FACE]
+    if multipliers.shape[0] == 2:  # one number: bisection with tangents ends in a few steps, descent does not
+        return two_multipliers(family, level, half, multipliers, space)
+    return descended(family, level, half, multipliers, space)
+
+
+@inner_kernel
+def two_multipliers(family, level, half, multipliers, space):
+    """Check whether two multipliers keep the sum negative: tried where both sides' tangents meet."""
+    left, left_value, left_slope, right, right_value, right_slope = 0.0, 0.0, 0.0, 1.0, 0.0, 0.0
+    for _ in range(_HALVINGS):
+        x = multipliers[0]
+        value = upper(family, level, half, multipliers, space)
+        if value < 0.0:
+            return True
+        slope = space.by_l[0] - space.by_l[1]  # of a convex function of the first multiplier
+        if slope < 0.0:
+            left, left_value, left_slope = x, value, slope
+        else:
+            right, right_value, right_slope = x, value, slope
+        if value + slope * ((1.0 if right_slope == 0.0 else right) - x) > 0.0 and slope < 0.0:
+            return False
+        if value + slope * ((0.0 if left_slope == 0.0 else left) - x) > 0.0 and slope >= 0.0:
+            return False
+        x = 0.5 * (left + right)
+        if left_slope < 0.0 and right_slope > 0.0:
+            step = (right_value - left_value + left_slope * left - right_slope * right) / (
+                left_slope - right_slope
+            )
+            if left_value + left_slope * (step - left) > 0.0:
+                return False  # convex: no less than where the tangents meet
+            x = min(max(step, left + 0.1 * (right - left)), right - 0.1 * (right - left))
+        elif left_slope < 0.0:
+            x = min(1.0, left - 2.0 * left_value / left_slope)
+        elif right_slope > 0.0:
+            x = max(0.0, right - 2.0 * right_value / right_slope)
+        multipliers[0], multipliers[1] = x, 1.0 - x
+    return False
+
+
+@inner_kernel
+def descended(family, level, half, multipliers, space):
+    """Check whether several multipliers keep the sum negative: mirror descent, the best of which is left."""
+    n = multipliers.shape[0]
+    least = math.inf
+    for step in range(_STEPS):
+        value = upper(family, level, half, multipliers, space)
+        if value < 0.0:
+            return True
+        # the slopes by the multipliers tell how far any others could lower a convex function
+        low, high, mean = math.inf, -math.inf, 0.0
+        for k in range(n):
+            low, high = min(low, space.by_l[k]), max(high, space.by_l[k])
+            mean += multipliers[k] * space.by_l[k]
+        if value < least:
+            least = value
+            copy_into(multipliers, space.best)
+        if value + low - mean > 0.0:
+            break  # convex: no multipliers do better than this
+        size, total = _PACE / ((high - low) * math.sqrt(1.0 + step)), 0.0
+        for k in range(n):
+            # none may stay at zero, which a product never leaves
+            multipliers[k] = max(1e-9, multipliers[k]) * math.exp(-size * (space.by_l[k] - low))
+            total += multipliers[k]
+        for k in range(n):
+            multipliers[k] /= total
+    copy_into(space.best, multipliers)
+    return False

@@ -1,0 +1,176 @@
+"""Branch and bound over positions and attitudes for an antenna with any pattern."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from nullpose.objectives import FloatArray
+from nullpose.solver.kernels.bounds.attitude import ANCHOR, CENTRE, CHART, HALF, WARM
+from nullpose.solver.kernels.bounds.branch import BETTER, BY_POSITION, DONE, EXCLUDED, FULL, LIMIT
+from nullpose.solver.kernels.bounds.node import split_across
+from nullpose.solver.kernels.bounds.pattern_bound import (
+    excluded_by_sum,
+    expand,
+    fill_constants,
+    fill_points,
+    middle,
+    weak_ratio,
+)
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
+from nullpose.solver.kernels.linear_algebra.vectors import row as row_of, square_range, store
+from nullpose.solver.kernels.search.domain import contains, forbidding
+from nullpose.solver.kernels.search.pattern_search import bring_within_reach, fill_log_ratios, tilt_of
+
+_ROUNDING_RAD = 1e-9  # radians
+
+
+class Space(NamedTuple):
+    """Where the kernels of one thread write."""
+
+    caps: FloatArray
+    wide: FloatArray
+    value: FloatArray
+    slope: FloatArray
+    bend: FloatArray
+    frame: FloatArray
+    firsts: FloatArray
+    seconds: FloatArray
+    pull: FloatArray
+    stiff: FloatArray
+    f: FloatArray
+    rest: FloatArray
+    by_l: FloatArray
+    best: FloatArray
+    score: FloatArray
+    at: FloatArray
+    factor: FloatArray
+    parts: FloatArray
+    sum_slope: FloatArray
+    sum_bend: FloatArray
+    one_sided: FloatArray
+
+
+@inner_kernel
+def choose(family, row, space):
+    """Return the coordinate to split: the one that adds most to the bound."""
+    anchor = int(row[ANCHOR])
+    near, far = square_range(family.points_m[anchor], row, row[HALF:], 3)
+    length = math.sqrt(0.5 * (near + far))
+    total = 0.0
+    for i in range(6):
+        total += row[HALF + i] * (2.0 / length if i < 3 else 1.0)
+    rest = 0.0
+    for k in range(space.rest.shape[0]):
+        rest += row[WARM + k] * space.rest[k]
+    most, axis = -1.0, 0
+    for i in range(6):
+        rate = row[HALF + i] * (2.0 / length if i < 3 else 1.0)
+        score = rate if not math.isfinite(rest) else space.score[i] + 3.0 * rest * rate / total
+        if score > most:
+            most, axis = score, i
+    return axis
+
+
+@inner_heap_kernel
+def space_of(family):
+    """Return scratch space for a family."""
+    m, n = family.points_m.shape[0], family.numerator_point.shape[0]
+    one_sided = np.ones(m)
+    for k in range(n):
+        for e in range(family.denominator_point.shape[0]):
+            if family.denominator_point[e] == family.numerator_point[k]:
+                one_sided[family.numerator_point[k]] = 0.0
+    return Space(
+        np.empty(5), np.empty((m, 3)), np.empty(m), np.empty((m, 6)), np.empty((m, 6, 6)), np.empty((18, 3)),
+        np.empty((6, 3)), np.empty((6, 6, 3)), np.empty(3), np.empty((3, 3)), np.empty(n), np.empty(n),
+        np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m), np.empty(m), np.empty(6),
+        np.empty((6, 6)), one_sided,
+    )  # fmt: skip
+
+
+@inner_kernel
+def is_better(family, domain, pattern, reach, floor, row, space, position, rotation):
+    """Fill the pose at an allowed middle, brought within reach; check whether it is above the floor."""
+    if not contains(domain, row[CENTRE:HALF]):
+        return False
+    for i in range(3):
+        position[i] = row[i]
+        store(row_of(space.frame, i), rotation[(int(row[CHART]) + i) % 3])
+    bring_within_reach(reach, rotation)
+    return math.exp(fill_log_ratios(family, pattern, position, rotation, space.parts, space.by_l)) > floor
+
+
+@inner_kernel
+def examine_cell(family, domain, pattern, reach, level, floor, row, space, position, rotation):
+    """Return what becomes of a cell; fill its multipliers, zero where no pose of it is allowed."""
+    if forbidding(domain, row[CENTRE:], row[HALF:]) >= 0:
+        row[WARM:] = 0.0
+        return EXCLUDED
+    turning = fill_points(family, pattern, row, space)
+    tilt, _ = tilt_of(reach, row_of(space.frame, (2 - int(row[CHART])) % 3))
+    weak = weak_ratio(family, level, space)
+    if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + _ROUNDING_RAD:
+        row[WARM:] = 0.0
+        if weak >= 0:
+            row[WARM + weak] = 1.0
+        return EXCLUDED
+    value, promising = middle(family, pattern, level, row, space)
+    if value > floor and is_better(family, domain, pattern, reach, floor, row, space, position, rotation):
+        return BETTER
+    if not promising:
+        space.rest[:] = math.inf
+        return BY_POSITION
+    expand(family, pattern, row, space)
+    fill_constants(family, level, space)
+    return EXCLUDED if excluded_by_sum(family, level, row, space) else BY_POSITION
+
+
+@heap_kernel
+def branch_pattern(
+    family, domain, pattern, reach, level, floor, keep, stack, top, leaves, filled, budget, position, rotation
+):
+    """Work off cells; return why it ended, how many are left, ``filled``, how many were examined, and 0.
+
+    Args:
+        family: the ratios.
+        domain: box, keep-out balls and forbidden pieces.
+        pattern: the antenna's arrays.
+        reach: which attitudes there are.
+        level: no pose of an excluded cell has its smallest ratio above this.
+        floor: an allowed middle above this is a better pose, at the nearest attitude that is reached, and
+            ends the call.
+        stack: (size, columns) cells.
+        top: how many of them there are.
+        keep: whether excluded cells become leaves.
+        leaves: (l, columns) output, excluded cells with the multipliers that do so in place of those to begin
+            with; all zero where no pose of the cell is allowed.
+        filled: how many leaves there are.
+        budget: cells to examine at most.
+        position: output, (3,): that of the better pose.
+        rotation: output, (3, 3): its rotation to the world from the antenna's axes.
+    """
+    space, row = space_of(family), np.empty(stack.shape[1])
+    done = 0
+    while top > 0:
+        if done >= budget:
+            return LIMIT, top, filled, done, 0
+        if top + 2 > stack.shape[0] or (keep and filled >= leaves.shape[0]):
+            return FULL, top, filled, done, 0
+        done += 1
+        top -= 1
+        copy_into(stack[top], row)
+        verdict = examine_cell(family, domain, pattern, reach, level, floor, row, space, position, rotation)
+        if verdict == BETTER:
+            return BETTER, top + 1, filled, done, 0
+        if verdict == BY_POSITION:
+            side = choose(family, row, space)
+            split_across(row, side, HALF + side, stack[top], stack[top + 1])
+            top += 2
+        elif keep:
+            copy_into(row, leaves[filled])
+            filled += 1
+    return DONE, top, filled, done, 0

@@ -1,0 +1,144 @@
+"""Forms at a box's centre, whitened: in coordinates in which the denominators' mean is the identity."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nullpose.problem.records import BAND_AXIS, CONE_AXIS
+from nullpose.solver.kernels.bounds.exclusion import has_horizontal_axes
+from nullpose.solver.kernels.bounds.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
+from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch
+from nullpose.solver.kernels.linear_algebra.forms import (
+    add_denominator,
+    add_point,
+    congruence,
+    in_frame,
+    inverse_factor,
+)
+from nullpose.solver.kernels.linear_algebra.links import denominator_at, numerator_at
+from nullpose.solver.kernels.linear_algebra.symmetric import smallest_of
+from nullpose.solver.kernels.linear_algebra.vectors import dot, store
+
+_THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
+_STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
+
+
+@inner_kernel
+def half_width(axis_field):
+    """Return half the width that a cone is given; zero for a band."""
+    if axis_field.kind != CONE_AXIS:
+        return 0.0
+    c = axis_field.offset[0]
+    return min(_THIN, _STEEP * min(c, 1.0 - c))
+
+
+@inner_kernel
+def fill_denominators(family, basis, centre, denominators, mean):
+    """Fill every denominator at the centre, in the frame, and their mean."""
+    groups = denominators.shape[0]
+    denominators[:, :] = 0.0
+    mean[:] = 0.0
+    for g in range(groups):
+        add_denominator(family, g, 1.0, centre, basis, denominators[g])
+        for m in range(6):
+            mean[m] += denominators[g, m] / groups
+
+
+@inner_kernel
+def whiten(family, basis, row, denominator, denominators, mean, back):
+    """Fill what whitens, and with several denominators each of them and their mean W, in the frame.
+
+    A ratio's form is then that of ``N_k + t (W - D_k)``, which exceeds the level t exactly where the ratio
+    does.
+    """
+    if family.denominator_isotropic.shape[0] == 1:
+        for m in range(6):
+            mean[m] = -denominator[m] / row[LEVEL]
+    else:
+        fill_denominators(family, basis, row[CENTRE:HALF], denominators, mean)
+    inverse_factor(mean, back)
+
+
+@inner_kernel
+def ratio_form(family, is_horizontal, basis, row, whitening, k, out):
+    """Fill the whitened form of one ratio at the centre."""
+    denominators, mean, back = whitening
+    den, level, raw = family.denominator_of, row[LEVEL], scratch(6)
+    several = family.denominator_isotropic.shape[0] > 1
+    for m in range(6):
+        raw[m] = level * (mean[m] - denominators[den[k], m]) if several else 0.0
+    weight, isotropic = family.numerator_weight[k], family.numerator_isotropic[k]
+    add_point(family, family.numerator_point[k], row[CENTRE:HALF], basis, weight, isotropic, raw)
+    congruence(raw, back, out)
+    if is_horizontal:  # no weight on the vertical: whitening leaves its direction alone
+        out[2] = -(abs(out[0]) + abs(out[1]) + 2.0 * abs(out[3])) - level
+        out[4] = out[5] = 0.0
+
+
+@inner_kernel
+def constraint_forms(axis_field, basis, row, back, forms, places):
+    """Fill the whitened forms of the cell's sides and of the band's ends; return how many there are.
+
+    And the column of a row in which each one's multiplier stands, negative where it stands negated.
+    """
+    raw, turned = scratch(6), scratch(6)
+    sides = np.int64(0)
+    is_horizontal = has_horizontal_axes(axis_field)
+    if row[FACE] >= 0.0:
+        for side in range(2):
+            if is_horizontal and side != (0 if row[FACE] == 0.0 else 1):
+                continue
+            cell_side(int(row[FACE]), row[CELL:SIDE], side, raw)
+            congruence(raw, basis, turned)
+            congruence(turned, back, forms[sides])
+            if is_horizontal:
+                forms[sides, 2] = forms[sides, 4] = forms[sides, 5] = 0.0
+            places[sides] = SIDE + side
+            sides += 1
+    if axis_field.kind >= BAND_AXIS and not is_horizontal:
+        thin = half_width(axis_field)
+        for end in range(2):
+            c = axis_field.offset[end] + (thin if end == 1 else -thin)
+            if 0.0 < c < 1.0:
+                for m in range(6):
+                    raw[m] = (-c if end == 0 else c) if m < 3 else 0.0
+                raw[2] += 1.0 if end == 0 else -1.0
+                congruence(raw, basis, turned)
+                congruence(turned, back, forms[sides])
+                places[sides] = BAND if end == 1 else -BAND
+                sides += 1
+    return sides
+
+
+@inner_kernel
+def fill_values(family, centre, level, axis, size, values):
+    """Fill every ratio's form at an axis of the world, whose squared length when whitened is ``size``.
+
+    Returns the smallest.
+    """
+    ratios, groups = family.numerator_weight.shape[0], family.denominator_isotropic.shape[0]
+    for k in range(ratios):
+        values[k] = numerator_at(family, k, centre, axis)
+    for g in range(groups if groups > 1 else 0):
+        excess = level * (size - denominator_at(family, g, centre, axis))
+        for k in range(ratios):
+            values[k] += excess if family.denominator_of[k] == g else 0.0
+    return smallest_of(values[:ratios])
+
+
+@inner_kernel
+def whiten_axis(basis, back, u, w):
+    """Fill an axis of the world in whitened coordinates."""
+    v0, v1, v2 = in_frame(basis, u)
+    # back is upper triangular: w solves back w = v
+    w[2] = v2 / back[2, 2]
+    w[1] = (v1 - back[1, 2] * w[2]) / back[1, 1]
+    w[0] = (v0 - back[0, 1] * w[1] - back[0, 2] * w[2]) / back[0, 0]
+
+
+@inner_kernel
+def axis_of(basis, back, w, axis):
+    """Fill the axis of the world, of any length, that whitened coordinates stand for."""
+    v = dot(back[0], w), dot(back[1], w), dot(back[2], w)
+    store((dot(basis[0], v), dot(basis[1], v), dot(basis[2], v)), axis)

@@ -1,0 +1,1 @@
+"""Small vectors, symmetric forms and polynomials; the links of ground points in these terms."""

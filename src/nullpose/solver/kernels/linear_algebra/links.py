@@ -1,0 +1,288 @@
+"""Ratios of a family at a pose, and their derivatives.
+
+With ``r = q - p`` the link form of a point is ``h(p, u) = (|u x r|^2 + l (u.r)^2) / |r|^4``, l being the
+antenna's leak: for a unit axis, gain over ``|r|^2`` (design family (F); paper eqs. 1.2 to 1.4). That of a
+point with a dipole along v is ``(1 - l) B^2 / |r|^6 + l |u|^2 |v x r|^2 / |r|^4``, ``B = (u x r).(v x r)``.
+Of a dipole with a leak f of its own these are the parts f and ``1 - f``.
+Ratio k is ``N_k / D_g(k)`` with ``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not
+depend on the length of ``u``, so an axis that is an affine function of the position needs no normalising and
+no second derivative of its own.
+"""
+
+from __future__ import annotations
+
+import math
+
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
+from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, minus, row, scaled, store
+
+
+@inner_kernel
+def seen_axis(turn, j, u):
+    """Return the axis that point j sees."""
+    if turn.shape[0] == 0:
+        return u[0], u[1], u[2]
+    return dot(turn[j, 0], u), dot(turn[j, 1], u), dot(turn[j, 2], u)
+
+
+@inner_kernel
+def isotropic_share(leaks, j):
+    """Return the isotropic part of point j: all of it, or the leak through the null of its dipole.
+
+    Where no point has a dipole, the leaks are None, and what dipoles need is not even compiled.
+    """
+    if leaks is not None:
+        return leaks[j]
+    return 1.0
+
+
+@inner_kernel
+def dipole_link(leak, axes, j, r, u):
+    """Return the link of point j, which has a dipole, seen along r."""
+    if axes is not None:
+        other, square = cross(axes[j], r), dot(r, r)
+        both, leaking = dot(cross(u, r), other), leak * dot(u, u) * dot(other, other)
+        return ((1.0 - leak) * both * both / square + leaking) / (square * square)
+    return 0.0
+
+
+@kernel
+def link_form(family, j, p, u):
+    """Return the link of point j, without cancellation beside the null."""
+    r, seen = minus(row(family.points_m, j), p), seen_axis(family.turn, j, u)
+    ahead, side, square = dot(seen, r), cross(seen, r), dot(r, r)
+    link = (dot(side, side) + family.leak * ahead * ahead) / (square * square)
+    share = isotropic_share(family.ground_leaks, j)
+    if share < 1.0:
+        of_dipole = dipole_link(family.leak, family.ground_axes, j, r, seen)
+        return share * link + (1.0 - share) * of_dipole
+    return link
+
+
+@inner_kernel
+def numerator_at(family, k, p, u):
+    """Return ``u^T N_k u`` at position p."""
+    uu = dot(u, u)
+    link = link_form(family, family.numerator_point[k], p, u)
+    return family.numerator_isotropic[k] * uu + family.numerator_weight[k] * link
+
+
+@inner_kernel
+def denominator_at(family, g, p, u):
+    """Return ``u^T D_g u`` at position p."""
+    total = family.denominator_isotropic[g] * dot(u, u)
+    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+        link = link_form(family, family.denominator_point[e], p, u)
+        total += family.denominator_weight[e] * link
+    return total
+
+
+@kernel
+def log_ratios(family, p, u, log_denominators, out):
+    """Fill the logarithm of every ratio at position p and axis u, and those of the denominators."""
+    for g in range(log_denominators.shape[0]):
+        total = denominator_at(family, g, p, u)
+        log_denominators[g] = math.log(total) if total > 0.0 else -math.inf
+    for k in range(out.shape[0]):
+        value = numerator_at(family, k, p, u)
+        log_denominator = log_denominators[family.denominator_of[k]]
+        out[k] = (math.log(value) if value > 0.0 else -math.inf) - log_denominator
+
+
+@kernel
+def min_log_ratio(family, p, u, log_denominators, out):
+    """Return the smallest log ratio at a pose: the objective that every solver here maximises."""
+    log_ratios(family, p, u, log_denominators, out)
+    smallest = out[0]
+    for k in range(1, out.shape[0]):
+        smallest = min(smallest, out[k])
+    return smallest
+
+
+@inner_kernel
+def add_form(family, j, weight, p, u, grad, hess, second):
+    """Return ``weight * h_j``; add its derivatives in (p, u), as ``add_parts`` does for the axis seen."""
+    turn = family.turn
+    if turn.shape[0] == 0:
+        return add_parts(family, j, weight, p, u, grad, hess, second)
+    q = turn[j]
+    v, g, h = scratch(3), zeroed(6), zeroed(6, 6)
+    store(seen_axis(turn, j, u), v)
+    value = add_parts(family, j, weight, p, v, g, h, second)
+    for i in range(3):
+        grad[i] += g[i]
+        for a in range(3):
+            grad[3 + i] += q[a, i] * g[3 + a]
+    if second:
+        for i in range(3):
+            for k in range(3):
+                hess[i, k] += h[i, k]
+                for a in range(3):
+                    hess[3 + i, k] += q[a, i] * h[3 + a, k]
+                    hess[i, 3 + k] += h[i, 3 + a] * q[a, k]
+                    for b in range(3):
+                        hess[3 + i, 3 + k] += q[a, i] * h[3 + a, 3 + b] * q[b, k]
+    return value
+
+
+@inner_kernel
+def add_parts(family, j, weight, p, u, grad, hess, second):
+    """Do what ``add_seen_form`` does, for an isotropic point, one with a dipole, or a dipole that leaks."""
+    value, share = 0.0, isotropic_share(family.ground_leaks, j)
+    if share < 1.0:
+        of_dipole = (1.0 - share) * weight
+        value += add_dipole_form(family, family.ground_axes, j, of_dipole, p, u, grad, hess, second)
+    if share > 0.0:
+        value += add_seen_form(family, j, share * weight, p, u, grad, hess, second)
+    return value
+
+
+@inner_kernel
+def add_seen_form(family, j, weight, p, u, grad, hess, second):
+    """Return ``weight * h_j``; add its derivatives in (p, u) to ``grad`` and, if asked for, ``hess``.
+
+    The six variables are p then u. Written with ``A = |u|^2 |r|^2 - (1 - l) (u.r)^2 = |u x r|^2 + l
+    (u.r)^2`` and ``h = A |r|^-4``.
+    """
+    leak = family.leak
+    bent = 1.0 - leak
+    r, ar, au = scratch(3), scratch(3), scratch(3)
+    store(minus(row(family.points_m, j), p), r)
+    rho2, c, uu, side = dot(r, r), dot(u, r), dot(u, u), cross(u, r)
+    area = dot(side, side) + leak * c * c
+    i2 = 1.0 / rho2
+    i4 = weight * i2 * i2
+    i6 = i4 * i2
+    i8 = i6 * i2
+    # (u.u) r - c u and (r.r) u - c r are double cross products: no cancellation beside the null
+    store(scaled(2.0, along(cross(side, u), leak * c, u)), ar)
+    store(scaled(2.0, along(cross(r, side), leak * c, r)), au)
+    for i in range(3):
+        grad[i] -= ar[i] * i4 - 4.0 * area * i6 * r[i]
+        grad[3 + i] += au[i] * i4
+    if second:
+        for i in range(3):
+            for k in range(3):
+                same = 1.0 if i == k else 0.0
+                hess[i, k] += (
+                    2.0 * (uu * same - bent * u[i] * u[k]) * i4
+                    - 4.0 * i6 * (ar[i] * r[k] + r[i] * ar[k])
+                    + area * (24.0 * i8 * r[i] * r[k] - 4.0 * i6 * same)
+                )
+                hess[3 + i, 3 + k] += 2.0 * (rho2 * same - bent * r[i] * r[k]) * i4
+                mixed = 2.0 * (2.0 * u[i] * r[k] - bent * (r[i] * u[k] + c * same)) * i4
+                mixed -= 4.0 * i6 * au[i] * r[k]
+                hess[3 + i, k] -= mixed
+                hess[k, 3 + i] -= mixed
+    return weight * area * i2 * i2
+
+
+@inner_kernel
+def add_dipole_form(family, axes, j, weight, p, u, grad, hess, second):
+    """Do what ``add_seen_form`` does, for a point with a dipole.
+
+    The form is ``(1 - l) B^2 s^-3 + l C uu s^-2`` with ``s = |r|^2``, ``B = (u.v) s - (u.r) (v.r)``, ``uu =
+    |u|^2`` and ``C = |v x r|^2``.
+    """
+    if axes is not None:
+        leak, r, v = family.leak, scratch(3), axes[j]
+        store(minus(row(family.points_m, j), p), r)
+        s, uu = dot(r, r), dot(u, u)
+        uv, ur, vr = dot(u, v), dot(u, r), dot(v, r)
+        side, other = cross(u, r), cross(v, r)
+        b, c = dot(side, other), dot(other, other)
+        i2 = 1.0 / s
+        i4 = i2 * i2
+        whole, leaking = (1.0 - leak) * weight * i4 * i2, leak * weight * i4
+        br, bu, cr = scratch(3), scratch(3), scratch(3)
+        for i in range(3):
+            br[i] = 2.0 * uv * r[i] - vr * u[i] - ur * v[i]
+            bu[i] = s * v[i] - vr * r[i]
+            cr[i] = 2.0 * (r[i] - vr * v[i])
+            grad[i] -= 2.0 * whole * b * (br[i] - 3.0 * b * i2 * r[i])
+            grad[i] -= leaking * uu * (cr[i] - 4.0 * c * i2 * r[i])
+            grad[3 + i] += 2.0 * (whole * b * bu[i] + leaking * c * u[i])
+        if second:
+            for i in range(3):
+                for k in range(3):
+                    same = 1.0 if i == k else 0.0
+                    bent = 2.0 * uv * same - u[i] * v[k] - v[i] * u[k]
+                    far = r[i] * r[k]
+                    hess[i, k] += (
+                        2.0
+                        * whole
+                        * (
+                            br[i] * br[k]
+                            + b * (bent - 6.0 * i2 * (br[i] * r[k] + r[i] * br[k]))
+                            + b * b * i2 * (24.0 * i2 * far - 3.0 * same)
+                        )
+                    )
+                    hess[i, k] += (
+                        leaking
+                        * uu
+                        * (
+                            2.0 * (same - v[i] * v[k])
+                            - 4.0 * i2 * (cr[i] * r[k] + r[i] * cr[k])
+                            + c * i2 * (24.0 * i2 * far - 4.0 * same)
+                        )
+                    )
+                    hess[3 + i, 3 + k] += 2.0 * (whole * bu[i] * bu[k] + leaking * c * same)
+                    mixed = whole * (br[k] - 6.0 * b * i2 * r[k]) * bu[i]
+                    mixed += whole * b * (2.0 * v[i] * r[k] - v[k] * r[i] - vr * same)
+                    mixed += leaking * u[i] * (cr[k] - 4.0 * c * i2 * r[k])
+                    hess[3 + i, k] -= 2.0 * mixed
+                    hess[k, 3 + i] -= 2.0 * mixed
+        return whole * b * b + leaking * uu * c
+    return 0.0
+
+
+@inner_kernel
+def fill_isotropic(isotropic, u, gradient, form):
+    """Fill the derivatives of ``isotropic |u|^2`` in (p, u); return it."""
+    gradient[:] = 0.0
+    form[:, :] = 0.0
+    for i in range(3):
+        gradient[3 + i] = 2.0 * isotropic * u[i]
+        form[3 + i, 3 + i] = 2.0 * isotropic
+    return isotropic * dot(u, u)
+
+
+@inner_kernel
+def add_log_bend(factor, value, gradient, form, hess):
+    """Add a multiple of the second derivatives of a logarithm, from those of the number."""
+    for i in range(6):
+        for m in range(6):
+            hess[i, m] += factor * (form[i, m] / value - gradient[i] * gradient[m] / (value * value))
+
+
+@kernel
+def derivatives(family, p, u, multipliers, f, grads, hess, work):
+    """Fill log ratios ``f``, their gradients (R, 6), and the multiplier-weighted Hessian (6, 6).
+
+    ``work`` is scratch of shape (G, 7) or more: per denominator its value, and the gradient of its logarithm.
+    """
+    den, dstart = family.denominator_of, family.denominator_start
+    gradient, form = scratch(6), scratch(6, 6)
+    hess[:, :] = 0.0
+    for g in range(family.denominator_isotropic.shape[0]):
+        value, multiplier = fill_isotropic(family.denominator_isotropic[g], u, gradient, form), 0.0
+        for k in range(f.shape[0]):
+            multiplier += multipliers[k] if den[k] == g else 0.0
+        for e in range(dstart[g], dstart[g + 1]):
+            j, weight = family.denominator_point[e], family.denominator_weight[e]
+            value += add_form(family, j, weight, p, u, gradient, form, multiplier > 0.0)
+        work[g, 0] = value
+        for i in range(6):
+            work[g, 1 + i] = gradient[i] / value
+        if multiplier > 0.0:
+            add_log_bend(-multiplier, value, gradient, form, hess)
+    for k in range(f.shape[0]):
+        value, below = fill_isotropic(family.numerator_isotropic[k], u, gradient, form), work[den[k]]
+        j, weight, second = family.numerator_point[k], family.numerator_weight[k], multipliers[k] > 0.0
+        value += add_form(family, j, weight, p, u, gradient, form, second)
+        f[k] = math.log(value) - math.log(below[0])
+        for i in range(6):
+            grads[k, i] = gradient[i] / value - below[1 + i]
+        if second:
+            add_log_bend(multipliers[k], value, gradient, form, hess)

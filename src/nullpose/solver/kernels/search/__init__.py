@@ -1,0 +1,1 @@
+"""Better poses from given ones, by compiled local searches."""
