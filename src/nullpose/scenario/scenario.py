@@ -57,7 +57,8 @@ class Scenario(Section, PointArrays):
         examples=list(RECORDS),
     )
     nodes_from: Label | None = optional(
-        "Name of a GeoJSON or CSV file that lists the nodes, relative to this file's folder. "
+        "Name of a CSV or geographic file (GeoJSON, KML, GeoPackage and others) "
+        "that lists the nodes, relative to this file's folder. "
         "Either this or tables headed [[nodes]].",
         "nodes.geojson",
     )
