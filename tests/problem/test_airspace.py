@@ -4,22 +4,20 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from nullpose.problem.airspace import FENCE, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, airspace_zones
+from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.solver.kernels.search.zones import in_zone
+from scenes import star
 
 SEEDS = st.integers(0, 2**32 - 1)
 HIGH_M = 40.0
 
 
-def star(rng: np.random.Generator, size_m: float) -> list[tuple[float, float]]:
+def outline(rng: np.random.Generator, size_m: float) -> list[list[float]]:
     """Returns a star-shaped polygon in either sense of rotation."""
-    count = int(rng.integers(3, 9))
-    angles = 2.0 * np.pi * (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count
-    around = size_m * rng.uniform(0.3, 1.0, (count, 1)) * np.column_stack([np.cos(angles), np.sin(angles)])
-    corners = [(float(x), float(y)) for x, y in rng.uniform(20.0, 60.0, 2) + around]
-    return corners[::-1] if rng.uniform() < 0.5 else corners
+    corners = star(rng, int(rng.integers(3, 9)), size_m) + rng.uniform(20.0, 60.0, 2)
+    return corners[:: rng.choice([-1, 1])].tolist()
 
 
 def random_airspace(seed: int, *, zones: int, fenced: bool) -> Airspace:
@@ -28,7 +26,7 @@ def random_airspace(seed: int, *, zones: int, fenced: bool) -> Airspace:
     no_fly: list[dict] = []
     for _ in range(zones):
         x, y = rng.uniform(10.0, 70.0, 2)
-        zone: dict = {"polygon_m": star(rng, 20.0)}
+        zone: dict = {"polygon_m": outline(rng, 20.0)}
         shape = rng.integers(3)
         if shape == 0:
             zone = {"x_m": (x, x + rng.uniform(1.0, 30.0)), "y_m": (y, y + rng.uniform(1.0, 30.0))}
@@ -41,7 +39,7 @@ def random_airspace(seed: int, *, zones: int, fenced: bool) -> Airspace:
     return Airspace(
         altitude_m=(8.0, HIGH_M),
         x_m=(0.0, 80.0) if rng.uniform() < 0.5 else None,
-        geofence_m=star(rng, 50.0) if fenced else None,
+        geofence_m=outline(rng, 50.0) if fenced else None,
         no_fly=tuple(no_fly),
     )
 
@@ -63,8 +61,7 @@ def outside_pieces(zones: dict[str, np.ndarray], positions: np.ndarray) -> np.nd
 def in_zones(zones: dict[str, np.ndarray], positions: np.ndarray) -> np.ndarray:
     """Returns which positions a zone forbids, by the kernel that the branch and bound asks."""
     none, no_points = np.zeros(3), np.zeros((0, 3))
-    ours = zones
-    domain = Domain(low_m=none, high_m=none, keep_out_points_m=no_points, keep_out_m=1.0, **ours)
+    domain = Domain(low_m=none, high_m=none, keep_out_points_m=no_points, keep_out_m=1.0, **zones)
     count = len(zones["zone_kind"])
     return np.array([any(in_zone(domain, z, p) for z in range(count)) for p in positions])
 
@@ -85,34 +82,6 @@ def test_pieces_and_zones_forbid_what_the_airspace_forbids(seed: int, zones: int
     allowed = airspace.allows(positions)
     np.testing.assert_array_equal(outside > 0.0, allowed)
     np.testing.assert_array_equal(~in_zones(arrays, positions), allowed)
-
-
-def test_kinds_and_edges() -> None:
-    """A box, a cylinder, a polygon and a fence keep their order, kinds, edges and altitudes."""
-    triangle = [(0.0, 0.0), (0.0, 9.0), (9.0, 0.0)]  # clockwise
-    airspace = Airspace(
-        altitude_m=(8.0, 30.0),
-        geofence_m=[(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)],
-        no_fly=(
-            {"x_m": (1.0, 2.0), "y_m": (3.0, 5.0), "altitude_m": (0.0, 12.0)},
-            {"centre_m": (20.0, 21.0), "radius_m": 4.0},
-            {"polygon_m": triangle},
-        ),
-    )
-    zones = airspace_zones(airspace)
-    np.testing.assert_array_equal(
-        zones["zone_kind"], [FORBIDDEN_POLYGON, FORBIDDEN_CYLINDER, FORBIDDEN_POLYGON, FENCE]
-    )
-    np.testing.assert_array_equal(zones["zone_start"], [0, 4, 5, 8, 12])
-    np.testing.assert_array_equal(zones["zone_edges"][4], [20.0, 21.0, 4.0, 0.0])
-    np.testing.assert_array_equal(zones["zone_range_m"][0], [-np.inf, 12.0])
-    assert np.all(np.isinf(zones["zone_range_m"][1:]))
-    edges = zones["zone_edges"][5:8]
-    np.testing.assert_array_equal(edges[:, 2:], np.roll(edges[:, :2], -1, axis=0))
-    doubled = np.sum(edges[:, 0] * edges[:, 3] - edges[:, 2] * edges[:, 1])
-    assert doubled == 81.0  # twice the area, counter-clockwise
-    # the box has a ceiling of its own (its floor is that of all), and the fence one piece for each side
-    np.testing.assert_array_equal(np.diff(zones["piece_start"]), [5, 1, 3, 1, 1, 1, 1])
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from hypothesis import given, settings, strategies as st
 
 from nullpose.problem.airspace import convex_parts, hull_and_pockets
 from nullpose.scenario.polygon import area_m2, depth_m
+from scenes import star
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -28,14 +29,6 @@ SHAPES = {
 }
 
 
-def star(rng: np.random.Generator, count: int) -> np.ndarray:
-    """Returns a polygon with its vertices in order around a centre, counter-clockwise, often not convex."""
-    angles = 2.0 * np.pi * (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count
-    radii = rng.uniform(2.0, 20.0, count)
-    around = radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-    return rng.uniform(-50.0, 50.0, 2) + around
-
-
 def turns(polygon: np.ndarray) -> np.ndarray:
     """Returns the cross product of each two neighbouring edges: none is negative if it is convex."""
     edges = np.roll(polygon, -1, axis=0) - polygon
@@ -43,24 +36,31 @@ def turns(polygon: np.ndarray) -> np.ndarray:
     return edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]
 
 
-def check_parts(polygon: np.ndarray, rng: np.random.Generator) -> None:
-    """Checks that the parts are convex, that their areas add up, and that they hold the same points."""
-    parts = convex_parts(polygon)
-    size = area_m2(polygon)
-    assert sum(area_m2(part) for part in parts) == pytest.approx(size, rel=1e-12)
+def check(polygon: np.ndarray, rng: np.random.Generator) -> None:
+    """Check that convex parts, or hull and pockets, make up the polygon: no area and no point twice."""
+    parts, (hull, pockets) = convex_parts(polygon), hull_and_pockets(polygon)
+    size, low, high = area_m2(polygon), polygon.min(axis=0), polygon.max(axis=0)
+    hair_m = 1e-9 * np.max(high - low)
     corners = {tuple(corner) for corner in polygon}
     for part in parts:
         assert np.all(turns(part) >= -1e-12 * size)
         assert area_m2(part) > 0.0
         assert {tuple(corner) for corner in part} <= corners
-    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    assert np.all(turns(hull) > 0.0)
+    assert np.all(depth_m(polygon, hull) >= -1e-3 * hair_m)
+    areas = [area_m2(pocket) for pocket in pockets]
+    assert min(areas, default=0.0) >= 0.0
+    assert sum(area_m2(part) for part in parts) == pytest.approx(size, rel=1e-12)
+    assert area_m2(hull) == pytest.approx(size + sum(areas), rel=1e-12)
     points = rng.uniform(low - 1.0, high + 1.0, (400, 2))
-    points = points[np.abs(depth_m(points, polygon)) > 1e-9 * np.max(high - low)]
-    deepest = np.max([depth_m(points, part) for part in parts], axis=0)
+    borders = np.min([np.abs(depth_m(points, border)) for border in (polygon, hull, *pockets)], axis=0)
+    points = points[borders > max(hair_m, 1e-9)]
     inside = depth_m(points, polygon) > 0.0
-    # on a cut between two parts a point is inside neither
-    assert np.all(deepest[inside] >= -1e-9 * np.max(high - low))
+    deepest = np.max([depth_m(points, part) for part in parts], axis=0)
+    assert np.all(deepest[inside] >= -hair_m)  # on a cut between two parts a point is inside neither
     assert np.all(deepest[~inside] <= 0.0)
+    shares = inside + np.sum([depth_m(points, pocket) > 0.0 for pocket in pockets], axis=0)
+    np.testing.assert_array_equal(shares, depth_m(points, hull) > 0.0)
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -70,8 +70,7 @@ def test_shapes_are_cut_into_convex_parts(name: str) -> None:
     assert area_m2(polygon) > 0.0
     rng = np.random.default_rng(3)
     for first in range(len(polygon)):
-        check_parts(np.roll(polygon, first, axis=0), rng)
-        check_hull(np.roll(polygon, first, axis=0), rng)
+        check(np.roll(polygon, first, axis=0), rng)
 
 
 @settings(max_examples=50)
@@ -79,26 +78,7 @@ def test_shapes_are_cut_into_convex_parts(name: str) -> None:
 def test_stars_are_cut_into_convex_parts(seed: int, count: int) -> None:
     """Random star-shaped polygons of up to twelve vertices."""
     rng = np.random.default_rng(seed)
-    polygon = star(rng, count)
-    check_parts(polygon, rng)
-    check_hull(polygon, rng)
-
-
-def check_hull(polygon: np.ndarray, rng: np.random.Generator) -> None:
-    """Checks that hull and pockets make up each other: hull = polygon + pockets, and nothing twice."""
-    hull, pockets = hull_and_pockets(polygon)
-    assert np.all(turns(hull) > 0.0)
-    areas = [area_m2(pocket) for pocket in pockets]
-    assert min(areas, default=0.0) >= 0.0
-    assert area_m2(hull) == pytest.approx(area_m2(polygon) + sum(areas), rel=1e-12)
-    low, high = polygon.min(axis=0), polygon.max(axis=0)
-    points = rng.uniform(low - 1.0, high + 1.0, (400, 2))
-    borders = [polygon, hull, *pockets]
-    points = points[np.min([np.abs(depth_m(points, one)) for one in borders], axis=0) > 1e-9]
-    shares = np.sum([depth_m(points, one) > 0.0 for one in (polygon, *pockets)], axis=0)
-    np.testing.assert_array_equal(shares, depth_m(points, hull) > 0.0)
-    for corner in polygon:
-        assert depth_m(corner[None], hull)[0] >= -1e-12 * np.max(high - low)
+    check(star(rng, count, 20.0) + rng.uniform(-50.0, 50.0, 2), rng)
 
 
 def test_many_vertices_are_cut_in_seconds() -> None:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 from nullpose.errors import Fault, ScenarioError
@@ -49,3 +50,10 @@ def require_fault(make: Callable[[], object], path: str, words: str) -> None:
     (fault,) = caught.value.faults
     assert fault.path == path
     assert words in fault.message
+
+
+def star(rng: np.random.Generator, count: int, size_m: float) -> np.ndarray:
+    """Return a polygon that runs once around the origin, counter-clockwise, often not convex."""
+    gaps = rng.uniform(0.5, 1.0, count)
+    angles = np.cumsum(gaps) * 2.0 * np.pi / gaps.sum()
+    return size_m * rng.uniform(0.1, 1.0, (count, 1)) * np.column_stack([np.cos(angles), np.sin(angles)])

@@ -11,18 +11,11 @@ from matplotlib.path import Path
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import MOST_CORNERS, area_m2, depth_m
-from scenes import require_fault
+from scenes import require_fault, star
 
 SEEDS = st.integers(0, 2**32 - 1)
 SQUARE = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]
 L_SHAPE = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 4.0], [0.0, 4.0]]
-
-
-def star(rng: np.random.Generator, count: int) -> np.ndarray:
-    """Returns a polygon that a point inside sees all of, so that it does not cross itself."""
-    gaps = rng.uniform(0.5, 1.0, count)
-    angles = np.cumsum(gaps) * 2.0 * np.pi / gaps.sum()
-    return rng.uniform(3.0, 30.0, (count, 1)) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
 def accepted(vertices: object) -> np.ndarray:
@@ -33,7 +26,7 @@ def accepted(vertices: object) -> np.ndarray:
 @given(SEEDS, st.integers(3, 12))
 def test_stars_are_accepted_and_run_counter_clockwise(seed: int, count: int) -> None:
     """A simple polygon is accepted in either sense of rotation, and kept counter-clockwise."""
-    vertices = star(np.random.default_rng(seed), count)
+    vertices = star(np.random.default_rng(seed), count, 30.0)
     for given_as in (vertices, vertices[::-1]):
         outline = accepted(given_as)
         assert area_m2(outline) > 0.0
@@ -44,7 +37,7 @@ def test_stars_are_accepted_and_run_counter_clockwise(seed: int, count: int) -> 
 def test_depth_agrees_with_another_test_and_with_a_walk_along_the_border(seed: int, count: int) -> None:
     """The sign is that of an independent point-in-polygon test; the size that of the nearest border point."""
     rng = np.random.default_rng(seed)
-    vertices = star(rng, count)
+    vertices = star(rng, count, 30.0)
     points = rng.uniform(-40.0, 40.0, (50, 2))
     depths = depth_m(points, vertices)
     np.testing.assert_array_equal(depths > 0.0, Path(vertices).contains_points(points))

@@ -5,33 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from scipy.optimize import differential_evolution
 
-from nullpose.physics import antenna_gain, maximum_gain_sinr
 from nullpose.problem.build import build_family
 from nullpose.solver import Scheme, Status, solve
 from nullpose.solver.kernels.search.maximum_gain import maximum_gain_value
-
-
-@pytest.mark.parametrize("ratio", [0.1, 1.0, 3.0, 10.0])
-def test_the_paper_by_differential_evolution(ratio: float, paper: Callable) -> None:
-    """Differential evolution on eq. 3.5, normalised, comes to the same value."""
-    one = paper(ratio)
-    searched = differential_evolution(
-        lambda positions: -np.log(np.min(maximum_gain_sinr(one, positions.T), axis=-1)),
-        [(-30.0, 30.0), (0.0, 50.0), (8.0, 30.0)],
-        seed=1,
-        vectorized=True,
-        updating="deferred",
-        popsize=30,
-        maxiter=600,
-        tol=1e-12,
-    )
-    solution = solve(one, Scheme.MAXIMUM_GAIN)
-    assert solution.objective.value == pytest.approx(math.exp(-searched.fun), rel=1e-8)
-    gains = antenna_gain(solution.pose.position_m, solution.pose.antenna_axis, one.node_positions_m)
-    np.testing.assert_allclose(gains, 1.0, rtol=1e-12)
-    assert solution.note == ""
 
 
 def test_the_optimum_leaves_the_equidistant_plane(paper: Callable) -> None:

@@ -4,10 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from scipy.optimize import differential_evolution
 
 from nullpose.errors import UsageError
-from nullpose.physics import antenna_gain, sinr, zero_interference_axis, zero_interference_sinr
+from nullpose.physics import antenna_gain, sinr, zero_interference_axis
 from nullpose.problem.schemes.zero_interference import ZERO_INTERFERENCE
 from nullpose.scenario import Scenario
 from nullpose.solver import Scheme, solve
@@ -23,31 +22,16 @@ def three_jammers(scene: Callable) -> Scenario:
     )
 
 
-def test_the_paper_by_differential_evolution(paper: Callable) -> None:
-    """Differential evolution on eq. 3.2 comes to the same value, and the null is on the jammer."""
-    one = paper(100.0)
-    solution = solve(one, Scheme.ZERO_INTERFERENCE)
-    searched = differential_evolution(
-        lambda positions: -np.min(zero_interference_sinr(one, positions.T), axis=-1),
-        [(-30.0, 30.0), (0.0, 50.0), (8.0, 30.0)],
-        seed=2,
-        vectorized=True,
-        updating="deferred",
-        maxiter=400,
-        tol=1e-12,
-    )
-    assert solution.objective.value == pytest.approx(-searched.fun, rel=1e-9)
-    assert solution.note == "null on jammer M1"
-    gain = antenna_gain(solution.pose.position_m, solution.pose.antenna_axis, one.jammer_positions_m)
-    assert gain[0] < 1e-30
-
-
 def test_each_jammer_is_tried(three_jammers: Scenario) -> None:
-    """Without a name each jammer is tried and the best kept; the note says which, the counts are of all."""
-    named = {
-        name: solve(three_jammers, Scheme.ZERO_INTERFERENCE, null_jammer=name)
-        for name in three_jammers.jammer_names
-    }
+    """A jammer named has the null on it; without a name the best of all is kept, and the note says which."""
+    named = {}
+    for index, name in enumerate(three_jammers.jammer_names):
+        named[name] = solve(three_jammers, Scheme.ZERO_INTERFERENCE, null_jammer=name)
+        pose = named[name].pose
+        gains = antenna_gain(pose.position_m, pose.antenna_axis, three_jammers.jammer_positions_m)
+        assert gains[index] < 1e-30
+        assert np.all(np.delete(gains, index) > 1e-6)
+        assert named[name].note == f"null on jammer {name}"
     best = solve(three_jammers, Scheme.ZERO_INTERFERENCE)
     winner = max(named, key=lambda name: named[name].objective.value)
     assert best.objective == named[winner].objective
@@ -56,19 +40,6 @@ def test_each_jammer_is_tried(three_jammers: Scenario) -> None:
     assert best.stats.starts == sum(solution.stats.starts for solution in named.values())
     assert best.stats.evaluations == sum(solution.stats.evaluations for solution in named.values())
     assert len({solution.objective.value for solution in named.values()}) == 3
-
-
-@pytest.mark.parametrize("name", ["M1", "M2", "M3"])
-def test_the_null_is_on_the_one_named(name: str, three_jammers: Scenario) -> None:
-    """A jammer named has the null on it, and the note names it."""
-    solution = solve(three_jammers, Scheme.ZERO_INTERFERENCE, null_jammer=name)
-    gains = antenna_gain(
-        solution.pose.position_m, solution.pose.antenna_axis, three_jammers.jammer_positions_m
-    )
-    index = three_jammers.jammer_names.index(name)
-    assert gains[index] < 1e-30
-    assert np.all(np.delete(gains, index) > 1e-6)
-    assert solution.note == f"null on jammer {name}"
 
 
 def test_an_unknown_jammer_is_refused(three_jammers: Scenario) -> None:
