@@ -35,7 +35,7 @@ math_eqref_format = "({number})"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
-autodoc_type_aliases = {name: name for name in ("ArrayLike", "FloatArray", "IntArray")}
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "FloatArray", "IntArray", "PlainTable")}
 python_use_unqualified_type_names = True
 # Types of other packages have no pages here, and the build asks no network for theirs.
 nitpick_ignore_regex = [
@@ -45,7 +45,7 @@ nitpick_ignore_regex = [
     ),
     (
         r"py:.*",
-        r".*(ArrayLike|NDArray|FloatArray|IntArray|float64|Axes|Details|Path|PathLike|Callable|Sequence|Mapping|Iterable)",
+        r".*(ArrayLike|NDArray|FloatArray|IntArray|PlainTable|float64|Axes|Details|Path|PathLike|Callable|Sequence|Mapping|Iterable)",
     ),
 ]
 
