@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable
 
+from nullpose.files import PlainTable
 from nullpose.report.document import grouped
 from nullpose.report.numbers import capitalised, rounded_up
 from nullpose.solver import Rigour, Status
 from nullpose.study import ResultRow, ResultTable
 
 
-def counted(rows: Iterable[ResultRow]) -> dict[str, Any]:
+def counted(rows: Iterable[ResultRow]) -> PlainTable:
     """Count values by status, with the widest gap of those with a bound; None if there are none."""
     rows = tuple(rows)
     counts = Counter(row.status for row in rows)
@@ -26,12 +26,12 @@ def counted(rows: Iterable[ResultRow]) -> dict[str, Any]:
     }
 
 
-def _weakest(counts: Mapping[str, Any]) -> str:
+def _weakest(counts: PlainTable) -> str:
     """Name the status that every value has at least."""
     return next((key for key in ("best_found", "gap_not_reached") if counts[key]), "certified")
 
 
-def _sentence(counts: Mapping[str, Any]) -> str:
+def _sentence(counts: PlainTable) -> str:
     """Write what is true of every value, with the widest gap."""
     gap = "none" if counts["largest_relative_gap"] is None else rounded_up(counts["largest_relative_gap"])
     sentences = {

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.errors import UsageError
-from nullpose.files import json_text, write_text
+from nullpose.files import PlainTable, json_text, write_text
 from nullpose.physics import Pose, pose_frames
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import azimuth_rad, outline_m, tilt_rad
@@ -39,7 +38,7 @@ def require_origin(scenario: Scenario) -> Origin:
     return scenario.origin
 
 
-def solution_geojson(solution: Result) -> dict[str, Any]:
+def solution_geojson(solution: Result) -> PlainTable:
     """Build a GeoJSON FeatureCollection of a result.
 
     Points for the pose, the nodes, the jammers and the eavesdroppers, with altitudes over the ellipsoid (or,

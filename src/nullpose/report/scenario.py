@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
+from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
@@ -25,7 +25,7 @@ _EARTHLY = {
 }
 
 
-def summarise(scenario: Scenario) -> dict[str, Any]:
+def summarise(scenario: Scenario) -> PlainTable:
     """Compute a scenario's numbers as plain data: powers in both units, and the most that a link can carry.
 
     The best a link can do is the drone as close as the airspace's box and the keep-out allow, the dipole
@@ -47,7 +47,7 @@ def summarise(scenario: Scenario) -> dict[str, Any]:
     }
 
 
-def _on_earth(scenario: Scenario, origin: Origin) -> list[dict[str, Any]]:
+def _on_earth(scenario: Scenario, origin: Origin) -> list[PlainTable]:
     """Compute latitudes, longitudes and absolute altitudes of the points and of the areas' extents."""
     airspace, points = scenario.airspace, (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
     box_m = np.transpose([airspace.x_m, airspace.y_m]) if airspace.x_m and airspace.y_m else np.empty((0, 2))
@@ -56,7 +56,7 @@ def _on_earth(scenario: Scenario, origin: Origin) -> list[dict[str, Any]]:
         *[("geofence", airspace.geofence_outline_m, airspace.altitude_m)] * (airspace.geofence_m is not None),
         *((zone.name, outline_m(zone), zone.altitude_m) for zone in airspace.no_fly),
     ]
-    rows: list[dict[str, Any]]
+    rows: list[PlainTable]
     rows = [{"name": point.name} | origin.place(point.position_m) for point in points]
     for name, outline, altitude_m in areas:
         corners = outline if len(outline) else [(0.0, 0.0)]  # of an airspace without sides
@@ -71,9 +71,7 @@ def _dbm(power_w: float) -> float:
     return float(to_db(power_w)) + 30.0
 
 
-def _points(
-    scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray | None
-) -> list[dict[str, Any]]:
+def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray | None) -> list[PlainTable]:
     """List each point with its power, its noise if it receives from the drone, and its best link."""
     receiver, transmitter, rows = scenario.receiver, scenario.transmitter, []
     for i, point in enumerate(points):
@@ -193,7 +191,7 @@ def _power_words(power_w: float) -> str:
     return f"{_dbm(power_w):.2f} dBm ({power_w:.4g} W)"
 
 
-def _place_rows(places: Sequence[Mapping[str, Any]]) -> list[Row]:
+def _place_rows(places: Sequence[PlainTable]) -> list[Row]:
     """Set a row for each point and for each area on the Earth, of which both ends are given."""
     columns: dict[str, list[str | None]] = {"": [place["name"] for place in places]}
     for heading, (key, digits) in _EARTHLY.items():
@@ -204,7 +202,7 @@ def _place_rows(places: Sequence[Mapping[str, Any]]) -> list[Row]:
 
 
 def _points_table(
-    noun: str, points: Sequence[_Point], numbers: Sequence[Mapping[str, Any]], best: str
+    noun: str, points: Sequence[_Point], numbers: Sequence[PlainTable], best: str
 ) -> View | None:
     """Set a row for each point: what points of its kind state, and what its link carries at best."""
     words = [_antenna_words(point) for point in points]

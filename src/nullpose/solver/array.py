@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from nullpose.errors import UsageError
+from nullpose.files import PlainTable
 from nullpose.objectives import USUAL, FloatArray, Quantity
 from nullpose.physics import Pose
 from nullpose.physics.array import ComplexArray, digital_sinr, digital_weights, placed_elements
@@ -49,7 +49,7 @@ class ArrayDetails:
         """The name of the case for tables, as in "array of 4, digital"."""
         return f"array of {self.array.elements}, digital"
 
-    def to_dict(self, objective: object) -> dict[str, Any]:
+    def to_dict(self, objective: object) -> PlainTable:
         """Write the array as plain data for JSON; a weight is [real part, imaginary part].
 
         Args:

@@ -42,7 +42,8 @@ class BackgroundCompiler:
     def __init__(self, announce: Callable[[], object] = lambda: None) -> None:
         self._announce = announce
         self._asking = threading.Lock()
-        self._requests: list[tuple[str, str, Any]] = []  # module and name of a kernel, types of its arguments
+        # module and name of a kernel, types of its arguments
+        self._requests: list[tuple[str, str, object]] = []
         self._sent = 0  # requests that a process was started for
         self._most = 1  # processes at a time: there may be two processors, and this process has one
         self._processes: list[subprocess.Popen[bytes]] = []
@@ -66,7 +67,7 @@ class BackgroundCompiler:
                 self._start()
                 self._unlock()
 
-    def takes(self, kernel: Any, signature: Any) -> bool:
+    def takes(self, kernel: Any, signature: object) -> bool:
         """Request a kernel; true if Python is to run it while it is compiled elsewhere.
 
         Args:

@@ -104,7 +104,7 @@ def precompile(dipoles: bool) -> None:
         compile_search(dipoles)
 
 
-def _is_compiled(kernel: Any, dipoles: bool) -> bool:
+def _is_compiled(kernel: object, dipoles: bool) -> bool:
     """Test if nothing is to be compiled in this process: done, or switched off."""
     return isinstance(kernel, FunctionType) or dipoles in getattr(kernel, "entries", ())
 

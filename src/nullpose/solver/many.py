@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,9 @@ from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NOWHERE = "no position was found at which every node is received"
 """The reason of a scene without a pose."""
@@ -78,7 +81,7 @@ class ManySolutions:
     def _repr_html_(self) -> str | None:
         return html_table(self._rows())
 
-    def frame(self) -> Any:
+    def frame(self) -> pd.DataFrame:
         """Tabulate the answers in dB, metres and degrees as a data frame of pandas, a row for each pose.
 
         Raises:

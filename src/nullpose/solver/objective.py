@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from nullpose.errors import SolveError
+from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INTERRUPT
@@ -41,7 +41,7 @@ class Objective:
         """What the number is of, and its unit."""
         return Quantity.named(self.name)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Write value and bound as plain data for JSON; None for a number that JSON cannot hold."""
         return {
             "name": self.name,

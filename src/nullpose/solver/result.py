@@ -8,10 +8,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from functools import cache, partial
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from nullpose.files import PlainTable
 from nullpose.notebook import html_table, imported
 from nullpose.physics import Link, Pose, pose_frames
 from nullpose.problem.schemes import Scheme
@@ -22,6 +23,9 @@ from nullpose.solver.proof import Proof
 from nullpose.solver.rigour import Rigour, Status
 from nullpose.solver.sensitivity import ErrorSizes, Sensitivity, sensitivity
 from nullpose.version import __version__
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +56,7 @@ class Details(Protocol):
     def label(self) -> str:
         """The name of the case for tables."""
 
-    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+    def to_dict(self, objective: PlainTable) -> PlainTable:
         """Write plain data for JSON, over the keys of a result, whose objective is given."""
 
 
@@ -182,7 +186,7 @@ class Result:
             "binding_node": self.binding_node,
         }
 
-    def frame(self) -> Any:
+    def frame(self) -> pd.DataFrame:
         """Tabulate the links as a data frame of pandas, a row for each node.
 
         Raises:
@@ -190,7 +194,7 @@ class Result:
         """
         return imported("pandas").DataFrame([link.to_dict() for link in self.links])
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Write the result as plain data for JSON; a number that JSON cannot hold becomes None."""
         stats = {key: value for key, value in asdict(self.stats).items() if value is not None}
         objective, sensitivity = self.objective.to_dict(), self.sensitivity
@@ -217,7 +221,7 @@ class Results(tuple[Result, ...]):
 
     __slots__ = ()
 
-    def frame(self) -> Any:
+    def frame(self) -> pd.DataFrame:
         """Tabulate the results as a data frame of pandas, a row for each.
 
         Raises:

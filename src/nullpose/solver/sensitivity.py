@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nullpose.errors import UsageError
-from nullpose.objectives import FloatArray, Quantity
+from nullpose.files import PlainTable
+from nullpose.objectives import FloatArray, IntArray, Quantity
 from nullpose.physics import ErrorCase, ratios_under
 from nullpose.physics.array import array_ratios_under
 from nullpose.physics.pose import Pose
@@ -98,7 +99,7 @@ class Sensitivity:
             return float(10.0 * math.log10(2.0) * (before - after))
         return 0.0 if before == after else self.quantity.in_unit(before) - self.quantity.in_unit(after)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Write sizes and values as plain data for JSON; None for minus infinity, and for dB of a rate."""
         unit = {"attitude": "deg", "position": "m", "jammers": "m"}
         kinds = {
@@ -180,7 +181,7 @@ class _Search:
         of_kind = [lowest for lowest, _ in alone]
         return np.array([nominal, *np.minimum(nominal, [*of_kind, min(*of_kind, *together)])])
 
-    def _descend(self, points: FloatArray, free: Any) -> tuple[float, FloatArray]:
+    def _descend(self, points: FloatArray, free: NDArray[np.bool_]) -> tuple[float, FloatArray]:
         """Descend along the slope of the logarithm of a ratio, from the worst of some points.
 
         Half of the descents end every second round, those with the largest ratios.
@@ -227,7 +228,9 @@ class _Search:
         steps += [(2.0 * slope / length / length)[:, None], _ONWARD[:, None] * (before - points)[:, None]]
         return self._projected(points[:, None] - np.concatenate(steps, axis=1))
 
-    def _slope(self, points: FloatArray, ratio: Any, values: FloatArray, free: Any) -> FloatArray:
+    def _slope(
+        self, points: FloatArray, ratio: IntArray, values: FloatArray, free: NDArray[np.bool_]
+    ) -> FloatArray:
         """Evaluate the slope of a ratio's logarithm at each point, zero where nothing is free, (n, d)."""
         slope = np.zeros(points.shape)
         row, column = np.nonzero(np.broadcast_to(free, points.shape))
@@ -241,7 +244,7 @@ class _Search:
         """Evaluate every ratio at every point, (n, r)."""
         offsets_m = np.zeros((len(points), len(self.points_m), 3))
         offsets_m[..., :2] = self.sizes.jammers_m * points[:, 6:].reshape(*offsets_m.shape[:2], 2)
-        errors: dict[str, Any] = {
+        errors: dict[str, FloatArray] = {
             "position_offset_m": self.sizes.position_m * points[:, 3:6],
             "rotation_world": rotation_about(math.radians(self.sizes.attitude_deg) * points[:, :3]),
             self.offsets: offsets_m,
@@ -320,7 +323,7 @@ def _on_cones(scenario: Scenario, pose: Pose, away_m: FloatArray, reach_m: float
     return np.asarray(places.reshape(len(away_m), -1) * heading)
 
 
-def _starts(ratios: FloatArray) -> Any:
+def _starts(ratios: FloatArray) -> IntArray:
     """Choose where to descend from: the worst rows, and the worst row of the worst ratios."""
     rows = np.argsort(np.min(ratios, axis=1))[:_STARTS].tolist()
     pairs = {(row, int(np.argmin(ratios[row]))) for row in rows}
@@ -329,6 +332,6 @@ def _starts(ratios: FloatArray) -> Any:
     return np.array(sorted(pairs)).T
 
 
-def _of(values: FloatArray, column: Any) -> FloatArray:
+def _of(values: FloatArray, column: IntArray) -> FloatArray:
     """Pick the entry of each row that a column names."""
     return np.asarray(values[np.arange(len(values)), column])

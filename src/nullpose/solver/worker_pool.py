@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from nullpose.objectives import FloatArray
 
-Kernel: TypeAlias = Callable[..., Any]
+Kernel: TypeAlias = Callable[..., tuple[int, int, int, int, object]]
 """The branch and bound kernel with its arguments before the stack."""
 
 _FEWEST_TO_SHARE = 8

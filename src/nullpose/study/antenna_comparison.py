@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from types import MappingProxyType
-from typing import Any, Unpack
+from typing import Unpack
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Antenna, Scenario
@@ -74,7 +74,7 @@ def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
         drone: whether to keep the drone's.
         ground: whether to keep those on the ground.
     """
-    changed: dict[str, Any] = {} if drone else {"antenna": Antenna(gain_dbi=scenario.antenna_gain_dbi)}
+    changed: dict[str, object] = {} if drone else {"antenna": Antenna(gain_dbi=scenario.antenna_gain_dbi)}
     for kind in () if ground else _POINTS:
         changed[kind] = tuple(point.isotropic for point in getattr(scenario, kind))
     return scenario.model_copy(update=changed)

@@ -58,7 +58,7 @@ _BY_NAME = _AIRFRAMES | {
 class _Named(Choice):
     """A table, or a name for one."""
 
-    tables: Mapping[str, Any] = field(hash=False)
+    tables: Mapping[str, object] = field(hash=False)
 
     def read(self, value: object) -> Any:
         return self.tables[Choice.read(self, value)] if isinstance(value, str) else value
@@ -223,7 +223,7 @@ class Case(Section):
         chosen = f" (the best mount tried, on up to {self.mount_scenes} scenes)" if self.mount_scenes else ""
         return f"{phrase}{chosen}{' in its robust pose' if self.robust else ''}"
 
-    def mounted(self, mount_deg: float, **changes: Any) -> Case:
+    def mounted(self, mount_deg: float, **changes: object) -> Case:
         """Return the case with its airframe's dipole at another mount.
 
         Args:
@@ -235,7 +235,7 @@ class Case(Section):
 
     def on(self, scenario: Scenario) -> Scenario:
         """Put this case's vehicle into a scenario; an array of the scenario's goes."""
-        changes: dict[str, Any] = {"array": self.array}
+        changes: dict[str, object] = {"array": self.array}
         if self.airframe is not None or self.array is not None:
             changes["airframe"] = self.airframe
         return scenario.model_copy(update=changes)

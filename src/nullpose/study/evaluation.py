@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from nullpose.errors import UsageError
+from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Scenario
@@ -34,7 +34,7 @@ class GivenDetails:
     not_allowed: tuple[str, ...]
     label: str = "Given pose"
 
-    def to_dict(self, objective: object) -> dict[str, Any]:
+    def to_dict(self, objective: object) -> PlainTable:
         """Return it as plain data.
 
         Args:
@@ -64,7 +64,7 @@ class Evaluation:
         """Whether Ctrl-C ended the proof of the bound."""
         return self.best.interrupted
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return the evaluation as plain data, the scenario once for all poses."""
         once = ("scenario", "provenance", "best")
         poses = [

@@ -5,13 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.files import write_csv
+from nullpose.files import PlainTable, write_csv
 from nullpose.notebook import imported
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
@@ -51,7 +54,7 @@ class Field:
         best = f"best {value:.7g} {self.unit} at ({x:z.3f}, {y:z.3f}, {z:z.3f}) m"
         return f"Field({self.name}: {columns} x {rows} places {self.altitude_m:g} m up; {best})"
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xr.DataArray:
         """Return the map as an array of xarray over ``y_m`` and ``x_m``.
 
         Raises:
@@ -63,7 +66,7 @@ class Field:
             self.values, coords=places, dims=("y_m", "x_m"), name=self.name, attrs={"unit": self.unit}
         )
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return the map's plane and its best place as plain data; its numbers are in the CSV file."""
         value, position_m = self.best
         return {

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from nullpose.files import write_csv
+from nullpose.files import PlainTable, write_csv
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import RECORDS, USUAL
 from nullpose.problem.schemes import Scheme
@@ -92,7 +92,7 @@ class ResultRow(Result):
         quantity, bound = self.objective.quantity, self.objective.upper_bound
         return None if bound is None or quantity.is_rate else quantity.in_unit(bound)
 
-    def record(self) -> dict[str, Any]:
+    def record(self) -> PlainTable:
         """List the columns of the row in a file, its case apart; None for no number."""
         columns, axis = self.row(), self.pose.antenna_axis.tolist()
         attitude = {name: columns.pop(name) for name in _POSE}
@@ -113,7 +113,7 @@ class ResultRow(Result):
             "reason": self.reason,
         }
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return the row as plain data, angles in radians."""
         objective, guaranteed = self.objective, self.guaranteed
         vehicle = {
@@ -161,7 +161,7 @@ class ResultTable:
     rows: tuple[ResultRow, ...]
     left_out: Mapping[str, str] = field(default_factory=dict)
     scenario: Scenario | None = None
-    provenance: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, object] = field(default_factory=dict)
 
     @property
     def values(self) -> tuple[float, ...]:
@@ -192,9 +192,9 @@ class ResultTable:
             raise KeyError(f"no case {name!r} in this table; it has {', '.join(self.names)}")
         return rows
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return the table as plain data."""
-        whole: dict[str, Any] = {} if self.scenario is None else {"scenario": self.scenario.to_dict()}
+        whole: PlainTable = {} if self.scenario is None else {"scenario": self.scenario.to_dict()}
         return {
             **whole,
             **({"set": self.path} if self.path else {}),
@@ -246,7 +246,7 @@ class ResultTable:
             [{self.path: row.value} | row.row() if self.path else row.row() for row in self.rows]
         )
 
-    def _records(self) -> list[dict[str, Any]]:
+    def _records(self) -> list[PlainTable]:
         """List the rows with every column, numbers as such; None for no number."""
         return [
             {self.path or "case": row.value if self.path else row.label} | row.record() for row in self.rows

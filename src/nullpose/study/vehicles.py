@@ -6,9 +6,10 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from types import MappingProxyType
-from typing import Any, Unpack
+from typing import Unpack
 
 from nullpose.errors import SolveError
+from nullpose.files import PlainTable
 from nullpose.objectives import USUAL, Quantity
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Array, Scenario, require_scenario
@@ -178,7 +179,7 @@ def least_sufficient(table: ResultTable) -> ResultRow | None:
     return next((row for row in dipoles(table) if suffices(table, row)), None)
 
 
-def verdict(table: ResultTable) -> dict[str, Any]:
+def verdict(table: ResultTable) -> PlainTable:
     """Return the differences from the omnidirectional vehicle, and the least that suffices, as plain data."""
     least = least_sufficient(table)
     return {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,7 +12,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.answer import answer_lines
 from nullpose.report.comparison import numbers_of
-from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, house_style, inches
+from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, Look, house_style, inches
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import capitalised, number
 from nullpose.study import ResultRow, ResultTable
@@ -66,7 +65,7 @@ def draw_bars(axes: Axes, comparison: ResultTable) -> None:
     if OMNIDIRECTIONAL in comparison.names:
         whole = float(values[comparison.names.index(OMNIDIRECTIONAL)])
         axes.axvline(whole, color=VEHICLES[OMNIDIRECTIONAL].colour, linewidth=0.9, zorder=2.5)
-    look: dict[str, Any] = {"xytext": (5, 0), "textcoords": "offset points", "va": "center", "zorder": 4.0}
+    look: Look = {"xytext": (5, 0), "textcoords": "offset points", "va": "center", "zorder": 4.0}
     white = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
     for place, end, value in zip(places, np.fmax(ends, bounds), values.tolist(), strict=True):
         text = _difference_words(value, whole, quantity)
@@ -74,9 +73,9 @@ def draw_bars(axes: Axes, comparison: ResultTable) -> None:
     axes.set_yticks(places, [row.label for row in found])
     if np.any(np.isfinite(nominal)):
         lengths = np.nan_to_num(np.maximum(robust, low) - low)
-        thin: dict[str, Any] = {"left": low, "height": 0.22, "color": INK, "zorder": 2.2}
+        thin: Look = {"left": low, "height": 0.22, "color": INK, "zorder": 2.2}
         axes.barh(places, lengths, label="guaranteed, robust pose", **thin)
-        diamonds: dict[str, Any] = {"color": "white", "markeredgecolor": INK, "markersize": 5.0}
+        diamonds: Look = {"color": "white", "markeredgecolor": INK, "markersize": 5.0}
         seen = np.where(nominal >= low, nominal, math.nan)
         axes.plot(seen, places, "d", label="guaranteed, pose shown", zorder=2.4, **diamonds)
 

@@ -21,7 +21,7 @@ from nullpose.antenna.table import PatternTable
 from nullpose.physics import Pose
 from nullpose.physics.array import steering_vectors
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import GREY, INK, house_style
+from nullpose.report.figures.style import GREY, INK, Look, house_style
 
 _DOWN, _RINGS, _AROUND = 61, 91, 241  # steps of a dipole's and of a beam's: lobes of many elements are narrow
 _RANGE_DB, _TOP_STEP_DB, _RING_DB = 40.0, 5.0, 10.0
@@ -141,7 +141,7 @@ def _draw_cut(
     rings = np.arange(top_dbi - _RANGE_DB + _RING_DB, top_dbi + 1.0, _RING_DB)
     axes.set_rgrids(rings, [])
     white = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0}
-    look: dict[str, Any] = {"color": GREY, "fontsize": 7.5, "bbox": white, "ha": "center"}
+    look: Look = {"color": GREY, "fontsize": 7.5, "bbox": white, "ha": "center"}
     for ring in rings:  # above the line, which tick labels would be below
         axes.text(turn * np.radians(-22.5), ring, f"{ring:g}", **look)
 
@@ -150,13 +150,13 @@ def _draw_surface(
     figure: Figure, table: PatternTable, gain_dbi: FloatArray, ends: Sequence[tuple[int, int]]
 ) -> None:
     """Draw how far the gain in dB is above the range's end as a distance, body axes and a bar of colours."""
-    axes: Any = figure.add_subplot(2, 2, 4, projection="3d")
+    axes = figure.add_subplot(2, 2, 4, projection="3d")
     peak_dbi = float(np.max(gain_dbi))
     around = np.append(np.arange(len(table.phi_deg)), 0)  # closed
     far = np.maximum((gain_dbi - peak_dbi) / _RANGE_DB + 1.0, 0.0)
     surface = np.moveaxis((far[..., None] * directions(table.theta_deg, table.phi_deg))[:, around], -1, 0)
     norm = Normalize(peak_dbi - _RANGE_DB, peak_dbi)
-    look: dict[str, Any] = {"edgecolor": (0.0, 0.0, 0.0, 0.15), "linewidth": 0.2, "shade": False}
+    look: Look = {"edgecolor": (0.0, 0.0, 0.0, 0.15), "linewidth": 0.2, "shade": False}
     colours = _COLOURS(norm(gain_dbi[:, around]))
     axes.plot_surface(*surface, rcount=_LARGEST, ccount=_LARGEST, facecolors=colours, **look)
     for axis, name, end in zip(np.eye(3), "xyz", ends, strict=True):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,7 +12,7 @@ from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.scene import write_name
 from nullpose.report.figures.stage import ALONE, AXIS, DRONE, FORBIDDEN, KINDS, Stage, limits_m
-from nullpose.report.figures.style import GREY, house_style, inches
+from nullpose.report.figures.style import GREY, Look, house_style, inches
 from nullpose.report.numbers import MINUS, capitalised
 from nullpose.solver import Result
 from nullpose.study import Field
@@ -41,13 +39,13 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
     axes.set_aspect("equal")
     names, zone_names = [], []
     for zone, corners_m in stage.zones:
-        look: dict[str, Any] = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}
+        look: Look = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}
         if zone is not None:
             look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
             zone_names.append((zone.name, corners_m.mean(axis=0), FORBIDDEN, "on"))
         axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
     x, y = pose.position_m[:2]
-    rim: dict[str, Any] = {"edgecolors": "white", "linewidths": 0.5, "s": 30}
+    rim: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 30}
     for kind, point in stage.points:
         place, (colour, marker, order) = np.asarray(point.position_m[:2]), KINDS[kind]
         is_node = kind == "node"
@@ -94,10 +92,10 @@ def draw_field(axes: Axes, result: Result, field: Field) -> None:
     high = field.best[0]
     lowest = float(np.percentile(values.compressed(), 2.0)) if values.count() else 0.0
     low = min(max(lowest, high - _MOST_SPAN), high - _LEAST_SPAN)
-    look: dict[str, Any] = {"cmap": "viridis", "vmin": low, "vmax": high, "shading": "nearest"}
+    look: Look = {"cmap": "viridis", "vmin": low, "vmax": high, "shading": "nearest"}
     mesh = axes.pcolormesh(east, north, values, zorder=0.5, rasterized=True, **look)
     levels = MaxNLocator(_LEVELS, steps=[1, 2, 5, 10]).tick_values(low, high)[1:-1]
-    white: dict[str, Any] = {"colors": "white", "linewidths": 0.6, "linestyles": "solid", "zorder": 0.8}
+    white: Look = {"colors": "white", "linewidths": 0.6, "linestyles": "solid", "zorder": 0.8}
     lines = axes.contour(east, north, values, levels, **white)
     axes.clabel(lines, fontsize=6.5, fmt=lambda level: f"{level:g}".replace("-", MINUS))
     axes.grid(visible=False)

@@ -6,9 +6,9 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
@@ -23,7 +23,7 @@ from nullpose.report.figures.pattern import beam_surface_m, draw_surface, patter
 from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.scene import draw_line, draw_panel
 from nullpose.report.figures.stage import ALONE, AXIS, DRONE, PAIR, PANELS, SURFACE, Stage
-from nullpose.report.figures.style import INK, house_style, inches
+from nullpose.report.figures.style import INK, Look, house_style, inches
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
@@ -75,7 +75,7 @@ def draw_panels(
         figure = Figure(figsize=(wide, high * down), layout=layout)
         grid = figure.add_gridspec(down, across, width_ratios=shares)
         for index, pose in enumerate(stage.poses):
-            axes: Any = figure.add_subplot(grid[index], projection="3d")
+            axes = figure.add_subplot(grid[index], projection="3d")
             axes.patch.set_visible(False)  # it would cover what another panel has at its edge
             draw_panel(axes, stage, pose, draw_vehicle)
             axes.set_title(titles[index] if titles else "", fontsize="medium", y=0.96)
@@ -83,14 +83,14 @@ def draw_panels(
             draw_plan(figure.add_subplot(grid[-1]), stage, stage.poses[0])
         if width is None:
             figure.suptitle(head, fontsize=10, parse_math=False)
-        once: dict[str, Any] = {}
+        once: dict[str, Artist] = {}
         for handles, names in (axes.get_legend_handles_labels() for axes in figure.axes):
             once = dict(zip(names, handles, strict=True)) | once
         once[textwrap.fill(surface, _LEGEND_LETTERS) if width == "column" else surface] = Patch(
             color=SURFACE, alpha=0.8
         )
         columns = min(len(once), int(wide / _LEGEND_COLUMN_INCH))
-        look: dict[str, Any] = {"handlelength": 1.8, "columnspacing": 1.2, "borderaxespad": 0.1}
+        look: Look = {"handlelength": 1.8, "columnspacing": 1.2, "borderaxespad": 0.1}
         legend = figure.legend(
             once.values(), once.keys(), frameon=False, loc="outside lower center", ncols=columns, **look
         )
@@ -225,5 +225,5 @@ def _draw_elements(
     up = np.array([0.0, 0.0, _UPRIGHT * extent_m])
     for place in places:
         draw_line(axes, place - up, place + up, color=DRONE, linewidth=1.4, zorder=7.2)
-    dots: dict[str, Any] = {"edgecolors": "white", "linewidths": 0.5, "s": 22, "depthshade": False}
+    dots: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 22, "depthshade": False}
     axes.scatter(*places.T, color=DRONE, label="elements, not to scale", zorder=7.3, **dots)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from matplotlib import rcParams
@@ -18,7 +17,7 @@ from numpy.typing import ArrayLike
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.stage import FORBIDDEN, KINDS, Stage, limits_m
-from nullpose.report.figures.style import GREY
+from nullpose.report.figures.style import GREY, Look
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone
 
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
@@ -47,7 +46,7 @@ def write_name(axes: Axes | Axes3D, name: str, point_m: FloatArray, colour: str,
     x, y = float(point_m[0]), float(point_m[1])
     if isinstance(axes, Axes3D):
         x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
-    look: dict[str, Any] = {"fontsize": rcParams["xtick.labelsize"], "color": colour, "zorder": 8}
+    look: Look = {"fontsize": rcParams["xtick.labelsize"], "color": colour, "zorder": 8}
     look |= {"textcoords": "offset points", "annotation_clip": False, "parse_math": False}
     halo = [withStroke(linewidth=2.0, foreground="white")]
     others = [text.get_window_extent().shrunk(0.9, 0.7) for text in axes.texts]  # letters without rims

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -75,6 +75,9 @@ VEHICLES: Mapping[str, Curve] = MappingProxyType(
 )
 """How vehicles are drawn: Okabe and Ito's colours, told apart with any colour vision, lines and markers."""
 
+Look: TypeAlias = dict[str, Any]
+"""Arguments of Matplotlib by name, as of a line or a text."""
+
 _RC: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -98,7 +101,7 @@ _RC: dict[Any, Any] = {
     "pdf.fonttype": 42,  # fonts are embedded whole, as TrueType
 }
 
-_PRINT: dict[Any, Any] = {
+_PRINT = {
     "font.size": 8.0,
     "axes.labelsize": 8.0,
     "axes.titlesize": 8.0,
@@ -128,7 +131,7 @@ def house_style(width: str | None = None) -> Iterator[None]:
         yield
 
 
-def line_style(look: Curve) -> dict[str, Any]:
+def line_style(look: Curve) -> Look:
     """Translate a look into Matplotlib's arguments of a line with markers."""
     line = {"color": look.colour, "linestyle": look.line, "linewidth": look.width, "label": look.label}
     return line | {"marker": look.marker, "markersize": 4.2, "markerfacecolor": "white", "zorder": look.order}
@@ -142,7 +145,7 @@ def draw_curve(
     band: tuple[FloatArray, FloatArray] | None = None,
     *,
     steps: bool = False,
-    every: Any = None,
+    every: int | tuple[int, int] | None = None,
 ) -> None:
     """Draw a curve, with a band where both of its ends are known.
 
@@ -160,7 +163,7 @@ def draw_curve(
     axes.plot(across, heights, drawstyle=drawstyle, markevery=every, **line_style(look))
     if band is not None:
         finite = np.isfinite(band[0]) & np.isfinite(band[1])
-        shade: dict[str, Any] = {"color": look.colour, "alpha": 0.12, "linewidth": 0.0, "zorder": 1.0}
+        shade: Look = {"color": look.colour, "alpha": 0.12, "linewidth": 0.0, "zorder": 1.0}
         if np.any(finite):
             axes.fill_between(across, *band, where=finite, step="post" if steps else None, **shade)
 
@@ -192,7 +195,7 @@ def write_figure_file(figure: Figure, path: Path) -> Path:
     """
     kind = path.suffix.lower()[1:]
     in_print = any(abs(figure.get_figwidth() - mm / 25.4) < 1e-6 for mm in WIDTHS_MM.values())
-    options: dict[str, dict[str, Any]] = {
+    options: dict[str, Look] = {
         "png": {"dpi": 600 if in_print else 200},
         "svg": {"metadata": {"Date": None}},
         "pdf": {"metadata": {"CreationDate": None}, "dpi": 600},  # of what is no line: colours of maps

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +13,7 @@ from matplotlib.figure import Figure
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
-from nullpose.report.figures.style import CURVES, GREY, curve_of, draw_curve, house_style, inches
+from nullpose.report.figures.style import CURVES, GREY, Look, curve_of, draw_curve, house_style, inches
 from nullpose.report.numbers import axis_label, capitalised
 from nullpose.study import ResultRow, ResultTable
 
@@ -57,7 +56,7 @@ def _draw_scheme(axes: Axes, table: ResultTable, scheme: str, apart: float) -> b
     every = 1 if step == 1 else (first, max(len(CURVES), step))
     draw_curve(axes, look, levels, values, (values, bounds), every=every)
     seen = bounds - values > apart
-    marks: dict[str, Any] = {"marker": _CARET_DOWN, "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
+    marks: Look = {"marker": _CARET_DOWN, "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
     if np.any(seen):  # no line: between two points nothing is proved
         axes.plot(levels, np.where(seen, bounds, math.nan), color=look.colour, linestyle="", **marks)
     return bool(np.any(seen))
@@ -88,7 +87,7 @@ def draw_sweep(table: ResultTable, *, log: bool = False, width: str | None = Non
         if draw_sweep_axes(figure.add_subplot(), table, log=log):
             lines.append("Each band ends at the upper bound, a small triangle.")
         columns = 2 if width == "column" else 4
-        look: dict[str, Any] = {"handlelength": 3.2, "columnspacing": 1.4, "frameon": False}
+        look: Look = {"handlelength": 3.2, "columnspacing": 1.4, "frameon": False}
         figure.legend(loc="outside upper center", ncols=columns, **look)
         if width is None:
             draw_caption(figure, lines)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from nullpose.study.monte_carlo import StudySpec, StudyTable
 if TYPE_CHECKING:
     import pandas as pd
 
-Columns = dict[str, Any]  # numbers by case
+Columns = dict[str, object]  # numbers by case
 
 STATUSES = ("certified", "gap-not-reached", "best-found", "given", "failed")
 
@@ -162,7 +162,7 @@ def _divided(part: FloatArray, whole: FloatArray) -> FloatArray:
     return np.asarray(np.divide(part, whole, out=np.full(part.shape, math.nan), where=whole > 0))
 
 
-def _reached(at: Columns) -> Columns:
+def _reached(at: Mapping[str, FloatArray]) -> Columns:
     """Count rows by status, and compute the quantiles of their values."""
     value, null_gain = at["value"], at["null_gain"]
     counts = {
@@ -209,7 +209,7 @@ def _gained(cases: pd.DataFrame, value: FloatArray) -> Columns:
     return columns
 
 
-def _outage(at: Columns, requirement: float | None) -> Columns:
+def _outage(at: Mapping[str, FloatArray], requirement: float | None) -> Columns:
     """Compute the share of scenes that miss a requirement, and that are proved to miss it with any pose."""
     if requirement is None:
         return {}
@@ -218,7 +218,7 @@ def _outage(at: Columns, requirement: float | None) -> Columns:
     return {**_shares("outage", missed, counts), "outage_proved": _divided(proved, counts)}
 
 
-def _proofs(at: Columns) -> Columns:
+def _proofs(at: Mapping[str, FloatArray]) -> Columns:
     """Compute the quantiles of gaps and seconds, failures left out."""
     columns: Columns = {"proved": np.sum(~np.isnan(at["gap"]), axis=0)}
     for name in ("gap", "seconds"):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from nullpose.files import PlainTable
 from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import Pose, evaluate, pose_frames
 from nullpose.physics.error_case import ErrorCase
@@ -132,7 +132,7 @@ class GuardedPose:
         """The worst error case found, in words."""
         return in_words(self.scenario, self.guarantee.axis, self.guarantee.case)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Write the pose and its values as plain data for JSON."""
         return {
             **self.pose.to_dict(),
@@ -181,7 +181,7 @@ class RobustDetails:
         guaranteed = self.nominal.guaranteed
         return self.robust.guaranteed / guaranteed if guaranteed > 0.0 else math.inf
 
-    def to_dict(self, objective: dict[str, Any]) -> dict[str, Any]:
+    def to_dict(self, objective: PlainTable) -> PlainTable:
         """Write both poses as plain data for JSON, over the keys of a result.
 
         Args:
@@ -197,7 +197,7 @@ class RobustDetails:
         }
 
 
-def _plain(case: ErrorCase) -> dict[str, Any]:
+def _plain(case: ErrorCase) -> PlainTable:
     return {
         "position_offset_m": case.position_offset_m.tolist(),
         "rotation_world": case.rotation_world.tolist(),

@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.errors import Fault, ScenarioError
+from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.scenario.origin import POINT_LISTS
@@ -175,7 +175,7 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario
             points[again] = _draw(spec, index, again, drawn[again], attempts[again])
 
 
-def _draw(spec: StudySpec, index: int, kind: str, points: Points, attempt: int) -> list[dict[str, Any]]:
+def _draw(spec: StudySpec, index: int, kind: str, points: Points, attempt: int) -> list[PlainTable]:
     """Return the points of one kind as plain data, with what they keep of those that they replace."""
 
     def chance(stream: str) -> np.random.Generator:

@@ -12,10 +12,10 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from nullpose.errors import OutputError, UsageError
-from nullpose.files import check_outputs, parse_json, read_bytes, refusals, replacing, write_text
+from nullpose.files import PlainTable, check_outputs, parse_json, read_bytes, refusals, replacing, write_text
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.study.monte_carlo.draw import quantity_of
 from nullpose.study.monte_carlo.rows import read_counts, read_parquet
@@ -85,7 +85,7 @@ class Folder:
         self.path = path
         self.parts_folder = path / PARTS
 
-    def manifest(self) -> dict[str, Any]:
+    def manifest(self) -> PlainTable:
         """Read the manifest.
 
         Raises:

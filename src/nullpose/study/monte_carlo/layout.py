@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, get_args
 
 from pydantic import Field
 
@@ -49,9 +49,9 @@ class _CountRange(Ascending):
         return [count.read(end) for end in ends]
 
 
-def _drawn(kind: Any) -> Drawn:
+def _drawn(kind: object) -> Drawn:
     """Make the reader of a quantity that is fixed or drawn from the type of a fixed one."""
-    return Drawn(next(each for each in kind.__metadata__ if isinstance(each, Quantity)))
+    return Drawn(next(each for each in get_args(kind) if isinstance(each, Quantity)))
 
 
 _Density = Annotated[

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.files import PlainTable
 from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
@@ -19,7 +19,7 @@ from nullpose.study.monte_carlo.spec import StudySpec
 
 _SPEC_FILE = FileKind("the spec of a study", "study.toml")
 # In place of a scenario file that is faulty.
-_STAND_IN: dict[str, Any] = {
+_STAND_IN: PlainTable = {
     "airspace": {"altitude_m": [10.0, 20.0]},
     "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
     "nodes": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
@@ -55,7 +55,7 @@ def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> S
     return spec
 
 
-def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -> list[Fault]:
+def _read_scenarios(tables: PlainTable, folder: Path, allow_outside: bool) -> list[Fault]:
     """Put what the named scenario files hold into the raw spec; return their faults."""
     scene = tables.get("scene")
     if not isinstance(scene, Mapping):
@@ -65,7 +65,7 @@ def _read_scenarios(tables: dict[str, Any], folder: Path, allow_outside: bool) -
     file, files = scene.get("file"), scene.get("files")
     names = [file] if files is None else files if isinstance(files, list) else []
     faults: list[Fault] = []
-    held: list[dict[str, Any]] = []
+    held: list[PlainTable] = []
     for name in names:
         if not isinstance(name, str):  # the spec says what is wrong with it
             continue

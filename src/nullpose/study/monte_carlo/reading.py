@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
+from nullpose.files import PlainTable
 from nullpose.solver import Rigour
 from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, require_extra
 from nullpose.study.monte_carlo.rows import read_parquet, schema_of
@@ -17,6 +18,7 @@ from nullpose.study.monte_carlo.spec import StudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
+    import pyarrow as pa
     import xarray as xr
 
 _SHOWN = 10  # rows of a large table
@@ -31,7 +33,7 @@ class StudyTable:
 
     def __init__(self, folder: Folder) -> None:
         self._parts = folder.parts()
-        self.manifest: dict[str, Any] = folder.manifest()
+        self.manifest: PlainTable = folder.manifest()
         """What made the study: spec, its hash, versions, seed, objective."""
         self.spec = StudySpec.from_dict(self.manifest["spec"], str(folder.path))
         """The study's spec."""
@@ -93,7 +95,7 @@ class StudyTable:
         in_order = arrays.reindex({**swept, "case": list(spec.case_names)})
         return in_order.assign_attrs(name=spec.name, objective=self.manifest["objective"])
 
-    def _as_frame(self, table: Any) -> pd.DataFrame:
+    def _as_frame(self, table: pa.Table) -> pd.DataFrame:
         frame = table.to_pandas()
         frame["case"] = frame["case"].astype("category").cat.set_categories(list(self.spec.case_names))
         return frame
@@ -147,7 +149,7 @@ class StudyStatus:
         """Whether all scenes are done."""
         return self.done == self.scenes
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Return the status as plain data."""
         return asdict(self) | {"complete": self.complete, "rigour": Rigour.FLOATING_POINT.value}
 

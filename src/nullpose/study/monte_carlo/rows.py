@@ -5,15 +5,16 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from nullpose.files import PlainTable
 from nullpose.study.monte_carlo.spec import StudySpec
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 # Columns by name: what a case reaches in a scene at a combination of swept values.
-Row = dict[str, Any]
+Row = PlainTable
 
 FAILED = "failed"  # the status of a row that has a reason in place of a pose
 
@@ -37,7 +38,7 @@ _COLUMNS = {
 }
 
 
-def row_of(scene: int, point: int, case: str, status: str, **columns: Any) -> Row:
+def row_of(scene: int, point: int, case: str, status: str, **columns: object) -> Row:
     """Make a row.
 
     Args:

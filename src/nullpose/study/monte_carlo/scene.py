@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, USUAL
 from nullpose.scenario import (
     Airframe,
@@ -110,7 +111,7 @@ class SceneBase(Section):
         """
         return self.scenarios[index % self.size] if self.scenarios else self
 
-    def kept(self, index: int, drawn: Collection[str]) -> dict[str, Any]:
+    def kept(self, index: int, drawn: Collection[str]) -> PlainTable:
         """Collect the values that a scene keeps when points are drawn, validated already.
 
         Points that stay are stated in metres alone: all points of a scenario are stated in one way.

@@ -6,11 +6,11 @@ import math
 import time
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from nullpose.errors import NullposeError
+from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate, interferer_gains
 from nullpose.problem.schemes import Scheme
@@ -94,7 +94,7 @@ def _null_gain(scene: Scenario, pose: Pose) -> float | None:
 
 def _found(
     scene: Scenario, status: Status, pose: Pose, value: float, bound: float | None, gap: float | None
-) -> dict[str, Any]:
+) -> PlainTable:
     """Return the columns of a pose with what is proved of it; a bound or gap that is not finite is none.
 
     Args:
@@ -116,7 +116,7 @@ def _found(
     }
 
 
-def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> dict[str, Any]:
+def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
     if case.pose is not None:
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
         faults = "; ".join(f"not allowed: {fault}" for fault in pose_faults(scene, pose))
@@ -184,7 +184,7 @@ def _rows(
 
 def _columns_of(
     many: ManySolutions, at: tuple[int, int], scene: Scenario, airframe: Airframe | None
-) -> dict[str, Any]:
+) -> PlainTable:
     status, reason = many.status[at], str(many.reason[at])
     if status is None:
         return {"status": FAILED, "reason": reason}

@@ -7,11 +7,12 @@ import json
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from itertools import product
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from nullpose.errors import UsageError
+from nullpose.files import PlainTable
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario.crosscheck import shared_names
 from nullpose.scenario.faults import Place
@@ -115,7 +116,7 @@ class StudySpec(Section):
                         f"{values[0]!r} and {values[1]!r}; {remedy}",
                     )
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PlainTable:
         """Write plain numbers, texts, lists and tables, ready for JSON; keys left out stay out."""
         values = super().to_dict()
         values["sweep"] = {path: list(numbers) for path, numbers in self.sweep}

@@ -3,7 +3,7 @@
 ``min over lambda in the simplex of lambda_max(sum_k lambda_k A_k)`` is the dual of
 ``max over U psd, tr U = 1, of min_k <A_k, U>``, which has six unknowns whatever the number of forms: an
 interior-point method there costs a few small products per form and step, and its slacks give the
-multipliers. Any multipliers give a valid bound; these give nearly the best.
+multipliers. All multipliers give a valid bound; these give nearly the best.
 """
 
 from __future__ import annotations
