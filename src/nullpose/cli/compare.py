@@ -10,7 +10,6 @@ import typer
 from nullpose.cli.options import Fast, FigureFile, JsonOutput, ProofOptions, SceneOptions, Width, expanded
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import Ticker
-from nullpose.files import PlainTable
 
 
 @expanded
@@ -33,6 +32,7 @@ def compare(
     """Solve under the paper's four schemes, or with several vehicles."""
     scenario = scene.read()
     prepare_outputs(scene, figure=figure, width=width)
+    from nullpose.files import PlainTable
     from nullpose.report.answer import answer_lines
     from nullpose.report.comparison import airframes_view, comparison_view
     from nullpose.study import ResultTable

@@ -13,10 +13,10 @@ import typer
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.printing import say
 from nullpose.errors import SolveError, UsageError
-from nullpose.files import PlainTable
 
 if TYPE_CHECKING:
     from nullpose.cli.options import SceneOptions
+    from nullpose.files import PlainTable
     from nullpose.report.document import View
 
 
