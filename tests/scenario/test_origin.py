@@ -1,17 +1,15 @@
 """Points by latitude and longitude, and the origin from which they get their metres."""
 
 import json
-import re
 import tomllib
 from typing import Any
 
 import numpy as np
 import pytest
 
-import scenes
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import enu_from_geodetic
-from scenes import small
+from scenes import require_fault, small
 
 ORIGIN = {"lat_deg": 50.0, "lon_deg": 14.5, "alt_m": 230.0}
 HERE = {"lat_deg": 50.001, "lon_deg": 14.502, "alt_m": 232.0}
@@ -26,9 +24,9 @@ def data(**changes: Any) -> dict[str, Any]:
     return small(**whole | {"jammers": [jammer]} | changes)
 
 
-def faults_of(**changes: Any) -> dict[str, str]:
-    """Returns the messages of the faults, by path."""
-    return scenes.faults_of(data(**changes))
+def without(table: dict[str, Any], key: str) -> dict[str, Any]:
+    """Return a table less one of its keys."""
+    return {other: value for other, value in table.items() if other != key}
 
 
 def test_positions_follow_from_the_origin() -> None:
@@ -60,79 +58,50 @@ def test_a_position_that_was_written_is_kept_to_the_last_bit() -> None:
     assert list(moved.nodes[0].position_m) == written["nodes"][0]["position_m"]
 
 
-def test_missing_origin() -> None:
-    """Without an origin there is one fault, however many points need it."""
-    assert list(faults_of(origin=None)) == ["origin"]
-    assert "missing, but nodes[0] is stated by lat_deg, lon_deg and alt_m" in faults_of(origin=None)["origin"]
-    assert "add a table headed [origin]" in faults_of(origin=None)["origin"]
+LOCAL = {"power_w": 1.0, "position_m": [1.0, 2.0, 3.0]}
+FIRST, SECOND = {"power_w": 1.0} | HERE, {"power_w": 1.0} | THERE
+PLACE = enu_from_geodetic([50.001, 14.502, 232.0], [50.0, 14.5, 230.0])
+NUMBERS = [
+    ("lat_deg", 91.0, "got 91.0, must be a latitude in degrees from -90 to 90"),
+    ("lat_deg", NAN, "got NaN, must be a latitude"),
+    ("lon_deg", 180.5, "got 180.5, must be a longitude in degrees from -180 to 180"),
+    ("lon_deg", "14.5", "write it without quotes"),
+    ("alt_m", 2e5, "must be an altitude in m over the WGS-84 ellipsoid from -10000 to 100000"),
+    ("alt_m", [1.0], "got a list of one value, must be a number"),
+]
+
+
+APART = FIRST | {"position_m": (PLACE + np.array([3.0, 4.0, 0.0])).tolist()}
+EXCHANGED = FIRST | {"lat_deg": 14.5, "lon_deg": 50.0}
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "words"),
+    ("changes", "path", "words"),
     [
-        ("lat_deg", 91.0, "got 91.0, must be a latitude in degrees from -90 to 90"),
-        ("lat_deg", NAN, "got NaN, must be a latitude"),
-        ("lon_deg", 180.5, "got 180.5, must be a longitude in degrees from -180 to 180"),
-        ("lon_deg", "14.5", "write it without quotes"),
-        ("alt_m", 2e5, "must be an altitude in m over the WGS-84 ellipsoid from -10000 to 100000"),
-        ("alt_m", [1.0], "got a list of one value, must be a number"),
+        *(({"origin": ORIGIN | {key: value}}, f"origin.{key}", words) for key, value, words in NUMBERS),
+        *(({"nodes": [FIRST, SECOND | {k: value}]}, f"nodes[1].{k}", words) for k, value, words in NUMBERS),
+        ({"origin": None}, "origin", "missing, but nodes[0] is stated by lat_deg, lon_deg and alt_m"),
+        ({"jammers": [LOCAL]}, "jammers[0]", "by position_m, but nodes[0] by lat_deg, lon_deg and alt_m"),
+        ({"nodes": [LOCAL]}, "jammers[0]", "by lat_deg, lon_deg and alt_m, but nodes[0] by position_m"),
+        ({"nodes": [APART]}, "nodes[0]", "are 5 m apart, must be one place"),
+        ({"nodes": [EXCHANGED]}, "nodes[0]", "km from the origin, must be within 100 km"),
+        ({"nodes": [EXCHANGED]}, "nodes[0]", "are latitude and longitude exchanged"),
+        ({"nodes": [without(FIRST, "lat_deg")]}, "nodes[0]", "without lat_deg; add it, or position_m"),
+        ({"nodes": [without(FIRST, "lon_deg")]}, "nodes[0]", "without lon_deg; add it, or position_m"),
+        ({"nodes": [without(FIRST, "alt_m")]}, "nodes[0]", "add it, or position_m"),
+        ({"origin": without(ORIGIN, "lat_deg")}, "origin.lat_deg", "missing; it must be given"),
+        ({"origin": without(ORIGIN, "lon_deg")}, "origin.lon_deg", "missing; it must be given"),
+        ({"origin": without(ORIGIN, "alt_m")}, "origin", "neither alt_m nor alt_msl_m is given"),
     ],
 )
-def test_values_out_of_range(key: str, value: object, words: str) -> None:
-    """In the origin or in a point, a number that is none is one fault, at its own place."""
-    for path, faults in (
-        (f"origin.{key}", faults_of(origin=ORIGIN | {key: value})),
-        (
-            f"nodes[1].{key}",
-            faults_of(nodes=[{"power_w": 1.0} | HERE, {"power_w": 1.0} | THERE | {key: value}]),
-        ),
-    ):
-        assert list(faults) == [path]
-        assert words in faults[path]
-
-
-@pytest.mark.parametrize("key", list(ORIGIN))
-def test_all_three_or_none(key: str) -> None:
-    """A place needs all three keys: one that is left out is named once, in a point and in the origin."""
-    part = {other: value for other, value in HERE.items() if other != key}
-    faults = faults_of(nodes=[{"power_w": 1.0} | part])
-    assert list(faults) == ["nodes[0]"]
-    assert re.search(rf"without {key}( or \w+)*; add it, or position_m", faults["nodes[0]"])
-    faults = faults_of(origin={other: value for other, value in ORIGIN.items() if other != key})
-    if key == "alt_m":
-        assert faults == {"origin": "neither alt_m nor alt_msl_m is given, at least one must be; add either"}
-    else:
-        assert list(faults) == [f"origin.{key}"]
-        assert "missing; it must be given" in faults[f"origin.{key}"]
-
-
-def test_mixed_points() -> None:
-    """Points in metres among points by latitude are refused, at the first that differs."""
-    local = {"power_w": 1.0, "position_m": [1.0, 2.0, 3.0]}
-    faults = faults_of(jammers=[local, local | {"position_m": [4.0, 5.0, 6.0]}])
-    assert list(faults) == ["jammers[0]"]
-    assert "stated by position_m, but nodes[0] by lat_deg, lon_deg and alt_m" in faults["jammers[0]"]
-    faults = faults_of(nodes=[local])
-    assert list(faults) == ["jammers[0]"]
-    assert "stated by lat_deg, lon_deg and alt_m, but nodes[0] by position_m" in faults["jammers[0]"]
+def test_faults_of_places(changes: dict[str, Any], path: str, words: str) -> None:
+    """Numbers out of range, a key left out, no origin, mixed points and exchanges are one fault each."""
+    require_fault(lambda: Scenario.from_dict(data(**changes)), path, words)
 
 
 def test_both_ways_in_one_point() -> None:
-    """A point may be stated both ways if they agree; if not, it is told how far apart they are."""
-    place = enu_from_geodetic([50.001, 14.502, 232.0], [50.0, 14.5, 230.0])
-    node = {"power_w": 1.0} | HERE
-    assert Scenario.from_dict(data(nodes=[node | {"position_m": place}])).nodes[0].lat_deg == 50.001
-    faults = faults_of(nodes=[node | {"position_m": (place + np.array([3.0, 4.0, 0.0])).tolist()}])
-    assert list(faults) == ["nodes[0]"]
-    assert "are 5 m apart, must be one place" in faults["nodes[0]"]
-
-
-def test_exchanged_latitude_and_longitude() -> None:
-    """A point thousands of kilometres away is refused with what is likely wrong with it."""
-    faults = faults_of(nodes=[{"power_w": 1.0, "lat_deg": 14.5, "lon_deg": 50.0, "alt_m": 230.0}])
-    assert list(faults) == ["nodes[0]"]
-    assert "km from the origin, must be within 100 km" in faults["nodes[0]"]
-    assert "are latitude and longitude exchanged" in faults["nodes[0]"]
+    """A point may be stated both ways if they agree."""
+    assert Scenario.from_dict(data(nodes=[FIRST | {"position_m": PLACE}])).nodes[0].lat_deg == 50.001
 
 
 def test_a_copy_with_another_position_has_no_latitude() -> None:

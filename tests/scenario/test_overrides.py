@@ -175,12 +175,22 @@ ORIGIN = {"lat_deg": 50.0, "lon_deg": 14.5, "alt_m": 230.0}
 EARTHLY = Scenario.from_dict(small(origin=ORIGIN, nodes=[POINT, POINT | {"lat_deg": 50.002}]))
 
 
-def test_a_latitude_moves_its_point_alone() -> None:
-    """A new latitude gives its point a new position; the others keep theirs to the last bit."""
-    changed = apply_overrides(EARTHLY, ["nodes.S1.lat_deg=50.003"])
-    place = enu_from_geodetic([50.003, 14.502, 232.0], [50.0, 14.5, 230.0])
+@pytest.mark.parametrize(
+    ("override", "lat_deg", "origin_lat_deg"),
+    [
+        ("nodes.S1.lat_deg=50.003", 50.003, 50.0),
+        ("origin.lat_deg=50.001", 50.001, 50.001),
+        ("origin={lat_deg = 50.001, lon_deg = 14.5, alt_m = 230.0}", 50.001, 50.001),
+    ],
+)
+def test_points_stay_on_the_earth(override: str, lat_deg: float, origin_lat_deg: float) -> None:
+    """A latitude moves its point alone, to the last bit; metres change when the origin moves."""
+    changed = apply_overrides(EARTHLY, [override])
+    place = enu_from_geodetic([lat_deg, 14.502, 232.0], [origin_lat_deg, 14.5, 230.0])
     np.testing.assert_array_equal(changed.node_positions_m[0], place)
-    np.testing.assert_array_equal(changed.node_positions_m[1], EARTHLY.node_positions_m[1])
+    assert [node.lat_deg for node in changed.nodes] == [lat_deg, 50.002]
+    if origin_lat_deg == 50.0:
+        np.testing.assert_array_equal(changed.node_positions_m[1], EARTHLY.node_positions_m[1])
 
 
 @pytest.mark.parametrize("override", ["nodes.S1.position_m=[5, 222, 2]", "nodes.S1.position_m[0]=5"])
@@ -190,17 +200,6 @@ def test_metres_replace_the_latitude(override: str) -> None:
     assert changed.nodes[0].position_m[0] == 5.0
     assert changed.nodes[0].lat_deg is None
     assert changed.nodes[1] == EARTHLY.nodes[1]
-
-
-@pytest.mark.parametrize(
-    "override", ["origin.lat_deg=50.001", "origin={lat_deg = 50.001, lon_deg = 14.5, alt_m = 230.0}"]
-)
-def test_the_points_stay_on_the_earth_when_the_origin_moves(override: str) -> None:
-    """Positions in metres change with the origin, latitudes do not."""
-    changed = apply_overrides(EARTHLY, [override])
-    place = enu_from_geodetic([50.001, 14.502, 232.0], [50.001, 14.5, 230.0])
-    np.testing.assert_array_equal(changed.node_positions_m[0], place)
-    assert changed.nodes[0].lat_deg == 50.001
 
 
 @pytest.mark.parametrize(

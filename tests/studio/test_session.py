@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, seed, strategies as st
 
@@ -166,7 +167,9 @@ def test_a_long_proof_tells_how_far_it_has_come() -> None:
         if isinstance(event, Progress):
             told.append((time.monotonic(), event))
 
-    session = Session(State(scenario=load(EXAMPLES / "frame.toml")), rest_s=0.05, on_event=take)
+    places_m = np.random.default_rng(1).uniform(0.0, [100.0, 100.0, 5.0], (30, 3))
+    many = Scenario.from_arrays(places_m[:20], places_m[20:], noise_w=1e-3, altitude_m=(8.0, 30.0))
+    session = Session(State(scenario=many), rest_s=0.05, on_event=take)
     session.start()
     wait(lambda: len(told) > 2)
     assert session.state.progress(OPTIMUM) is not None
