@@ -94,9 +94,11 @@ class NamedFiles:
 
     def _antenna(self, antenna: object) -> object:
         """Fill in what the file of an antenna holds."""
-        if not isinstance(antenna, dict) or "harmonics" in antenna:
-            return antenna
-        if not isinstance(file := antenna.get("file"), str):
+        if (
+            not isinstance(antenna, dict)
+            or not isinstance(file := antenna.get("file"), str)
+            or "harmonics" in antenna
+        ):
             return antenna
         with self._reading(f"antenna.file: {file}"):
             return with_harmonics(antenna, inside(self._folder, file, self._allow_outside))
