@@ -32,11 +32,18 @@ def largest_error_db(table: PatternTable) -> float:
     return float(np.max(np.abs(10.0 * np.log10(table.gain[seen] / gain[seen]))))
 
 
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory: pytest.TempPathFactory) -> dict[str, PatternTable]:
+    """The table of the same antenna in every format, told from the content."""
+    return {name: read(written(name), tmp_path_factory.mktemp(name)) for name in WRITERS}
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_every_format_gives_the_same_antenna(tmp_path: Path, name: str) -> None:
+def test_every_format_gives_the_same_antenna(
+    tmp_path: Path, tables: dict[str, PatternTable], name: str
+) -> None:
     """In every direction the gain is the antenna's to .01 dB, whether the format is stated or told."""
-    for stated in (None, WRITERS[name][0]):
-        table = read(written(name), tmp_path, file_format=stated)
+    for table in (tables[name], read(written(name), tmp_path, file_format=WRITERS[name][0])):
         assert largest_error_db(table) < 0.01
         assert table.source == f"pattern.txt ({WRITERS[name][0]})"
         assert table.theta_deg[[0, -1]].tolist() == [0.0, 180.0]
@@ -46,9 +53,9 @@ def test_every_format_gives_the_same_antenna(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", WITH_FIELD)
-def test_fields_keep_their_phases(tmp_path: Path, name: str) -> None:
+def test_fields_keep_their_phases(tables: dict[str, PatternTable], name: str) -> None:
     """Read fields are the antenna's but for one phase for all directions, so polarisations are as well."""
-    table = read(written(name), tmp_path)
+    table = tables[name]
     truth = field_of(*np.meshgrid(table.theta_deg, table.phi_deg, indexing="ij"))
     weights = solid_angles(table)[..., None]
     assert table.field is not None
@@ -56,9 +63,8 @@ def test_fields_keep_their_phases(tmp_path: Path, name: str) -> None:
     assert np.sum(np.abs(table.field) ** 2, axis=-1) == pytest.approx(table.gain, rel=1e-12)
 
 
-def test_what_the_file_tells_of_itself_is_kept(tmp_path: Path) -> None:
+def test_what_the_file_tells_of_itself_is_kept(tables: dict[str, PatternTable]) -> None:
     """Frequency, quantity and notes: no power in .ffd is told, nor clockwise bearings kept silent."""
-    tables = {name: read(written(name), tmp_path) for name in WRITERS}
     known = {name: table.frequency_hz for name, table in tables.items() if table.frequency_hz}
     assert known == dict.fromkeys(("nec", "4nec2", "ffd", "ffs", "hfss-csv", "hfss-linear"), 2.4e9)
     directive = {name for name, table in tables.items() if table.quantity == "directivity"}
@@ -131,36 +137,36 @@ def test_the_profile_of_an_omni_is_the_mean_of_its_halves(tmp_path: Path) -> Non
     assert "ripple of 1.4 dB, and 1.0 dB between the halves" in table.notes[1]
 
 
-def test_an_estimate_from_two_cuts_has_both_of_them(tmp_path: Path) -> None:
-    """Of another antenna two cuts make an estimate, which agrees with both, points ahead and says so."""
-    at = np.radians(np.arange(360.0))
-    across_db = 8.0 - 8.0 * np.cos(at) + 1.0 * np.sin(at) ** 2
-    down_db = 8.0 - 8.0 * np.cos(at) + 9.0 * np.sin(at) ** 2
+AT = np.radians(np.arange(360.0))
+BEAM_DB = 8.0 - 8.0 * np.cos(AT)
+REAR_DB = 9.0 * (1.0 - np.cos(AT)) + 3.0 * np.cos(AT) ** 2
+
+
+@pytest.mark.parametrize(
+    ("across_db", "down_db"),
+    [
+        (BEAM_DB + np.sin(AT) ** 2, BEAM_DB + 9.0 * np.sin(AT) ** 2),
+        (REAR_DB, REAR_DB + 12.0 * np.sin(AT) ** 2 * np.cos(AT)),  # less than straight behind
+    ],
+    ids=["beam", "rear"],
+)
+def test_an_estimate_from_two_cuts_has_both_of_them(
+    tmp_path: Path, across_db: np.ndarray, down_db: np.ndarray
+) -> None:
+    """It agrees with both cuts, whether it points ahead or the rear is the stronger, and says what it is."""
     table = read(write_msi(across_db, down_db, "9 dBi"), tmp_path, estimate=True)
     with np.errstate(divide="ignore"):
         loss = 9.0 - 10.0 * np.log10(table.gain)
     assert loss[90] == pytest.approx(across_db[-np.arange(360) % 360], abs=1e-3)
     assert loss[1:-1, 0] == pytest.approx(down_db[(np.arange(1, 180) - 90) % 360], abs=1e-3)
     assert loss[1:-1, 180] == pytest.approx(down_db[270 - np.arange(1, 180)], abs=1e-3)
-    assert np.unravel_index(np.argmax(table.gain), table.gain.shape) == (90, 0)
-    assert np.min(loss) == pytest.approx(0.0, abs=1e-9)
-    assert solid_angles(table)[loss < 3.0].sum() < 0.1
-    assert "estimate by the sum of losses: its horizontal cut changes by 16.0 dB" in table.caveat
-    at_half = loss[45, 90]  # theta 45, phi 90: half of each half of the vertical cut
-    assert at_half == pytest.approx(across_db[270] + 0.5 * (down_db[315] + down_db[225] - 16.0), abs=1e-3)
-
-
-def test_an_estimate_has_a_strong_rear_and_a_weak_front(tmp_path: Path) -> None:
-    """It meets both cuts where the rear is stronger off the horizon, and where both lose 3 dB ahead."""
-    at = np.radians(np.arange(360.0))
-    ahead_db = 3.0 * np.cos(at) ** 2
-    across_db = 9.0 * (1.0 - np.cos(at)) + ahead_db
-    down_db = across_db + 12.0 * np.sin(at) ** 2 * np.cos(at)  # less than straight behind
-    table = read(write_msi(across_db, down_db, "5 dBi"), tmp_path, estimate=True)
-    loss = 5.0 - 10.0 * np.log10(table.gain)
-    assert loss[90] == pytest.approx(across_db[-np.arange(360) % 360], abs=1e-3)
-    assert loss[1:-1, 0] == pytest.approx(down_db[(np.arange(1, 180) - 90) % 360], abs=1e-3)
-    assert loss[1:-1, 180] == pytest.approx(down_db[270 - np.arange(1, 180)], abs=1e-3)
+    if across_db[0] == 0.0:
+        assert np.unravel_index(np.argmax(table.gain), table.gain.shape) == (90, 0)
+        assert np.min(loss) == pytest.approx(0.0, abs=1e-9)
+        assert solid_angles(table)[loss < 3.0].sum() < 0.1
+        assert "estimate by the sum of losses: its horizontal cut changes by 16.0 dB" in table.caveat
+        at_half = loss[45, 90]  # theta 45, phi 90: half of each half of the vertical cut
+        assert at_half == pytest.approx(across_db[270] + 0.5 * (down_db[315] + down_db[225] - 16.0), abs=1e-3)
 
 
 def test_isolated_nulls_are_nulls(tmp_path: Path) -> None:
@@ -176,16 +182,15 @@ def test_isolated_nulls_are_nulls(tmp_path: Path) -> None:
     assert np.all(table.gain[1:-1] > 0.0)
 
 
-def test_averages_are_exact(tmp_path: Path) -> None:
+def test_averages_are_exact(tables: dict[str, PatternTable]) -> None:
     """Weights sum to 1, and average a polynomial of the cosine exactly, for odd and even numbers of steps."""
-    table = read(written("csv"), tmp_path)
     for steps in (12, 15):
         theta = np.linspace(0.0, 180.0, steps + 1)
         gain = np.repeat(np.cos(np.radians(theta))[:, None] ** 6, 8, axis=1)
         coarse = PatternTable(theta_deg=theta, phi_deg=np.arange(0.0, 360.0, 45.0), gain=gain)
         assert np.sum(solid_angles(coarse)) == pytest.approx(1.0, abs=1e-14)
         assert mean_gain(coarse) == pytest.approx(1.0 / 7.0, abs=1e-14)
-    assert mean_gain(table) == pytest.approx(1.0, abs=1e-4)
+    assert mean_gain(tables["csv"]) == pytest.approx(1.0, abs=1e-4)
 
 
 def far_field(step_deg: float, offset_m: np.ndarray) -> str:

@@ -1,5 +1,6 @@
 """Genuine output of nec2c: peaks, ripples and nulls as they are known from finer grids."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ from pattern_files import DATA, written
 
 from nullpose.antenna.files import read_pattern
 from nullpose.antenna.summary import summary_of
+from nullpose.antenna.table import PatternTable
 from nullpose.errors import ScenarioError
 
 # Peak (dBi), ripple round the equator and depth of the deepest null (dB), on grids of 1 degree.
@@ -19,10 +21,16 @@ KNOWN = {
 }
 
 
+@cache
+def known(name: str) -> PatternTable:
+    """Read a known pattern, once."""
+    return read_pattern(DATA / f"{name}_5deg.out.gz")
+
+
 @pytest.mark.parametrize("name", KNOWN)
 def test_known_patterns(name: str) -> None:
     """Peak, ripple and null are those of the finer grids, to what 5 degrees show; nothing is lost."""
-    summary = summary_of(read_pattern(DATA / f"{name}_5deg.out.gz"))
+    summary = summary_of(known(name))
     peak_dbi, ripple_db, null_db = KNOWN[name]
     assert summary.peak_dbi == pytest.approx(peak_dbi, abs=0.1)
     assert summary.ripple_db == pytest.approx(ripple_db, abs=0.2)
@@ -34,7 +42,7 @@ def test_known_patterns(name: str) -> None:
 
 def test_the_short_dipole_is_the_formula() -> None:
     """The gain of the dipole alone is 1.5 sin^2 but for its length, a tenth of a wavelength."""
-    table = read_pattern(DATA / "alone_short_5deg.out.gz")
+    table = known("alone_short")
     formula = 1.5 * np.sin(np.radians(table.theta_deg[1:-1]))[:, None] ** 2
     assert np.max(np.abs(10.0 * np.log10(table.gain[1:-1] / formula))) < 0.1
 

@@ -28,20 +28,16 @@ def test_a_table_in_decibels_is_the_closed_form() -> None:
 
 
 def test_half_wave() -> None:
-    """The half-wave dipole is its formula, 1 broadside, to 1e-10."""
+    """The half-wave dipole is its formula, 1 broadside, to 1e-10; a fine profile of it is it to 1e-4."""
     theta = np.linspace(0.01, np.pi - 0.01, 500)
     formula = (np.cos(0.5 * np.pi * np.cos(theta)) / np.sin(theta)) ** 2
     np.testing.assert_allclose(half_wave_harmonics().on_grid(theta, np.zeros(1))[:, 0], formula, atol=1e-10)
-
-
-def test_profile() -> None:
-    """A profile that samples the half-wave dipole finely is it to 1e-4."""
     angle = np.linspace(0.0, 180.0, 1801)
     theta = np.radians(np.clip(angle, 1e-6, 180.0 - 1e-6))
     gain = (np.cos(0.5 * np.pi * np.cos(theta)) / np.sin(theta)) ** 2
     found = profile_harmonics(angle, gain)
     assert found.is_axisymmetric
-    np.testing.assert_allclose(found.on_grid(theta, np.zeros(1))[:, 0], gain, atol=1e-4 + 3e-4)
+    np.testing.assert_allclose(found.on_grid(theta, np.zeros(1))[:, 0], gain, atol=4e-4)
 
 
 def test_rows_round_trip() -> None:
