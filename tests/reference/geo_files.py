@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 import pyogrio
+import pytest
 import shapely
 from shapely.geometry import mapping
 
+from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario, load
 from nullpose.scenario.geodesy import enu_from_geodetic
 
@@ -50,6 +52,17 @@ def zones_of(folder: Path, file: str, here: tuple[float, float] = HERE) -> tuple
     notes: list[str] = []
     path = scene(folder, f'altitude_m = [10.0, 120.0]\nno_fly_from = "{file}"', here)
     return load(path, on_note=notes.append), notes
+
+
+def require_refusal(folder: Path, file: str, words: str) -> None:
+    """Check that zones of a file are refused in these words."""
+    with pytest.raises(ScenarioError, match=words):
+        zones_of(folder, file)
+
+
+def require_kept_out(scenario: Scenario, expected: Any) -> None:
+    """Check that the zones of a scenario cover these metres to a millionth of their area."""
+    assert kept_out(scenario).symmetric_difference(expected).area <= 1e-6 * expected.area
 
 
 def write_geojson(path: Path, features: list[Feature]) -> None:

@@ -22,6 +22,7 @@ from geo_files import (
     kml,
     kml_of,
     placemark,
+    require_refusal,
     scene,
     star,
     write_gdal,
@@ -39,7 +40,7 @@ from scenes import require_fault
 
 @pytest.mark.parametrize("ending", [".geojson", ".kml", ".gpkg"])
 def test_damaged_files_are_read_right_or_refused(ending: str, tmp_path: Path) -> None:
-    """300 files with a piece cut out, doubled or overwritten: no traceback, and no zone is lost in silence.
+    """150 files with a piece cut out, doubled or overwritten: no traceback, and no zone is lost in silence.
 
     Of a file that is accepted, a zone whose coordinates are as they were keeps out all that it did.
     """
@@ -56,7 +57,7 @@ def test_damaged_files_are_read_right_or_refused(ending: str, tmp_path: Path) ->
     coordinates = [written(shape) for shape, _ in features]
     assert all(each in content for each in coordinates)
     refused = compared = 0
-    for _ in range(300):
+    for _ in range(150):
         at, size = rng.randrange(len(content)), rng.choice([1, 1, 2, 5, 20, 200])
         piece = bytes(rng.randrange(32, 127) for _ in range(size))
         middle = rng.choice([b"", content[at : at + size] * 2, piece])
@@ -73,8 +74,8 @@ def test_damaged_files_are_read_right_or_refused(ending: str, tmp_path: Path) ->
                 area = in_metres(filled(shape))
                 assert (area - kept_out(scenario)).area <= 1e-6 * area.area
                 compared += 1
-    assert refused > 30
-    assert compared > 100
+    assert refused > 15
+    assert compared > 50
 
 
 def test_a_country_loads_quickly(tmp_path: Path) -> None:
@@ -117,6 +118,7 @@ def test_the_edge_at_which_a_zone_is_cut_crosses_no_other(tmp_path: Path) -> Non
 SQUARE = shapely.Point(HERE).buffer(0.01, quad_segs=1)
 POINT = shapely.Point(HERE)
 WALLS = [(shapely.LineString([HERE] * 4), {}), (shapely.Polygon([HERE] * 4), {})]
+NONE, NOT_READ = "zones: 0", "of points Bufferzone is not read; a radius is radius_m"
 HOLED = shapely.Polygon(SQUARE.exterior, [[HERE] * 4])  # a hole of one place takes nothing away
 
 
@@ -124,19 +126,12 @@ HOLED = shapely.Polygon(SQUARE.exterior, [[HERE] * 4])  # a hole of one place ta
     ("features", "area", "notes"),
     [
         (
-            [(shapely.Point(0.0, 0.0).buffer(0.1), {})],
-            0.0,
-            ["zones: 0 of 1 in reach; are latitude and longitude exchanged?"],
+            [(shapely.Point(0, 0).buffer(0.1), {})],
+            0,
+            [f"{NONE} of 1 in reach; are latitude and longitude exchanged?"],
         ),
-        ([(POINT, {})], 0.0, ["zones: 0 of 0 in reach; passed over: 1 point"]),
-        (
-            [(POINT, {"Bufferzone": 150, "name": "station"})],
-            0.0,
-            [
-                "zones: 0 of 0 in reach; passed over: 1 point",
-                "of points Bufferzone is not read; a radius is radius_m",
-            ],
-        ),
+        ([(POINT, {})], 0, [f"{NONE} of 0 in reach; passed over: 1 point"]),
+        ([(POINT, {"Bufferzone": 150})], 0, [f"{NONE} of 0 in reach; passed over: 1 point", NOT_READ]),
         (
             [*WALLS, (HOLED, {})],
             in_metres(SQUARE).area,
@@ -182,30 +177,21 @@ def test_zones_with_too_many_corners_are_cut_once(tmp_path: Path) -> None:
 
 def test_zones_with_too_many_corners_are_cut_to_the_fence(tmp_path: Path) -> None:
     """A fence that is at fault is told, and stops nothing."""
-    rings = [shapely.Point(HERE[0] + x, HERE[1]).buffer(0.01, quad_segs=1200) for x in (0.0105, 0.2)]
+    x, y = HERE
+    rings = [shapely.Point(x + east, y).buffer(0.01, quad_segs=1200) for east in (0.0105, 0.2)]
     write_geojson(tmp_path / "z.geojson", [(ring, {}) for ring in rings])
-    fence = f"[[{HERE[1]}, {HERE[0]}], [{HERE[1]}, {HERE[0] + 1e-3}], [{HERE[1] + 1e-3}, {HERE[0]}]]"
-    for corners, words in ((fence, None), ("3", "geofence_lat_lon_deg: got 3, must be a list")):
-        airspace = f'altitude_m = [10, 120]\nno_fly_from = "z.geojson"\ngeofence_lat_lon_deg = {corners}'
-        path = scene(tmp_path, airspace)
-        if words is None:
-            assert len(load(path).airspace.no_fly) == 1
-        else:
-            with pytest.raises(ScenarioError, match=words):
-                load(path)
+    airspace = 'altitude_m = [10, 120]\nno_fly_from = "z.geojson"\ngeofence_lat_lon_deg = '
+    fence = f"[[{y}, {x}], [{y}, {x + 1e-3}], [{y + 1e-3}, {x}]]"
+    assert len(load(scene(tmp_path, airspace + fence)).airspace.no_fly) == 1
+    with pytest.raises(ScenarioError, match="geofence_lat_lon_deg: got 3, must be a list"):
+        load(scene(tmp_path, f"{airspace}3"))
 
 
 def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> None:
     """Real sets have them: a loop at a corner, a ring that runs twice around, a hole around its border."""
     x, y = HERE
-    looped = [
-        (x, y),
-        (x + 0.02, y),
-        (x + 0.02, y + 0.02),
-        (x + 0.0001, y + 0.02),
-        (x - 0.0001, y + 0.0199),
-        (x, y + 0.0201),
-    ]
+    looped = [(x, y), (x + 0.02, y), (x + 0.02, y + 0.02)]
+    looped += [(x + 0.0001, y + 0.02), (x - 0.0001, y + 0.0199), (x, y + 0.0201)]
     square = shapely.box(x + 0.03, y, x + 0.06, y + 0.03)
     swapped = shapely.Polygon(square.buffer(-0.01).exterior, [square.exterior])
     corners = [(x - 0.01, y), (x - 0.01, y - 0.01), (x, y - 0.01), (x, y - 0.005)]
@@ -216,64 +202,40 @@ def test_borders_with_small_crossings_keep_out_all_inside(tmp_path: Path) -> Non
         "z.geojson: zones: 3 of 3 in reach (4 polygons); borders that cross, all inside counts: 3"
     ]
     rings = shapely.node(shapely.LineString([*looped, looped[0]]))
-    assert (
-        not in_metres(shapely.union_all([*shapely.get_parts(shapely.polygonize([rings])), square]))
-        .difference(kept_out(scenario).buffer(0.3))
-        .area
-    )
+    inside = shapely.union_all([*shapely.get_parts(shapely.polygonize([rings])), square])
+    assert not in_metres(inside).difference(kept_out(scenario).buffer(0.3)).area
     with pytest.raises(ScenarioError, match="its border crosses itself"):
         load(scene(tmp_path, 'altitude_m = [10.0, 120.0]\ngeofence_from = "z.geojson"'))
     bow = shapely.Polygon([(x, y), (x + 0.01, y + 0.01), (x + 0.01, y), (x, y + 0.01)])
     write_geojson(tmp_path / "bow.geojson", [(bow, {})])
-    with pytest.raises(ScenarioError, match="its border crosses itself"):
-        zones_of(tmp_path, "bow.geojson")
+    require_refusal(tmp_path, "bow.geojson", "its border crosses itself")
 
 
 def test_kmz_that_is_damaged_or_holds_two_documents_is_refused(tmp_path: Path) -> None:
     """The reason is the archive's own."""
-    text = kml(placemark(shapely.Point(HERE).buffer(0.01), {}))
+    text = kml(placemark(SQUARE, {}))
     for names in (["doc.kml"], ["doc.kml", "more.kml"]):
-        with zipfile.ZipFile(tmp_path / "z.kmz", "w", zipfile.ZIP_DEFLATED) as archive:
+        with zipfile.ZipFile(tmp_path / f"{len(names)}.kmz", "w", zipfile.ZIP_DEFLATED) as archive:
             for name in names:
                 archive.writestr(name, text)
-        if len(names) == 1:
-            content = (tmp_path / "z.kmz").read_bytes()
-            start = 30 + len("doc.kml")  # of the packed text
-            (tmp_path / "z.kmz").write_bytes(content[:start] + b"\xff" * 9 + content[start + 9 :])
-        words = "z.kmz: this is not KMZ: Error -3" if len(names) == 1 else "z.kmz: it has 2 KML files"
-        with pytest.raises(ScenarioError, match=words):
-            zones_of(tmp_path, "z.kmz")
+    content, start = (tmp_path / "1.kmz").read_bytes(), 30 + len("doc.kml")  # of the packed text
+    (tmp_path / "1.kmz").write_bytes(content[:start] + b"\xff" * 9 + content[start + 9 :])
+    require_refusal(tmp_path, "1.kmz", "1.kmz: this is not KMZ: Error -3")
+    require_refusal(tmp_path, "2.kmz", "2.kmz: it has 2 KML files")
 
 
-def test_an_old_geopackage_keeps_its_zones(tmp_path: Path) -> None:
-    """One without the mark of a GeoPackage is one by its ending."""
-    zone = shapely.Point(HERE).buffer(0.01)
-    write_gdal(tmp_path / "z.gpkg", [(zone, {"name": "old"})])
+def test_styles_measures_and_missing_marks_are_no_faults(tmp_path: Path) -> None:
+    """None changes a place; what has lost the mark of a GeoPackage is one by its ending."""
+    style = "<Style><LineStyle><width>2</width></LineStyle></Style>"
+    (tmp_path / "z.kml").write_text(kml(style, placemark(SQUARE, {})))
+    wkt = SQUARE.wkt.replace("POLYGON", "POLYGON M").replace(",", " 7,").replace("))", " 7))")
+    shapes = np.array([shapely.to_wkb(shapely.from_wkt(wkt), flavor="iso")], object)
+    columns, kind = [np.array(["a"], object)], "Measured Polygon"
+    pyogrio.raw.write(tmp_path / "z.shp", shapes, columns, ["name"], geometry_type=kind, crs="EPSG:4326")
+    write_gdal(tmp_path / "z.gpkg", [(SQUARE, {"name": "old"})])
     content = (tmp_path / "z.gpkg").read_bytes()
     (tmp_path / "z.gpkg").write_bytes(content[:68] + bytes(4) + content[72:])
-    scenario, _ = zones_of(tmp_path, "z.gpkg")
-    assert [zone.name for zone in scenario.airspace.no_fly] == ["old"]
-
-
-def test_styles_and_measures_are_no_faults(tmp_path: Path) -> None:
-    """Neither changes a place."""
-    zone = shapely.Point(HERE).buffer(0.01)
-    (tmp_path / "z.kml").write_text(
-        kml("<Style><LineStyle><width>2</width></LineStyle></Style>", placemark(zone, {}))
-    )
-    measured = shapely.from_wkt(
-        zone.wkt.replace("POLYGON", "POLYGON M").replace(",", " 7,").replace("))", " 7))")
-    )
-    shapes = np.array([shapely.to_wkb(measured, flavor="iso")], object)
-    pyogrio.raw.write(
-        tmp_path / "z.shp",
-        shapes,
-        [np.array(["a"], object)],
-        ["name"],
-        geometry_type="Measured Polygon",
-        crs="EPSG:4326",
-    )
-    for file in ("z.kml", "z.shp"):
+    for file in ("z.kml", "z.shp", "z.gpkg"):
         assert len(zones_of(tmp_path, file)[0].airspace.no_fly) == 1
 
 
