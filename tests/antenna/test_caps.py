@@ -88,3 +88,20 @@ def test_kernels_evaluate_the_pattern() -> None:
     ]
     np.testing.assert_allclose(slope, by_steps, atol=1e-4)
     np.testing.assert_allclose(bend, twice, atol=1e-3)
+
+
+def test_rounding_of_a_gain_is_within_the_margin() -> None:
+    """Against Legendre polynomials in extended precision, of the highest degree that a file can have."""
+    rng = np.random.default_rng(48)
+    harmonics = Harmonics(np.zeros((49, 49)), np.zeros((49, 49)))
+    harmonics.cosine[:, 0] = rng.normal(size=49)
+    cosines = np.cos(rng.uniform(0.0, np.pi, size=300))
+    x, series = cosines.astype(np.longdouble), [np.ones(300, np.longdouble), cosines.astype(np.longdouble)]
+    for n in range(2, 49):
+        series.append(((2 * n - 1) * x * series[-1] - (n - 1) * series[-2]) / n)
+    norms = np.sqrt(2 * np.arange(49, dtype=np.longdouble) + 1)
+    exact = np.sum(harmonics.cosine[:, 0, None] * norms[:, None] * np.array(series), axis=0)
+    sines = np.sqrt(np.maximum(0.0, 1.0 - cosines**2))
+    gains = harmonics.gain(np.stack([sines, np.zeros(300), cosines], axis=-1))
+    off = float(np.max(np.abs(gains - exact)))
+    assert 0.0 < off < 0.5 * pattern_arrays(harmonics).rounding

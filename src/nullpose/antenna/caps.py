@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from nullpose.antenna.harmonics import FloatArray, Harmonics, recurrence
 
 _ROWS = {24: 128, 48: 256}  # of the table up to a degree, twice as many columns: powers of two
+_ROUNDING = 1e-13  # of the sizes of a sum's terms: 450 units in the last place, at most 49 degrees
 _DIRECTIONS = 16  # round half a circle, along which derivatives are taken
 _ORDER = 4  # highest derivative that is looked at; the next is bounded by the degree
 
@@ -32,6 +33,7 @@ class PatternArrays(NamedTuple):
             second and third derivative along a great circle.
         offset: (rows' levels, columns' levels) where the blocks of a size begin: level k joins 2^k.
         rows: rows of the finest blocks; there are twice as many columns.
+        rounding: more than a gain that is evaluated in double precision can be off.
     """
 
     cosine: FloatArray
@@ -43,6 +45,7 @@ class PatternArrays(NamedTuple):
     caps: FloatArray
     offset: NDArray[np.int64]
     rows: int
+    rounding: float
 
 
 def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
@@ -58,6 +61,7 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
     offset = np.reshape(np.cumsum([0, *sizes[:-1]]), (len(levels), -1))
     start, a, b = recurrence(harmonics.degree)
     orders = int(np.max(np.nonzero(used)[0], initial=0)) + 1
+    norms = np.sqrt(2.0 * np.arange(harmonics.degree + 1) + 1.0)  # of a harmonic of each degree
     table = np.ascontiguousarray(np.concatenate([cells for level in levels for cells in level]))
     return PatternArrays(
         np.ascontiguousarray(harmonics.cosine),
@@ -69,6 +73,7 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
         table,
         offset.astype(np.int64),
         len(finest),
+        _ROUNDING * float(np.sum((np.abs(harmonics.cosine) + np.abs(harmonics.sine)).T * norms)),
     )
 
 

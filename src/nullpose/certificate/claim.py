@@ -28,7 +28,7 @@ from nullpose.scenario import Airframe, Scenario
 # The stated value may differ from the pose's by so much: it was rounded.
 VALUE_RTOL = 1e-10
 
-_EDGE_M = 1e-9  # a position on a face or a ball may be off by rounding
+_EDGE_M = 1e-9  # a position on a keep-out ball may be off by rounding
 _AXIS_RAD = 1e-6
 _BAND_RAD = 1e-7  # the ends of a band are squares: their angle is known no better where it is small
 _TILT_RAD = 1e-9
@@ -49,7 +49,7 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
     needed, named = sorted(fields), sorted(tree.axis for tree in certificate.trees)
     value, bound = certificate.value, certificate.upper_bound
     faults = {
-        "there are no certificates of poses that are held with errors": len(family.turn) > 0,
+        "there are no certificates of robust poses": len(family.turn) > 0,
         f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
         "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),
         "the bound is below the value": bound < value,

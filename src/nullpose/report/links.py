@@ -37,7 +37,7 @@ def gain_columns(scenario: Scenario, pose: Pose) -> dict[str, Sequence[str | Non
 
 
 def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> View | None:
-    """Set a row for each node: what counts of it, its ratio and its distance, more, whether it binds."""
+    """Set a row for each node: what is maximised, ratio, distance, further columns, and if it is worst."""
     scenario, quantity, links = result.scenario, result.objective.quantity, result.links
     binding = binding_nodes(result)
     counted: dict[str, Sequence[str | None]] = {}

@@ -21,13 +21,13 @@ from nullpose.study import Field
 OnDrag = Callable[[Key, NDArray[np.float64], str], None]
 """Called with a point's key, its new position and the phase of the drag."""
 
-_OTHER_SIZE = (0.6, 1.7)  # a scene that much smaller or larger is drawn anew, at its own size
+_OTHER_SIZE = (0.6, 1.7)  # marks keep their size until the scene is that much smaller or larger
 _LIFT_M = 0.05  # of the map off the grid on the ground
 _FINER = 6  # pixels for each step of the map's grid
 _FADE = 4.0  # how steeply the map fades in at its edges
 _MOST_LABELS = 4
-_MOVABLE = {"position", "wxyz", "scale", "text", "font_screen_scale", "points", "colors", "vertices"}
-"""The values that a shape can have anew; for others it is added again."""
+_CHANGEABLE = {"position", "wxyz", "scale", "text", "font_screen_scale", "points", "colors", "vertices"}
+"""The values that can be changed of a shape that is shown; for others it is added again."""
 
 
 class Stage:
@@ -73,7 +73,7 @@ class Stage:
         for name, shape in shapes.items():
             before, values = self._shapes.get(name, Shape("", {})), shape.values
             anew = {key: each for key, each in values.items() if not _same(before.values.get(key), each)}
-            if before.kind != shape.kind or not anew.keys() <= _MOVABLE:
+            if before.kind != shape.kind or not anew.keys() <= _CHANGEABLE:
                 self._add(name, shape)
             else:
                 for key, value in anew.items():

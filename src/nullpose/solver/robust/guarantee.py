@@ -26,8 +26,8 @@ _FINEST = 1e-6
 _ROUND_SET = 1e-12  # semi-axes this close make a ball
 _FLATTEST = 1e-9  # semi-axes are at least this share of the largest
 _EXACT = 1e-9  # accuracy where nothing has to be split
-_MOST_CELLS = 100_000
-_MOST_OF_ELLIPSOIDS, _MOST_OF_DIPOLES = 4_000, 1_000  # whose bounds take so much longer
+_STAGE_CELLS = 100_000  # cells of a node after which the level is lowered
+_STAGE_CELLS_ELLIPSOIDS, _STAGE_CELLS_DIPOLES = 4_000, 1_000  # whose bounds take so much longer
 
 
 def guarantee(
@@ -43,11 +43,11 @@ def guarantee(
         scenario: nodes, jammers or eavesdroppers, receiver; its airspace is not consulted.
         position_m: (3,) the commanded position, metres.
         axis: (3,) the commanded antenna axis, of any length but zero.
-        accuracy: relative distance of each bound from the worst case found, 1e-6 to 0.5. A bound that would
-            take too long is given lower.
+        accuracy: relative distance of each bound from the worst case found, 1e-6 to 0.5. Where that
+            would take too long, the bound is farther from it.
 
     Raises:
-        UsageError: a pose or an accuracy that is none, or an array in place of the dipole.
+        UsageError: the pose or the accuracy is not one, or the antenna is an array or has a pattern.
 
     Example:
         >>> import nullpose
@@ -176,8 +176,8 @@ class Inner:
         if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:
             accuracy = min(accuracy, _EXACT)  # closed form
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
-        most = _MOST_OF_ELLIPSOIDS if np.any(numbers.sets.radii < 0.0) else _MOST_CELLS
-        most = _MOST_OF_DIPOLES if np.any(numbers.sets.dipoles) else most
+        most = _STAGE_CELLS_ELLIPSOIDS if np.any(numbers.sets.radii < 0.0) else _STAGE_CELLS
+        most = _STAGE_CELLS_DIPOLES if np.any(numbers.sets.dipoles) else most
         lower, worst, cells = worst_case(numbers, errors, accuracy, most, y, offset, places)
         case = self._case(u, y, offset, points, places - (numbers.centres - offset))
         node, eavesdropper = divmod(ratio, nominal.shape[1])

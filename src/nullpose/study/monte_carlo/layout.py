@@ -63,7 +63,6 @@ _NEEDED = {
     "poisson": ("density_per_m2",),
     "clusters": ("parents", "count", "spread_m"),
 }
-_Pair = tuple[int, int]
 _Layout = Annotated[str, Choice("a layout", tuple(_NEEDED))]
 _IN_A_REGION = ("poisson", "clusters")
 _REGIONS = (("centre_m", "radius_m"), ("x_m", "y_m"))

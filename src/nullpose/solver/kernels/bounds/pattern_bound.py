@@ -57,14 +57,14 @@ def vector_to(points, j, row):
 def fill_points(family, pattern, row, space):
     """Fill every point's bounds over the cell.
 
-    Of ``g / r^2``: least and largest over the cell, and the bound on a sixth of the third derivative. Returns
-    how far the whole may turn, radians.
+    Of ``g / r^2``: least and largest over the cell, and a bound on the remainder of the second
+    order, with a margin for rounding. Returns how far any frame may turn in the cell, radians.
     """
     points = family.points_m
     anchor = int(row[ANCHOR])
     anchor_m = vector_to(points, anchor, row)
     fill_frame(row, anchor_m, space.frame)
-    reach = norm(row[HALF:])
+    reach = norm(row[HALF : HALF + 3])
     near, _ = square_range(points[anchor], row, row[HALF:], 3)
     held, whole = rates(row, reach, anchor_m, math.sqrt(near))
     for j in range(points.shape[0]):
@@ -83,7 +83,7 @@ def fill_points(family, pattern, row, space):
             g0 = max(abs(least), abs(most))
             away = 0.0 if is_anchor else e
             rest = third(turning, width, e, away, g0, space.caps[2], space.caps[3], space.caps[4])
-            space.wide[j, REST] = rest / near
+            space.wide[j, REST] = (rest + pattern.rounding) / near
     return whole[0]
 
 
@@ -255,7 +255,7 @@ def upper(family, level, half, multipliers, space):
 
 @inner_kernel
 def excluded_by_sum(family, level, row, space):
-    """Check whether some multipliers keep the sum negative over the cell; leave the best in its row."""
+    """Check whether some multipliers keep the sum negative over the cell; leave the last tried in its row."""
     multipliers, half = row[WARM:], row[HALF:FACE]
     if multipliers.shape[0] == 2:  # one number: bisection with tangents ends in a few steps, descent does not
         return two_multipliers(family, level, half, multipliers, space)
