@@ -18,10 +18,8 @@ def stated(paper: Callable, **keys: object) -> Scenario:
 
 def test_axes_are_upright_or_as_stated(paper: Callable) -> None:
     """A dipole is upright; an axis of any length is brought to unit length; others have none."""
-    upright, leaning = (
-        stated(paper, antenna="dipole"),
-        stated(paper, antenna="dipole", antenna_axis=[3, 0, 4]),
-    )
+    upright = stated(paper, antenna="dipole")
+    leaning = stated(paper, antenna="dipole", antenna_axis=[3, 0, 4])
     np.testing.assert_allclose(upright.node_antennas.axes, [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
     np.testing.assert_allclose(leaning.node_antennas.axes[0], [0.6, 0.0, 0.8], atol=1e-15)
     circular = stated(paper, antenna="circular").node_antennas

@@ -37,11 +37,8 @@ def feature(coordinates: object = (14.502, 50.001, 232.0), **properties: Any) ->
     """Returns a feature; a power is added unless one is given."""
     if not {"power_w", "power_dbm", "powr_w"} & properties.keys():
         properties["power_w"] = 1.0
-    return {
-        "type": "Feature",
-        "geometry": {"type": "Point", "coordinates": coordinates},
-        "properties": properties,
-    }
+    geometry = {"type": "Point", "coordinates": coordinates}
+    return {"type": "Feature", "geometry": geometry, "properties": properties}
 
 
 def collection(*features: object, **others: Any) -> str:
@@ -225,11 +222,11 @@ def test_all_faults_of_both_files_at_once(tmp_path: Path) -> None:
     ]
 
 
-def test_nodes_from_elsewhere_are_refused(tmp_path: Path) -> None:
-    """By an absolute path, by dots or through a link: what lies outside the folder is not even looked at."""
+def test_nodes_from_elsewhere(tmp_path: Path) -> None:
+    """By an absolute path, by dots or through a link they are refused unseen, unless the caller allows it."""
     folder = tmp_path / "scene"
-    folder.mkdir()
-    (tmp_path / "n.csv").write_text("secret\n", encoding="utf-8")
+    (folder / "below").mkdir(parents=True)
+    (tmp_path / "n.csv").write_text(LOCAL + "secret,1,2,3,4\n", encoding="utf-8")
     (folder / "link.csv").symlink_to(tmp_path / "n.csv")
     (folder / "linked").symlink_to(tmp_path)
     for file in (str(tmp_path / "n.csv"), "../n.csv", "link.csv", "linked/n.csv", "../none.csv"):
@@ -237,18 +234,10 @@ def test_nodes_from_elsewhere_are_refused(tmp_path: Path) -> None:
         assert fault.path == "nodes_from"
         assert "outside the folder of the file that names it; put it there, or allow this by" in fault.message
         assert "secret" not in fault.message
-
-
-def test_nodes_from_elsewhere_may_be_allowed(tmp_path: Path) -> None:
-    """If the caller says so they are read; below the scenario's folder they are in any case."""
-    (tmp_path / "scene" / "below").mkdir(parents=True)
-    text = LOCAL + "a,1,2,3,4\n"
-    (tmp_path / "n.csv").write_text(text, encoding="utf-8")
-    path = written(tmp_path / "scene", "../n.csv", None)
-    assert load(path, allow_outside=True).node_names == ("a",)
-    (tmp_path / "scene" / "below" / "n.csv").write_text(text, encoding="utf-8")
-    for file in ("below/n.csv", str(tmp_path / "scene" / "below" / "n.csv"), "../scene/below/n.csv"):
-        assert load(written(tmp_path / "scene", file, None)).node_names == ("a",)
+    assert load(written(folder, "../n.csv", None), allow_outside=True).node_names == ("secret",)
+    (folder / "below" / "n.csv").write_text(LOCAL + "a,1,2,3,4\n", encoding="utf-8")
+    for file in ("below/n.csv", str(folder / "below" / "n.csv"), "../scene/below/n.csv"):
+        assert load(written(folder, file, None)).node_names == ("a",)
 
 
 def test_too_many_nodes(tmp_path: Path) -> None:

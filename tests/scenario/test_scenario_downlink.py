@@ -39,37 +39,24 @@ SECRET: dict[str, Any] = {
 }
 
 
-def test_eavesdroppers() -> None:
-    """Names, positions and noise in order; the receiver's noise where they state none."""
-    secret = scene(**SECRET)
-    assert secret.eavesdropper_names == ("E1", "van")
-    np.testing.assert_array_equal(secret.eavesdropper_positions_m, [[9, 9, 1], [8, 9, 1]])
-    np.testing.assert_allclose(secret.eavesdropper_noise_w, [1e-3, 1e-6], rtol=1e-14)
-    np.testing.assert_array_equal(secret.eavesdropper_uncertainty_m, [np.zeros((3, 3)), 2.0 * np.eye(3)])
-
-
-def test_noise_of_the_nodes() -> None:
-    """Their own or the receiver's, raised by the jamming: as stated, or the sum over the jammers."""
+def test_values_of_the_downlink() -> None:
+    """Names, places, sets and noise in order: a point's own, or the receiver's, raised by the jamming."""
     nodes = [
         Node(position_m=(0, 0, 0)),
-        Node(position_m=(0, 50, 0), noise_w=2e-3),
+        Node(position_m=(0, 50, 0), noise_w=2e-3, power_w=2.0),
         Node(position_m=(0, 60, 0), noise_dbm=10.0, jamming_dbm=20.0),
     ]
     jammers = [Jammer(position_m=(0, 0, 5), power_w=3.0), Jammer(position_m=(0, 50, 10), power_dbm=30.0)]
-    quiet = scene(**SECRET | {"nodes": nodes[:2]})
+    quiet, jammed = scene(**SECRET | {"nodes": nodes[:2]}), scene(**SECRET, nodes=nodes, jammers=jammers)
+    assert quiet.eavesdropper_names == ("E1", "van")
+    np.testing.assert_array_equal(quiet.eavesdropper_positions_m, [[9, 9, 1], [8, 9, 1]])
+    np.testing.assert_allclose(quiet.eavesdropper_noise_w, [1e-3, 1e-6], rtol=1e-14)
+    np.testing.assert_array_equal(quiet.eavesdropper_uncertainty_m, [np.zeros((3, 3)), 2.0 * np.eye(3)])
     np.testing.assert_allclose(quiet.node_noise_w, [1e-3, 2e-3], rtol=1e-14)
-    jammed = scene(**SECRET, nodes=nodes, jammers=jammers)
-    at_first = 10.0 * (3.0 / 25.0 + 1.0 / 2600.0)
-    at_second = 10.0 * (3.0 / 2525.0 + 1.0 / 100.0)
-    np.testing.assert_allclose(
-        jammed.node_noise_w, [1e-3 + at_first, 2e-3 + at_second, 0.01 + 0.1], rtol=1e-14
-    )
-
-
-def test_nodes_need_not_transmit_where_the_drone_does() -> None:
-    """With the secrecy rate a node may leave its power out, which counts as none."""
-    listening = scene(**SECRET, nodes=[Node(position_m=(0, 0, 0)), Node(position_m=(5, 0, 0), power_w=2.0)])
-    np.testing.assert_array_equal(listening.node_powers_w, [0.0, 2.0])
+    at_first, at_second = 10.0 * (3.0 / 25.0 + 1.0 / 2600.0), 10.0 * (3.0 / 2525.0 + 1.0 / 100.0)
+    noise_w = [1e-3 + at_first, 2e-3 + at_second, 0.01 + 0.1]
+    np.testing.assert_allclose(jammed.node_noise_w, noise_w, rtol=1e-14)
+    np.testing.assert_array_equal(jammed.node_powers_w, [0.0, 2.0, 0.0])  # it is the drone that transmits
 
 
 @pytest.mark.parametrize(
