@@ -9,7 +9,6 @@ import pytest
 import shapely
 from geo_files import WRITERS, Feature, kml, placemark, write_geojson
 
-from nullpose.errors import ScenarioError
 from nullpose.scenario import Airspace, NoFlyZone, Scenario, apply_overrides, load
 from nullpose.scenario.geodesy import enu_from_geodetic
 from scenes import load_faults, require_fault, small
@@ -65,11 +64,6 @@ def area(corners: list[list[float]], **properties: Any) -> Feature:
     return shapely.Polygon([corner[::-1] for corner in corners]), properties
 
 
-def gauge(height_m: float, more: str = "") -> str:
-    """Return KML with a point and a power."""
-    return kml(placemark(shapely.Point(14.5012, 50.0006, height_m), {"name": "gauge", "power_dbm": 20}, more))
-
-
 def test_inline_fences_and_zones(tmp_path: Path) -> None:
     """Corners in degrees are the metres that their places are from the origin, and stay stated in degrees."""
     zones = f"[[airspace.no_fly]]\npolygon_lat_lon_deg = {ZONE}\naltitude_ellipsoid_m = [230.0, 260.0]\n"
@@ -98,10 +92,8 @@ def test_files_give_the_same_scene(tmp_path: Path) -> None:
     mast = shapely.Point(MAST[::-1]), {"radius_m": 20.0, "altitude_m": [0, 30]}
     write_geojson(tmp_path / "mast.geojson", [mast])
     both = load(scene(tmp_path, 'altitude_m = [20, 80]\nno_fly_from = "mast.geojson"', zones=zones)).airspace
-    assert [(zone.shape, zone.altitude_m) for zone in both.no_fly] == [
-        ("polygon", None),
-        ("cylinder", (0.0, 30.0)),
-    ]
+    assert [zone.shape for zone in both.no_fly] == ["polygon", "cylinder"]
+    assert both.no_fly[1].altitude_m == (0.0, 30.0)
 
 
 def test_what_is_set_later(tmp_path: Path) -> None:
@@ -123,11 +115,11 @@ def test_what_is_set_later(tmp_path: Path) -> None:
 )
 def test_nodes_from_kml(mode: str, key: str, value: float, tmp_path: Path) -> None:
     """KML states what its altitudes are over: the sea or the ground."""
-    text = gauge(value, f"<altitudeMode>{mode}</altitudeMode>")
-    (tmp_path / "nodes.kml").write_text(text, encoding="utf-8")
-    path = scene(
-        tmp_path, "altitude_m = [20, 80]", "alt_msl_m = 185.0", top='nodes_from = "nodes.kml"', nodes=""
-    )
+    point = shapely.Point(14.5012, 50.0006, value)
+    mark = placemark(point, {"name": "gauge", "power_dbm": 20}, f"<altitudeMode>{mode}</altitudeMode>")
+    (tmp_path / "nodes.kml").write_text(kml(mark), encoding="utf-8")
+    top = 'nodes_from = "nodes.kml"'
+    path = scene(tmp_path, "altitude_m = [20, 80]", "alt_msl_m = 185.0", top=top, nodes="")
     (node,) = load(path).nodes
     assert (node.name, node.power_dbm, getattr(node, key)) == ("gauge", 20.0, value)
     expected = enu_from_geodetic([50.0006, 14.5012, 232.0], ORIGIN)
@@ -175,11 +167,7 @@ EAST = [[121.0, 25.0], [121.1, 25.0], [121.1, 25.1]]
     ("airspace", "path", "words"),
     [
         ('no_fly_from = "../zones.kml"', "airspace.no_fly_from: ../zones.kml", "outside the folder"),
-        (
-            f"geofence_m = {SQUARE}\ngeofence_lat_lon_deg = {FENCE}",
-            "airspace",
-            "geofence_m and geofence_lat_lon_deg are",
-        ),
+        (f"geofence_m = {SQUARE}\ngeofence_lat_lon_deg = {FENCE}", "airspace", "geofence_m and geofence_lat"),
         (f"geofence_lat_lon_deg = {EAST}", "airspace.geofence_lat_lon_deg[0][0]", EXCHANGED),
     ],
 )
@@ -188,15 +176,7 @@ def test_faults_of_inline_areas(airspace: str, path: str, words: str, tmp_path: 
     require_fault(lambda: load(scene(tmp_path, f"altitude_m = [20, 80]\n{airspace}")), path, words)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "<kml",
-        "<gpx/>",
-        "<!DOCTYPE kml [<!ENTITY a 'b'>]><kml>&a;</kml>",
-        "\ud800".encode("utf-8", "ignore").decode(),
-    ],
-)
+@pytest.mark.parametrize("text", ["", "<kml", "<gpx/>", "<!DOCTYPE kml [<!ENTITY a 'b'>]><kml>&a;</kml>"])
 def test_what_is_no_kml(text: str, tmp_path: Path) -> None:
     """Broken XML, and XML that declares entities, is refused."""
     (tmp_path / "fence.kml").write_text(text, encoding="utf-8")
@@ -206,9 +186,17 @@ def test_what_is_no_kml(text: str, tmp_path: Path) -> None:
 
 def test_degrees_need_an_origin() -> None:
     """Without a scenario, or without its origin, degrees and absolute altitudes are refused, not left out."""
-    with pytest.raises(ScenarioError, match=r"geofence_lat_lon_deg: needs the \[origin\] of a scenario"):
-        Airspace(altitude_m=(8, 30), geofence_lat_lon_deg=FENCE)
-    with pytest.raises(ScenarioError, match=r"centre_lat_lon_deg: needs the \[origin\]"):
-        NoFlyZone(centre_lat_lon_deg=MAST, radius_m=5.0)
-    with pytest.raises(ScenarioError, match=r"origin: missing, but airspace is stated by altitude_msl_m"):
-        Scenario.from_dict(small(airspace={"altitude_msl_m": [200, 300]}))
+    for make, path, words in (
+        (
+            lambda: Airspace(altitude_m=(8, 30), geofence_lat_lon_deg=FENCE),
+            "geofence_lat_lon_deg",
+            "needs the [ori",
+        ),
+        (lambda: NoFlyZone(centre_lat_lon_deg=MAST, radius_m=5), "centre_lat_lon_deg", "needs the [origin]"),
+        (
+            lambda: Scenario.from_dict(small(airspace={"altitude_msl_m": [2, 3]})),
+            "origin",
+            "by altitude_msl_m",
+        ),
+    ):
+        require_fault(make, path, words)
