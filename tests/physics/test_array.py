@@ -37,10 +37,6 @@ def _channels(scene: Scenario, position_m: np.ndarray, elements: np.ndarray) -> 
     )
 
 
-def _covariance(scene: Scenario, jammers: np.ndarray) -> np.ndarray:
-    return scene.receiver.noise_power_w * np.eye(jammers.shape[1]) + jammers.T @ jammers.conj()
-
-
 def _place(rng: np.random.Generator) -> np.ndarray:
     return rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 40.0])
 
@@ -121,7 +117,7 @@ def test_digital_combining_keeps_its_digits(
         reached = beam_sinr(field, position, places, digital_weights(field, position, places))
         np.testing.assert_allclose(reached, expected, rtol=1e-11)
         if jamming_w <= 1e3:
-            covariance = _covariance(field, jamming)
+            covariance = field.receiver.noise_power_w * np.eye(len(places)) + jamming.T @ jamming.conj()
             largest = [eigh(np.outer(h, h.conj()), covariance, eigvals_only=True)[-1] for h in heard]
             np.testing.assert_allclose(values, largest, rtol=1e-10)
 

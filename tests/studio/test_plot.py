@@ -59,13 +59,9 @@ def test_a_curve_is_drawn_where_its_values_are(paper: Scenario) -> None:
 def test_no_ring_is_where_nothing_holds(
     paper: Scenario, version: int, power_db: float, value: float | None, state: str
 ) -> None:
-    """Neither for jammers that are weaker than the plot reaches, nor on a curve of another version."""
+    """Neither for jammers weaker than the plot reaches, nor of another version; without any it is words."""
     curve = next(iter(power_curves(State(scenario=paper))))
     drawn = _drawn(power_plot_svg(curve, version=version, power_db=power_db, value=value, unit="dB"))
     assert drawn.get("data-state") == state
     assert not list(drawn.iter("circle"))
-
-
-def test_without_a_jammer_there_is_no_plot() -> None:
-    """A sentence takes the plot's place."""
     assert "No jammer" in power_plot_svg(None, version=1, power_db=None, value=1.0, unit="dB")
