@@ -12,30 +12,26 @@ from nullpose.physics import ErrorCase, ratios_under
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.robust import BindingCase, build_robust_family, point_uncertainty_m
-from nullpose.scenario import Airspace, Eavesdropper, Jammer, Node, Receiver, Scenario, Transmitter
+from nullpose.scenario import Scenario
+from scenes import small
 
 SEEDS = st.integers(0, 2**32 - 1)
-
-
-def place(rng: np.random.Generator) -> tuple[float, ...]:
-    """Returns a place on a field of 80 m."""
-    return tuple(float(x) for x in rng.uniform([0.0, 0.0, 0.0], [80.0, 80.0, 4.0]))
+HIGH = {"altitude_m": (10.0, 40.0)}
 
 
 def a_scene(rng: np.random.Generator, *, secret: bool) -> Scenario:
     """Returns three nodes and two jammers, or with them two eavesdroppers, all known to some metres."""
-    nodes = tuple(Node(position_m=place(rng), power_w=float(rng.uniform(0.5, 2.0))) for _ in range(3))
-    jammers = tuple(Jammer(position_m=place(rng), power_w=3.0, uncertainty_m=2.0) for _ in range(2))
-    ears = tuple(Eavesdropper(position_m=place(rng), uncertainty_m=float(i + 1)) for i in range(2))
+    places = rng.uniform(0.0, [80.0, 80.0, 4.0], (7, 3)).tolist()
+    nodes = [{"position_m": at, "power_w": rng.uniform(0.5, 2.0)} for at in places[:3]]
+    jammers = [{"position_m": at, "power_w": 3.0, "uncertainty_m": 2.0} for at in places[3:5]]
     if not secret:
-        nodes = (*nodes[:2], Node(position_m=place(rng), power_w=1.0, weight=2.5))
-    objective = "secrecy-rate" if secret else "min-sinr"
-    heard = {"transmitter": Transmitter(power_w=1.5), "eavesdroppers": ears} if secret else {}
-    receiver = Receiver(noise_w=1e-3, reference_gain_db=0.0)
-    ground = {"nodes": nodes, "jammers": jammers} | heard
-    return Scenario(
-        objective=objective, airspace=Airspace(altitude_m=(10.0, 40.0)), receiver=receiver, **ground
-    )
+        nodes[2]["weight"] = 2.5
+        return Scenario.from_dict(small(airspace=HIGH, nodes=nodes, jammers=jammers))
+    ears = [
+        {"position_m": at, "uncertainty_m": radius} for at, radius in zip(places[5:], (1, 2), strict=True)
+    ]
+    heard = {"objective": "secrecy-rate", "transmitter": {"power_w": 1.5}, "eavesdroppers": ears}
+    return Scenario.from_dict(small(airspace=HIGH, nodes=nodes, jammers=jammers, **heard))
 
 
 def some_case(rng: np.random.Generator, scene: Scenario) -> ErrorCase:
