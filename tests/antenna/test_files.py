@@ -35,7 +35,7 @@ def largest_error_db(table: PatternTable) -> float:
 @pytest.fixture(scope="module")
 def tables(tmp_path_factory: pytest.TempPathFactory) -> dict[str, PatternTable]:
     """The table of the same antenna in every format, told from the content."""
-    return {name: read(written(name), tmp_path_factory.mktemp(name)) for name in WRITERS}
+    return {name: read(written(name, 10.0), tmp_path_factory.mktemp(name)) for name in WRITERS}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -43,7 +43,7 @@ def test_every_format_gives_the_same_antenna(
     tmp_path: Path, tables: dict[str, PatternTable], name: str
 ) -> None:
     """In every direction the gain is the antenna's to .01 dB, whether the format is stated or told."""
-    for table in (tables[name], read(written(name), tmp_path, file_format=WRITERS[name][0])):
+    for table in (tables[name], read(written(name, 10.0), tmp_path, file_format=WRITERS[name][0])):
         assert largest_error_db(table) < 0.01
         assert table.source == f"pattern.txt ({WRITERS[name][0]})"
         assert table.theta_deg[[0, -1]].tolist() == [0.0, 180.0]

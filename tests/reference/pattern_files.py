@@ -254,6 +254,6 @@ WRITERS: dict[str, tuple[str, Callable[..., str]]] = {
 
 
 @cache
-def written(name: str) -> str:
+def written(name: str, step_deg: float = 5.0) -> str:
     """Returns the pattern without symmetry in the format of a writer."""
-    return WRITERS[name][1]()
+    return WRITERS[name][1](field_of, step_deg)
