@@ -42,7 +42,7 @@ def test_samples_are_within(degree: int) -> None:
     rng = np.random.default_rng(degree)
     harmonics = pattern(degree, degree)
     arrays, bounds = pattern_arrays(harmonics), np.empty(5)
-    for _ in range(60):
+    for _ in range(30):
         middle, radius = unit(rng.normal(size=3)), 10.0 ** rng.uniform(-3.0, 0.6)
         fill_cap(arrays, middle, min(radius, np.pi), bounds)
         across = unit(np.cross(middle, rng.normal(size=(200, 3))))

@@ -61,7 +61,7 @@ def test_zones_out_of_reach_of_ranges_and_fence_change_nothing() -> None:
             no_fly=(zone,),
         )
         free = airspace.model_copy(update={"no_fly": ()})
-        positions_m = rng.uniform([-90.0, -90.0, 20.0], [90.0, 90.0, 20.0 if flat else 40.0], (4000, 3))
+        positions_m = rng.uniform([-90.0, -90.0, 20.0], [90.0, 90.0, 20.0 if flat else 40.0], (1000, 3))
         forbids = bool(np.any(free.allows(positions_m) & ~airspace.allows(positions_m)))
         assert airspace.reached(zone) or not forbids
         reached.append((airspace.reached(zone), forbids))
