@@ -5,35 +5,24 @@ from pathlib import Path
 
 import pytest
 
-import scenes
 from nullpose import Scenario, ScenarioError
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.scenario import apply_overrides, load
+from scenes import faults_of, require_fault
 
 PAPER = load("examples/paper.toml")
 
 
-def test_the_papers_dipole_unless_another_is_stated() -> None:
-    """No table, or an empty one, is a short dipole with a perfect null."""
-    assert PAPER.antenna_record == SHORT_DIPOLE
-    assert apply_overrides(PAPER, ["antenna={}"]).antenna_record == SHORT_DIPOLE
-    assert SHORT_DIPOLE.leak == 0.0
-
-
-def test_the_depth_of_a_null() -> None:
-    """It is stated in dB below the broadside gain, which stays 1."""
-    antenna = apply_overrides(PAPER, ["antenna.null_depth_db=30"]).antenna_record
-    assert antenna.gain(0.0) == pytest.approx(1e-3, rel=1e-15)
-    assert antenna.gain(1.0) == 1.0
+def test_a_dipole_unless_another_is_stated() -> None:
+    """With a perfect null, or one stated in dB below the broadside gain, which stays 1."""
+    assert PAPER.antenna_record == apply_overrides(PAPER, ["antenna={}"]).antenna_record == SHORT_DIPOLE
+    shallow = apply_overrides(PAPER, ["antenna.null_depth_db=30"]).antenna_record
+    assert (SHORT_DIPOLE.leak, shallow.gain(1.0)) == (0.0, 1.0)
+    assert shallow.gain(0.0) == pytest.approx(1e-3, rel=1e-15)
 
 
 ROWS = [[1.0], [0.1, 0.2, 0.3]]
 NAN = float("nan")
-
-
-def faults_of(antenna: dict[str, object], **more: object) -> dict[str, str]:
-    """Return the faults of the paper's scene with an antenna, by their place."""
-    return scenes.faults_of(PAPER.to_dict() | {"antenna": antenna} | more)
 
 
 @pytest.mark.parametrize(
@@ -53,16 +42,14 @@ def faults_of(antenna: dict[str, object], **more: object) -> dict[str, str]:
 )
 def test_faults(antenna: dict[str, object], place: str, words: str) -> None:
     """What a kind lacks, and what has no meaning with it, each at its place."""
-    faults = faults_of(antenna)
-    assert list(faults) == [place]
-    assert words in faults[place]
+    require_fault(lambda: Scenario.from_dict(PAPER.to_dict() | {"antenna": antenna}), place, words)
 
 
 def test_dipoles_elsewhere_need_one_on_the_drone() -> None:
     """A power pattern tells no polarisation, so a whip is refused; arrays have perfect nulls only."""
-    node = load("examples/paper.toml").to_dict()["nodes"][0] | {"antenna": "dipole"}
-    faults = faults_of({"kind": "pattern", "harmonics": ROWS}, nodes=[node])
-    assert "whose polarisation is known" in faults["nodes[0].antenna"]
+    data = PAPER.to_dict() | {"antenna": {"kind": "pattern", "harmonics": ROWS}}
+    data["nodes"][0]["antenna"] = "dipole"
+    require_fault(lambda: Scenario.from_dict(data), "nodes[0].antenna", "whose polarisation is known")
     with pytest.raises(ScenarioError, match="short dipoles"):
         apply_overrides(load("examples/array.toml"), ["antenna.null_depth_db=30"])
 
@@ -127,9 +114,10 @@ def test_two_cuts_of_an_omni_are_a_profile(tmp_path: Path) -> None:
 def test_a_gain_that_a_file_has_is_not_counted_twice() -> None:
     """Beside gains in dBi another gain is refused; beside a pattern with a largest gain of 1 it is not."""
     profile = {"kind": "profile", "harmonics": ROWS}
-    assert list(faults_of(profile | {"gain_dbi": 2.0})) == ["antenna.gain_dbi"]
+    scene = PAPER.to_dict()
+    assert list(faults_of(scene | {"antenna": profile | {"gain_dbi": 2.0}})) == ["antenna.gain_dbi"]
     for fine in (profile | {"gain_dbi": 0.0}, profile | {"gain_dbi": 2.0, "normalise": "peak"}):
-        assert faults_of(fine) == {}
+        assert faults_of(scene | {"antenna": fine}) == {}
     half_wave = apply_overrides(PAPER, ["antenna.kind=half-wave", "antenna.gain_dbi=2.15"])
     assert half_wave.reference_gain == pytest.approx(10.0**0.215, rel=1e-15)
     assert Scenario.from_dict(half_wave.to_dict()) == half_wave

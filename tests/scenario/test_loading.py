@@ -29,8 +29,7 @@ def test_paper_example_is_the_papers_scenario() -> None:
     assert [*scenario.node_powers_w, *scenario.jammer_powers_w] == [1.0, 1.0, 1.0]
     assert scenario.airspace.altitude_m == (8.0, 30.0)
     assert (scenario.airspace.x_m, scenario.airspace.y_m, scenario.airspace.keep_out_m) == (None, None, 1.0)
-    assert scenario.receiver.noise_power_w == 1e-3
-    assert scenario.receiver.reference_gain == 1.0
+    assert (scenario.receiver.noise_power_w, scenario.receiver.reference_gain) == (1e-3, 1.0)
 
 
 def test_byte_order_mark_is_accepted(tmp_path: Path) -> None:
@@ -49,9 +48,8 @@ def test_files_that_cannot_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert f"did you mean {tmp_path / 'papers.toml'}?" in fault_of(path).message
     assert fault_of("pa\0per.toml").message == "this cannot be the name of a file"
     (tmp_path / "latin.toml").write_bytes(b'name = "a"\n# \xe9tude\n')
-    assert str(fault_of(tmp_path / "latin.toml")) == (
-        "line 2: byte 0xe9 is not UTF-8 text; save the file as UTF-8"
-    )
+    told = str(fault_of(tmp_path / "latin.toml"))
+    assert told == "line 2: byte 0xe9 is not UTF-8 text; save the file as UTF-8"
 
     def refuse(self: Path, mode: str) -> object:
         raise PermissionError(13, "Permission denied", str(self))
