@@ -91,7 +91,7 @@ def test_the_first_answer_waits_for_no_compiler(start: Start, tmp_path: Path) ->
     assert err.count("Compiling kernels") == err.count("\n") <= 1  # a busy machine takes seconds
 
     kept = {path: path.read_bytes() for path in (tmp_path / "kernels").rglob("*.nbc")}
-    assert {path.name.split("-")[0] for path in kept} >= {"branch.branch", "multistart.search_and_climb"}
+    assert {path.name.split("-")[0] for path in kept} >= {"branch.branch", "search.search_and_climb"}
     second, _ = answered(start("solve", PAPER, "--json", "--verify"))
     assert kept == {path: path.read_bytes() for path in (tmp_path / "kernels").rglob("*.nbc")}
     assert not with_folder(tmp_path / "kernels")

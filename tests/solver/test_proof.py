@@ -9,6 +9,7 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario, apply_overrides, load
+from nullpose.solver import solve
 from nullpose.solver.kernels.bounds import node
 from nullpose.solver.kernels.linear_algebra.axis import best_axis
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
@@ -139,7 +140,7 @@ def test_progress_is_told(random_scene: Callable) -> None:
 
 def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
     """A leaf of one stage that distances exclude begins the next with multipliers of different ratios."""
-    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((10, False),))
+    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((0.0, 10, False),))
     for seed in range(4):
         family = build_family(random_scene(np.random.default_rng(seed), 6, 2, 30.0))
         proof = proof_of(family, AxisField.free(), gap=1e-2)
@@ -154,8 +155,39 @@ def test_a_long_try_is_shared(random_scene: Callable, monkeypatch: pytest.Monkey
     """Begun by one thread and gone on with by three, a try proves what one thread alone proves."""
     family = build_family(random_scene(np.random.default_rng(3), 5, 1, 30.0))
     alone = proof_of(family, AxisField.free(), gap=1e-4)
-    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((50, False), (200_000, True)))
+    monkeypatch.setattr(
+        import_module("nullpose.solver.proof"), "_TRIES", ((0.0, 50, False), (0.0, 200_000, True))
+    )
     shared = proof_of(family, AxisField.free(), gap=1e-4, threads=3)
     assert alone.reason == shared.reason == ""
     assert shared.nodes > 100
     assert shared.upper_bound == pytest.approx(alone.upper_bound, rel=2e-4)
+
+
+def _scene_of_seed(seed: list[int]) -> dict[str, object]:
+    rng = np.random.default_rng(seed)
+    n_nodes, n_jammers = int(rng.integers(2, 7)), int(rng.integers(0, 4))
+    nodes, jammers = (
+        rng.uniform(0.0, [60.0, 60.0, 5.0], (count, 3)).tolist() for count in (n_nodes, n_jammers)
+    )
+    power_w = 10.0 ** rng.uniform(-2.0, 2.0) / n_jammers
+    return {
+        "nodes": [{"position_m": p, "power_w": float(10.0 ** rng.uniform(-0.5, 0.5))} for p in nodes],
+        "jammers": [{"position_m": p, "power_w": power_w} for p in jammers],
+        "airspace": {"altitude_m": [8.0, 30.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+    }
+
+
+@pytest.mark.parametrize(
+    ("seed", "tilt_max_deg", "mount_deg"),
+    [((2236, 29), 180.0, 0.0), ((3780, 18), 30.0, 90.0), ((3780, 15), 0.0, 45.0)],
+)
+def test_scenes_in_which_one_way_to_split_axes_has_no_end_are_closed(
+    seed: tuple[int, int], tilt_max_deg: float, mount_deg: float
+) -> None:
+    """Two of these need axes split early, one late; the other way alone takes a million boxes or more."""
+    airframe = {"tilt_max_deg": tilt_max_deg, "mount_deg": mount_deg}
+    scenario = Scenario.from_dict(_scene_of_seed([777, *seed]) | {"airframe": airframe})
+    result = solve(scenario, gap=1e-3, node_limit=150_000)
+    assert result.status == "certified"

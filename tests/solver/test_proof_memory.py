@@ -53,7 +53,7 @@ def test_no_number_of_boxes_ends_a_proof() -> None:
 def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where leaves do not fit into memory the proof is closed without them, and has no certificate."""
     scenario = whips(1)
-    monkeypatch.setattr(PROOF, "_TRIES", ((10, False),))
+    monkeypatch.setattr(PROOF, "_TRIES", ((0.0, 10, False),))
     kept = solve(scenario, gap=1e-3, threads=1)
     monkeypatch.setattr(PROOF, "_MOST_BYTES", 1e4)
     dropped = solve(scenario, gap=1e-3, threads=1)
@@ -66,8 +66,9 @@ def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyP
         certificate_of(dropped)
 
 
-def test_leaves_too_thin_for_a_certificate_are_named() -> None:
-    """Four nodes on a ring, one altitude, level: the best place is one where boxes never come to an end."""
+def test_leaves_too_thin_for_a_certificate_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four nodes on a ring, one altitude, level: without axes split early, boxes become ever thinner."""
+    monkeypatch.setattr(PROOF, "_TRIES", ((0.0, 200_000, False),))
     assert PROOF.MOST_HALVINGS == DEEPEST
     ring_m = [[35.0, 0.0, 0.0], [0.0, 35.0, 0.0], [-35.0, 0.0, 0.0], [0.0, -35.0, 0.0]]
     scenario = Scenario.from_dict(

@@ -121,7 +121,7 @@ def compile_proof(dipoles: bool) -> None:
     family, field = _smallest_family(dipoles), AxisField.free()
     row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
     problem = family.arrays, family.domain, field.arrays
-    branch.branch(*problem, 1.0, Goal(1.0, row), rows, 0, rows, 0, 1, none, none)
+    branch.branch(*problem, 1.0, Goal(1.0, row, 0.0), rows, 0, rows, 0, 1, none, none)
 
 
 def compile_search(dipoles: bool) -> None:

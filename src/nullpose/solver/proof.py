@@ -26,10 +26,21 @@ from nullpose.solver.worker_pool import Kernel, WorkerPool
 MOST_HALVINGS = 50
 """Of a leaf that a certificate can hold, as the verifier has it."""
 _THINNEST = 0.99 * 2.0**-MOST_HALVINGS  # side of a box or a cell, over the root's
-_TRIES = ((400, False), (20_000, False), (200_000, True))
-"""Boxes from the root after which a better pose is looked for, and whether all threads share them.
+_ALTERNATE = 3_000  # boxes after which the other way to split is tried
+_LATE, _EARLY = 0.0, 1e9  # when axes are split: where no multipliers exclude a box's centre, or always
+_TRIES = (
+    (_LATE, 400, False),
+    (_LATE, _ALTERNATE, False),
+    (_EARLY, _ALTERNATE, False),
+    (_LATE, 20_000, False),
+    (_EARLY, 30_000, True),
+    (_LATE, 200_000, True),
+    (_EARLY, 200_000, True),
+)
+"""Tries of the target from the root: when axes are split, boxes in all, and whether all threads share them.
 
-To start threads takes longer than most proofs, which have hundreds of boxes.
+Late takes some hundred boxes where early takes many thousands, and in some scenes the other way round.
+Nothing cheap was found that tells which. To start threads takes longer than most proofs.
 """
 _DIRECT_SHARE = 0.125  # of the time left, at most: then come the stages, which have a bound to show
 _BARRIERS = (
@@ -97,6 +108,10 @@ class _Run(BranchAndBound):
         self.chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
         self.rounding = 0.0  # a pose better by less, relative, is the incumbent evaluated in another order
         self.target = INSIDE * limits.ratio_gap(self.value)
+        self.spare = _LATE
+        # two forms have no duality gap (Brickman), unless a band is in force
+        is_many = len(ratios.numerator_point) > 2 or axis_field.band is not None
+        self.has_gaps = axis_field.is_free and is_many
         self.incumbent_row = np.zeros(node.COLUMNS)  # its multipliers are the incumbent's
         self.proved, farthest = entry_of(root.fill_root, ratios)(
             ratios,
@@ -121,17 +136,28 @@ class _Run(BranchAndBound):
         Boxes that do not end may lie around a better pose: if one is found there, the try begins again.
         """
         now = limit_clock()
-        until, start = now + _DIRECT_SHARE * (self.deadline - now), self.nodes
-        workers = WorkerPool(self.root, 1)
-        for nodes, is_shared in _TRIES:
-            most = min(start + nodes, self.node_limit - _FOR_STAGES) - self.nodes
+        until, last = now + _DIRECT_SHARE * (self.deadline - now), self.node_limit - _FOR_STAGES
+        pools: dict[float, WorkerPool] = {}
+        examined = {_LATE: 0, _EARLY: 0}
+        for spare, boxes, is_shared in _TRIES:
+            if spare == _EARLY and not self.has_gaps:
+                continue
+            workers = pools.setdefault(spare, WorkerPool(self.root, 1))
+            self.spare, before = spare, self.nodes
+            most = max(1, min(boxes - examined[spare], last - self.nodes))
             threads = self.threads if is_shared else 1
-            leaves, reason = self.exclude_all(workers, self.target, max(1, most), until, threads)
-            if not reason or limit_clock() > until or self.nodes >= self.node_limit - _FOR_STAGES:
+            leaves, reason = self.exclude_all(workers, self.target, most, until, threads)
+            if not reason or limit_clock() > until or self.nodes >= last:
                 break
-            if self.axis_field.is_free and self._improved_from(workers):
+            examined[spare] += self.nodes - before
+            if boxes != _ALTERNATE and self.axis_field.is_free and self._improved_from(workers):
                 return self.try_target()
+        # the stages that may follow split as the try that has less left
+        self.spare = min(pools, key=lambda spare: self._volume_m3(pools[spare].boxes()))
         return leaves, reason
+
+    def _volume_m3(self, boxes: FloatArray) -> float:
+        return float(np.sum(np.prod(2.0 * boxes[:, self.node.HALF : self.node.LEVEL], axis=1)))
 
     def _improved_from(self, workers: WorkerPool) -> bool:
         """Climb from where a try stopped; check that a clearly better pose is found."""
@@ -163,7 +189,7 @@ class _Run(BranchAndBound):
     def exclusion_kernel(self, gap: float) -> Kernel:
         from nullpose.solver.kernels.bounds.records import Goal
 
-        goal = Goal(self.value * (1.0 + self.rounding), self.incumbent_row)
+        goal = Goal(self.value * (1.0 + self.rounding), self.incumbent_row, self.spare)
         family, level = self.family, self.value * (1.0 + gap)
         return partial(self.branch, family.arrays, family.domain, self.axis_field.arrays, level, goal)
 

@@ -136,6 +136,10 @@ class WorkerPool:
         """Return where workers with nodes left stopped: a box's middle and an orientation, or zeros."""
         return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.top]
 
+    def boxes(self) -> FloatArray:
+        """Collect the boxes still to do, (n, columns)."""
+        return np.concatenate([worker.stack[: worker.top] for worker in self._workers])
+
     def leaves(self) -> FloatArray:
         """Return all leaves made; the workers give up theirs, since memory for both would be too much."""
         first, *others = self._workers

@@ -140,10 +140,10 @@ def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, a
         return (BY_AXIS if is_free and wide else BY_POSITION), 1
     if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
         return EXCLUDED, 1
-    # Where multipliers exclude the centre, they exclude the halves of the box soon: axes need not be split.
-    # With several denominators that takes long, unless they do so by more than the size of the box.
-    spare = coarseness if family.denominator_isotropic.shape[0] > 1 else 0.0
-    split_axes = followed and primal - reached > coarseness and primal > 1.0 - spare
+    # Where multipliers exclude the centre, most often they exclude the halves of the box soon, and axes need
+    # not be split. With several denominators that takes long, unless they do so by more than the box's size.
+    spare = goal.spare if family.denominator_isotropic.shape[0] == 1 else max(1.0, goal.spare)
+    split_axes = followed and primal - reached > coarseness and primal > 1.0 - spare * coarseness
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or coarseness == 0.0  # one position has no halves

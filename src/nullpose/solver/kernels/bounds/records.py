@@ -37,10 +37,12 @@ class Goal(NamedTuple):
     Args:
         best: the incumbent's smallest ratio; a box's centre that beats it ends the call.
         multipliers: a row with the multipliers at the incumbent, which are tried on every box.
+        spare: by how much of a box's size multipliers must exclude its centre, so that its axes stay whole.
     """
 
     best: float
     multipliers: FloatArray
+    spare: float
 
 
 class Workspace(NamedTuple):
