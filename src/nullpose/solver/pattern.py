@@ -168,7 +168,11 @@ class PatternRun(BranchAndBound):
         """Search as without a proof, once."""
         if not self.thorough:
             self.thorough = True
-            self.search.search(light=False)
+            alone = PatternSearch(self.family, self.antenna, self.reach, self.limits.seed)  # as --fast draws
+            alone.search(light=False)
+            self.search.take(alone.state)
+            self.search.starts += alone.starts
+            self.search.evaluations += alone.evaluations
 
     def exclusion_kernel(self, gap: float) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``."""
