@@ -67,7 +67,7 @@ def test_the_rows_do_not_depend_on_who_makes_them(farm: Any, spec: Spec, tmp_pat
     assert len(expected) == 12 * 2 * 2
     for folder in ("pool", "one", "two"):
         pd.testing.assert_frame_equal(rows(tmp_path / folder), expected)
-    assert {at.workers for at in told} == {2}
+    assert 2 in {at.workers for at in told} <= {0, 2}  # none before the pool stands
     assert [at.done for at in told] == list(range(1, 13))
     assert told[-1].rate > 0.0
     assert told[-1].seconds_left == 0.0

@@ -260,13 +260,16 @@ async def _reach(scheduler: str) -> None:
     await comm.close()
 
 
+_LOGGERS = ("distributed", "tornado", "asyncio")
+
+
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep Dask's own log lines off the terminal."""
+    """Keep log lines of Dask, and of what it runs on, off the terminal."""
     import distributed  # noqa: F401  its import sets up its loggers
 
     with ExitStack() as afterwards:
-        for name in [name for name in logging.root.manager.loggerDict if name.split(".")[0] == "distributed"]:
+        for name in [name for name in logging.root.manager.loggerDict if name.split(".")[0] in _LOGGERS]:
             logger = logging.getLogger(name)
             afterwards.callback(logger.setLevel, logger.level)
             logger.setLevel(logging.CRITICAL + 1)
