@@ -173,7 +173,7 @@ def array_ratios_under(scenario: Scenario, pose: Pose, case: ErrorCase) -> Float
 
 
 def placed_elements(scenario: Scenario, pose: Pose) -> FloatArray:
-    """Return where the elements of a scenario's array are at a pose, as :func:`element_positions`.
+    """Place the elements of a scenario's array at a pose, as :func:`element_positions`.
 
     Args:
         scenario: one with an array.

@@ -43,11 +43,7 @@ Late takes some hundred boxes where early takes many thousands, and in some scen
 Nothing cheap was found that tells which. To start threads takes longer than most proofs.
 """
 _DIRECT_SHARE = 0.125  # of the time left, at most: then come the stages, which have a bound to show
-_BARRIERS = (
-    0.01,
-    0.1,
-    0.3,
-)  # weights of the barrier of climbs from where a try stopped: they may lead to different maxima
+_BARRIERS = (0.01, 0.1, 0.3)  # weights of the barrier in climbs, which can lead to different maxima
 _FOR_STAGES = 4  # boxes of a limit that are left to the stages, which bound what is far at once
 _STAGE = 0.1  # each stage's gap, as a share of the one before
 _LAST_STAGE = 2.0  # a stage that would end within so many times the target gap goes to the target
@@ -157,6 +153,7 @@ class _Run(BranchAndBound):
         return leaves, reason
 
     def _volume_m3(self, boxes: FloatArray) -> float:
+        """Sum up the volumes of boxes."""
         return float(np.sum(np.prod(2.0 * boxes[:, self.node.HALF : self.node.LEVEL], axis=1)))
 
     def _improved_from(self, workers: WorkerPool) -> bool:

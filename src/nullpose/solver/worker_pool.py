@@ -23,7 +23,7 @@ _SPARE = 16  # rows of a stack that a kernel needs
 
 
 def processors() -> int:
-    """Return how many processors this process may use."""
+    """Count the processors that this process may use."""
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # not on every system
@@ -51,11 +51,11 @@ class _Worker:
         self.top += len(nodes)
 
     def give(self) -> FloatArray:
-        """Return every second node of the stack, which has one less half of its nodes then."""
-        kept, given = self.stack[: self.top : 2].copy(), self.stack[1 : self.top : 2].copy()
+        """Hand over every second box of the stack."""
+        kept, shared = self.stack[: self.top : 2].copy(), self.stack[1 : self.top : 2].copy()
         self.top = len(kept)
         self.stack[: self.top] = kept
-        return given
+        return shared
 
     def work(self, kernel: Kernel, budget: int) -> int:
         """Work off a budget of nodes, or less if one beats the incumbent; return how many it was."""
@@ -133,7 +133,7 @@ class WorkerPool:
         return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.better]
 
     def last(self) -> list[tuple[FloatArray, FloatArray]]:
-        """Return where workers with nodes left stopped: a box's middle and an orientation, or zeros."""
+        """List the places at which workers with boxes left stopped: a middle and an orientation, or zeros."""
         return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.top]
 
     def boxes(self) -> FloatArray:

@@ -39,6 +39,7 @@ _TABLES: dict[Kind, type[GroundPoint] | type[NoFlyZone]] = {
     "eavesdroppers": Eavesdropper,
     "no_fly": NoFlyZone,
 }
+# what a new point takes from the last one of its kind
 _ALIKE = (
     "power_w",
     "power_dbm",
@@ -48,7 +49,7 @@ _ALIKE = (
     "gain_dbi",
     "noise_w",
     "noise_dbm",
-)  # to the last of its kind
+)
 _ANY = "any"  # typed for a tilt without a limit
 _FREE = Override("airframe.preset", "omnidirectional")
 _FREE_AIRFRAME = Airframe(preset="omnidirectional")

@@ -63,8 +63,8 @@ def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
     """
     field, search = AxisField.within(*scenario.axis_band), replace(limits, certify=False)
     inner = Inner(worst_polarised(require_dipole(scenario)))
-    stated = solve_and_prove(build_family(scenario), [field], search).incumbent
-    nominal = Pose.of_airframe(scenario, stated.position_m, stated.axis)
+    incumbent = solve_and_prove(build_family(scenario), [field], search).incumbent
+    nominal = Pose.of_airframe(scenario, incumbent.position_m, incumbent.axis)
     exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:
         precompile(inner.family.ground_axes is not None)  # compiling must not count against the time limit

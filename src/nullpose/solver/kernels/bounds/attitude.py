@@ -184,7 +184,7 @@ def direction_rate(cell, frame, a, turning, away):
         frame: its frame.
         a: the way to the point at its middle, in body axes.
         turning: bounds of the turning and of its derivatives.
-        away: way over least distance.
+        away: distance moved over the least distance.
     """
     whole = turning[0] + away
     if not whole < 1.0:
@@ -193,8 +193,8 @@ def direction_rate(cell, frame, a, turning, away):
     b = over(a, length)
     sides, steps, total = cyclic(cell[HALF : HALF + 3], int(cell[CHART])), scratch(6, 3), 0.0
     for i in range(3):
-        way = minus(cross(row(frame, 3 + i), b), over(row(frame, i), length))
-        store(scaled(sides[i], way), steps[i])
+        shift = minus(cross(row(frame, 3 + i), b), over(row(frame, i), length))
+        store(scaled(sides[i], shift), steps[i])
         store(scaled(cell[HALF + 3 + i], cross(row(frame, 6 + i), b)), steps[3 + i])
     for i in range(6):
         along_i = dot(steps[i], b)

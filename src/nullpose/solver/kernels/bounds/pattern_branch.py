@@ -106,7 +106,7 @@ def is_better(family, domain, pattern, reach, floor, row, space, position, rotat
 
 @inner_kernel
 def examine_cell(family, domain, pattern, reach, level, floor, row, space, position, rotation):
-    """Return what becomes of a cell; fill its multipliers, zero where no pose of it is allowed."""
+    """Examine a cell: EXCLUDED, BETTER or BY_POSITION; fill its multipliers, zero where it has no pose."""
     if forbidding(domain, row[CENTRE:], row[HALF:]) >= 0:
         row[WARM:] = 0.0
         return EXCLUDED
