@@ -18,7 +18,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "docstrings",
     "offline_math",
-    "reference",
+    "tables",
     "validation",
 ]
 exclude_patterns = ["_build", "_ext"]

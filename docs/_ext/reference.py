@@ -4,14 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import Any
 
 import typer
-from docutils import nodes
-from docutils.parsers.rst import directives
-from docutils.statemachine import StringList
-from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 import nullpose
 from nullpose.cli.app import app
@@ -119,25 +114,3 @@ def option_rows(verb: str) -> Iterator[str]:
             ending = f" Default: {shown}." if shown and shown is not True and not option.required else ""
             shown_names = ", ".join(f"`{name}{metavar}`" for name in names)
             yield f"| {shown_names} | {marked(option.help + ending)} |"
-
-
-class Table(SphinxDirective):
-    """A table of the program: `{keys} airspace`, `{options} study run`."""
-
-    optional_arguments = 1
-    final_argument_whitespace = True
-    option_spec: ClassVar = {"class": directives.class_option}
-
-    def run(self) -> list[nodes.Node]:
-        """Parse the table's lines as those of the page."""
-        rows = key_rows if self.name == "keys" else option_rows
-        container = nodes.container()
-        self.state.nested_parse(StringList(list(rows(" ".join(self.arguments)))), 0, container)
-        return container.children
-
-
-def setup(app: Sphinx) -> dict[str, bool]:
-    """Register the directives."""
-    app.add_directive("keys", Table)
-    app.add_directive("options", Table)
-    return {"parallel_read_safe": True, "parallel_write_safe": True}
