@@ -15,7 +15,7 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
 from nullpose.certificate.forms import COLUMN, Linear, congruence, gram, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
-from nullpose.certificate.lemmas import AREA_BEND
+from nullpose.certificate.lemmas import FORM_SWING
 from nullpose.problem.family import Family
 
 _UNIT = np.eye(3)[:, :, None]  # the world's axes, for any number of boxes
@@ -113,8 +113,8 @@ def expansion(
     fourth = 1.0 / near.squared().squared()
     mixed = where(turn, 1.0 / (near.squared() * near * frames.rho_least), 0.0)
     both = where(turn, 1.0 / (near.squared() * frames.rho_least.squared()), 0.0)
-    up = fourth * 6.0 + mixed * 16.0 + both * (6.0 + AREA_BEND)
-    down = fourth * np.where(anchored, 2.0, 4.0) + mixed * 12.0 + both * (4.0 + AREA_BEND)
+    more = mixed * 4.0 + both * FORM_SWING
+    up, down = fourth * 6.0 + more, fourth * np.where(anchored, 2.0, 4.0) + more
     return Linear(form, slopes), up.most(), down.most()
 
 

@@ -14,7 +14,7 @@ from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import COUNTED, IDENTITY, Linear, quadratic, side_form, top_vectors
 from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.lemmas import FORM_SWING, NULL_SWERVE, SPREAD_OVER_NORM
+from nullpose.certificate.lemmas import CONSTANT_SWING, DIRECTION_BEND, SPREAD_OVER_NORM
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -119,7 +119,7 @@ def sharper(
     at_centre = form.middle()
     seen = quadratic(at_centre, vectors)
     near, rho = boxes.nearest(point_m), frames.rho_least
-    turning = 6.0 / (near.squared() * rho) + NULL_SWERVE / (near * rho.squared())
+    turning = 2.0 / (near.squared() * rho) + DIRECTION_BEND / (near * rho.squared())
     bend = 2.0 / (near.squared() * near) + where(frames.turning, turning, 0.0)
     square = (bend * boxes.half2 * 0.5).squared()
     eta = np.sqrt(square.high / np.maximum(seen, 1e-12 * at_centre[:3].sum(axis=0)))
@@ -134,7 +134,7 @@ def with_constants(total: Linear, field: AxisField, leaves: Leaves, boxes: Boxes
     """Return a sum with multiples of the forms that are not negative in the cells and the band added."""
     for q, weight, spread in constants(field, leaves):
         if np.any(weight != 0.0):
-            bend = spread / frames.rho_least.squared() * FORM_SWING * np.abs(weight) * (boxes.half2 * 0.5)
+            bend = spread / frames.rho_least.squared() * CONSTANT_SWING * np.abs(weight) * (boxes.half2 * 0.5)
             used = where(frames.turning, bend.most(), 0.0)
             total = total + constant(frames, q).times(Interval(weight)).plus(frames.gram * used)
     return total

@@ -16,12 +16,10 @@ DIRECTION_BEND = 2.0 / math.sqrt(3.0) * _UP
 """The most that its frame's second derivative does to a unit vector: of 4 sin^2 - 3 sin^4, at sin^2 = 2/3."""
 DIRECTION_THIRD = 2.31
 """Of its third derivative what is no multiple of the step: 6 cos^2 sin at most, 4 / sqrt(3)."""
-FORM_SWING = (1.0 + math.sqrt(2.0)) * _UP
+CONSTANT_SWING = (1.0 + math.sqrt(2.0)) * _UP
 """The second derivative of a constant form in a turning frame, over the spread of its eigenvalues."""
-AREA_BEND = 2.0 * DIRECTION_BEND
-"""The second derivative of a squared length in a turning frame, from the bend alone."""
-NULL_SWERVE = (2.0 + 2.0 / math.sqrt(3.0)) * _UP
-"""The second derivative of a direction in a turning frame, near a null."""
+FORM_SWING = 1.0 + DIRECTION_BEND
+"""What the frame's turning alone adds to the second derivative of a link form, over a^2 rho^2."""
 
 # The derivatives of a link vector along a unit direction (lemma 5).
 VECTOR_SLOPE = 2.0 / math.sqrt(3.0) * ROUNDING

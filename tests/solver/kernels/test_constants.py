@@ -25,7 +25,7 @@ def blocks(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 # lemma 1: the second derivative of a link form has this block, and 8 k^2 - 2 across it
 LEAST, MOST = extremes(blocks(2.0 * M**2, 6.0 * K * M, 6.0 - 10.0 * M**2))
-# lemma 2: |b''| <= 2 / sqrt(3) |a| / rho^2 + 2 / rho; the first derivative of a form is at most 2 / a^3
+# lemma 2: the length of the two parts of R'' that are across each other, over rho^2
 TURN = float(np.max(M * np.sqrt(4.0 - 3.0 * M**2)))
 # lemma 5: derivatives of a link vector
 FIRST = extremes(-blocks(K, M, 0.0 * K))
@@ -38,23 +38,19 @@ THIRD = extremes(blocks(27.0 * K * M**2 - 6.0 * K**3, 9.0 * M**3 - 18.0 * K**2 *
     [
         ("FORM_RISE", max(MOST, float(np.max(8.0 * K**2 - 2.0)))),
         ("FORM_FALL", -min(LEAST, float(np.min(8.0 * K**2 - 2.0)))),
-        # |b'|^2 is at most 1 + 2 a / rho + (a / rho)^2
-        ("MIXED_RISE", 2.0 * 6.0 + 2.0 * 2.0),
-        ("MIXED_FALL", 2.0 * 4.0 + 2.0 * 2.0),
-        ("SWING_RISE", 6.0 + 2.0 * TURN),
-        ("SWING_FALL", 4.0 + 2.0 * TURN),
+        # |w'|^2 + |w| |w''|, with |w| = 1 / a, |w'| <= 1 / a^2 + 1 / (a rho), |w''| as below
+        ("FORM_MIXED", 2.0 + 2.0),
+        ("FORM_SWING", 1.0 + TURN),
         ("ANCHOR_RISE", float(np.max(8.0 * K**2 - 2.0))),
         ("ANCHOR_FALL", -float(np.min(8.0 * K**2 - 2.0))),
         ("CONSTANT_FORM_BEND", float(np.max(np.abs(np.sin(2.0 * ANGLES)) + 2.0 * M**2))),
-        # w = b / |b|^2 is a reflection of length 1 / a: |w''| <= 2 |b'|^2 / a^3 + |b''| / a^2
+        # the vector's own bend, twice the rate of turning times its slope, the bend of the turning
         ("NULL_BEND", 2.0),
-        ("NULL_MIXED", 2.0 * 2.0 + 2.0),
-        ("NULL_SWING", 2.0 + TURN),
+        ("NULL_MIXED", 2.0),
+        ("NULL_SWING", TURN),
         ("DIRECTION_BEND", TURN),
         # the verifier's, which puts them together where it uses them
-        ("FORM_SWING", float(np.max(np.abs(np.sin(2.0 * ANGLES)) + 2.0 * M**2))),
-        ("AREA_BEND", 2.0 * TURN),
-        ("NULL_SWERVE", 2.0 + TURN),
+        ("CONSTANT_SWING", float(np.max(np.abs(np.sin(2.0 * ANGLES)) + 2.0 * M**2))),
         ("SPREAD_OVER_NORM", math.sqrt(2.0)),  # of diag(1, -1, 0), which has the largest
         ("DIRECTION_THIRD", float(np.max(6.0 * K**2 * M))),
         ("VECTOR_SLOPE", max(map(abs, FIRST))),

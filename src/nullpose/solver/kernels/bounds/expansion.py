@@ -17,11 +17,9 @@ from nullpose.solver.kernels.bounds.constants import (
     ANCHOR_FALL,
     ANCHOR_RISE,
     FORM_FALL,
+    FORM_MIXED,
     FORM_RISE,
-    MIXED_FALL,
-    MIXED_RISE,
-    SWING_FALL,
-    SWING_RISE,
+    FORM_SWING,
 )
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD, Frame
@@ -145,8 +143,8 @@ def expand_point(family, j, frame, centre, half, form, slopes):
         return FORM_RISE * beyond, -FORM_FALL * beyond
     swing = 1.0 / (square * frame.least_radius_m * frame.least_radius_m)
     mixed = math.sqrt(beyond * swing)  # 1 / (a^3 rho), for a the distance and rho that of the anchor
-    rise = FORM_RISE * beyond + MIXED_RISE * mixed + SWING_RISE * swing
-    return rise, -(FORM_FALL * beyond + MIXED_FALL * mixed + SWING_FALL * swing)
+    more = FORM_MIXED * mixed + FORM_SWING * swing
+    return FORM_RISE * beyond + more, -(FORM_FALL * beyond + more)
 
 
 @inner_kernel
@@ -194,11 +192,11 @@ def best_frame(family, is_horizontal, row):
         a = math.sqrt(square)
         scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
         still += FORM_RISE * scale
-        turning += scale * (FORM_RISE + a / rho * (MIXED_RISE + SWING_RISE * a / rho))
+        turning += scale * (FORM_RISE + a / rho * (FORM_MIXED + FORM_SWING * a / rho))
     for e in range(family.denominator_weight.shape[0]):
         a = min_distance(points, family.denominator_point[e], centre, half)
         scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
         still += FORM_FALL * scale
         if family.denominator_point[e] != anchor:
-            turning += scale * (FORM_FALL + a / rho * (MIXED_FALL + SWING_FALL * a / rho))
+            turning += scale * (FORM_FALL + a / rho * (FORM_MIXED + FORM_SWING * a / rho))
     return (TOWARDS_POINT if turning < still else WORLD), anchor
