@@ -40,6 +40,8 @@ class Ratios(NamedTuple):
             has one.
         ground_leaks: (m,) f, the gain of a point's dipole along its axis, 1 where it has none; None where no
             point has one.
+        channels: (m, 5) the row of each point's channel (:mod:`nullpose.channel`), whose excess gain
+            multiplies its ``M(r)``; None where all are in free space.
     """
 
     points_m: FloatArray
@@ -55,6 +57,7 @@ class Ratios(NamedTuple):
     leak: float = 0.0
     ground_axes: FloatArray | None = None
     ground_leaks: FloatArray | None = None
+    channels: FloatArray | None = None
 
 
 def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, FloatArray | None, FloatArray]:

@@ -1,0 +1,95 @@
+"""Line of sight by elevation: its probability grows with the drone's elevation angle at the ground point.
+
+``P = 1 / (1 + a exp(-b (theta - a)))``, theta in degrees. Source: Al-Hourani, Kandeepan and Lardner, "Optimal
+LAP altitude for maximum coverage", IEEE Wireless Communications Letters 2014. Losses are over free space.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from nullpose.channel.free_space import constant_channel
+from nullpose.channel.model import BY_ELEVATION, ChannelModel, FloatArray, LinkChannel
+
+
+class Environment(NamedTuple):
+    """The numbers of an environment: of the probability, and the losses with line of sight and without."""
+
+    a: float
+    b: float
+    los_loss_db: float
+    nlos_loss_db: float
+
+
+ENVIRONMENTS = {
+    "suburban": Environment(4.88, 0.43, 0.1, 21.0),
+    "urban": Environment(9.61, 0.16, 1.0, 20.0),
+    "dense-urban": Environment(12.08, 0.11, 1.6, 23.0),
+    "high-rise": Environment(27.23, 0.08, 2.3, 34.0),
+}
+"""At 2 GHz, of the source."""
+
+POWER_AVERAGE, DB_AVERAGE = 0.0, 1.0
+AVERAGES = ("power", "db", "guaranteed")
+
+
+def sight_probability(row: FloatArray, elevation_rad: FloatArray) -> FloatArray:
+    """Evaluate the probability P of line of sight.
+
+    Args:
+        row: the kind, ``ln a + a b``, b per radian.
+        elevation_rad: of the drone, at the ground point.
+    """
+    return np.asarray(1.0 / (1.0 + np.exp(row[1] - row[2] * elevation_rad)))
+
+
+def elevation_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray) -> FloatArray:
+    """Evaluate the mean gain over that with line of sight: ``P + (1 - P) n``, or ``n^(1 - P)``.
+
+    Args:
+        row: the kind, two numbers of the probability, n, and which average; n is the gain without line of
+            sight over that with it.
+        distance_m: of no effect.
+        elevation_rad: of the drone, at the ground point.
+    """
+    hidden = 1.0 - sight_probability(row, elevation_rad)
+    gain = np.where(row[4] == DB_AVERAGE, row[3] ** hidden, 1.0 - (1.0 - row[3]) * hidden)
+    return np.asarray(gain)
+
+
+def elevation_channel(
+    a: float, b: float, los_loss_db: float, nlos_loss_db: float, average: str, is_interferer: bool = False
+) -> LinkChannel:
+    """Return the mean channel of a link that has line of sight with the probability P.
+
+    Args:
+        a: of the probability, in degrees.
+        b: of the probability, per degree.
+        los_loss_db: loss over free space with line of sight.
+        nlos_loss_db: loss over free space without.
+        average: "power", the mean of the gains; "db", the mean of the losses in dB, as published; or
+            "guaranteed", where interferers always have line of sight and all others never.
+        is_interferer: whether the link is that of a jammer or an eavesdropper.
+
+    Example:
+        >>> urban = elevation_channel(*ENVIRONMENTS["urban"], average="power")
+        >>> gain = urban.strength * urban.excess(urban.row, 316.2, math.atan2(100.0, 300.0))
+        >>> round(-10.0 * math.log10(gain), 4)
+        6.1285
+    """
+    seen, hidden = (10.0 ** (-loss_db / 10.0) for loss_db in (los_loss_db, nlos_loss_db))
+    if average == "guaranteed":
+        return constant_channel(seen if is_interferer else hidden)
+    kept = DB_AVERAGE if average == "db" else POWER_AVERAGE
+    row = (BY_ELEVATION, math.log(a) + a * b, math.degrees(b), hidden / seen, kept)
+    return LinkChannel(seen, row, elevation_excess)
+
+
+ELEVATION = ChannelModel(
+    "line of sight with a probability that grows with the elevation angle",
+    elevation_channel,
+    ("a", "b", "los_loss_db", "nlos_loss_db", "average"),
+)

@@ -1,0 +1,40 @@
+"""A power law: the gain falls with a power of the distance (log-distance path loss)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nullpose.channel.model import BY_DISTANCE, ChannelModel, FloatArray, LinkChannel
+
+
+def distance_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray) -> FloatArray:
+    """Evaluate ``(d / d0)^(2 - alpha)``: a gain of ``(d / d0)^-alpha`` over that of free space.
+
+    Args:
+        row: the kind, ``2 - alpha`` and d0 [m].
+        distance_m: d.
+        elevation_rad: of no effect.
+    """
+    return np.asarray((distance_m / row[2]) ** row[1])
+
+
+def power_law(exponent: float, reference_distance_m: float, is_interferer: bool = False) -> LinkChannel:
+    """Return the channel of gain ``reference gain * (d / d0)^-alpha``.
+
+    Args:
+        exponent: alpha, 1.6 to 6; 2 with d0 = 1 m is free space.
+        reference_distance_m: d0, at which the reference gain holds; links are no shorter.
+        is_interferer: of no effect.
+
+    Example:
+        >>> channel = power_law(3.0, 1.0)
+        >>> float(channel.strength * channel.excess(channel.row, 100.0, 0.5) / 100.0**2)
+        1e-06
+    """
+    row = (BY_DISTANCE, 2.0 - exponent, reference_distance_m, 0.0, 0.0)
+    return LinkChannel(reference_distance_m**2, row, distance_excess)
+
+
+POWER_LAW = ChannelModel(
+    "a gain that falls with a power of the distance", power_law, ("exponent", "reference_distance_m")
+)
