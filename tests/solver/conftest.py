@@ -5,6 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from nullpose.channel import ENVIRONMENTS, LinkChannel, PointChannels
+from nullpose.channel.elevation import elevation_channel
+from nullpose.channel.power_law import power_law
 from nullpose.objectives import Ratios
 from nullpose.problem.family import Family
 
@@ -36,18 +39,40 @@ def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray
     return forms
 
 
+CHANNELS: dict[str, LinkChannel | None] = {
+    "free space": None,
+    "power law 1.6": power_law(1.6, 2.0),
+    "power law 3": power_law(3.0, 1.0),
+    "power law 6": power_law(6.0, 1.0),
+    "suburban": elevation_channel(*ENVIRONMENTS["suburban"], average="power"),
+    "urban in dB": elevation_channel(*ENVIRONMENTS["urban"], average="db"),
+    "high-rise": elevation_channel(*ENVIRONMENTS["high-rise"], average="power"),
+}
+
+
+@pytest.fixture(params=CHANNELS.values(), ids=CHANNELS, scope="session")
+def channel(request: pytest.FixtureRequest) -> LinkChannel | None:
+    """A channel of each kind."""
+    return request.param  # type: ignore[no-any-return]
+
+
 @pytest.fixture(scope="session")
 def ratios_over() -> Callable[..., Ratios]:
     """Returns a builder: one ratio over some points, for what asks for points, leak and dipoles only."""
 
     def build(
-        points_m: np.ndarray, leak: float, axes: np.ndarray | None = None, through: float = 0.0
+        points_m: np.ndarray,
+        leak: float,
+        axes: np.ndarray | None = None,
+        through: float = 0.0,
+        channel: LinkChannel | None = None,
     ) -> Ratios:
         none, first = np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64)
         one, start = np.ones(1), np.zeros(2, dtype=np.int64)
         numbers = (np.zeros(1), one, first, first, one, start, none, np.zeros(0))
         leaks = None if axes is None else np.full(len(axes), through)
-        return Ratios(points_m, *numbers, leak=leak, ground_axes=axes, ground_leaks=leaks)
+        rows = None if channel is None else PointChannels.of([channel] * len(points_m)).rows
+        return Ratios(points_m, *numbers, leak=leak, ground_axes=axes, ground_leaks=leaks, channels=rows)
 
     return build
 

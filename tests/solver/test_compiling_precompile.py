@@ -21,8 +21,8 @@ KERNELS = (branch, search_and_climb, min_log_ratio, keep_largest, fill_root)
 
 def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
     """Compiled by hand, the halves serve every solve, whatever the axes."""
-    compile_search(dipoles=False)
-    compile_proof(dipoles=False)
+    compile_search((False, False))
+    compile_proof((False, False))
     before = [len(kernel.signatures) for kernel in KERNELS]
     family = build_family(paper(1.0))
     for field in (AxisField.free(), AxisField.vertical(), AxisField.within(0.0, 0.1)):
@@ -32,10 +32,10 @@ def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:
 
 def test_no_process_is_started_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Once this process has the kernels, there is nothing left to do."""
-    precompile(dipoles=False)
+    precompile((False, False))
 
     def refuse(*arguments: object, **options: object) -> None:
         raise AssertionError("a process was started")
 
     monkeypatch.setattr(subprocess, "Popen", refuse)
-    precompile(dipoles=False)
+    precompile((False, False))

@@ -59,6 +59,11 @@ class Ratios(NamedTuple):
     ground_leaks: FloatArray | None = None
     channels: FloatArray | None = None
 
+    @property
+    def variant(self) -> tuple[bool, bool]:
+        """Whether any point has a dipole, and any a channel: kernels are compiled for each case."""
+        return self.ground_axes is not None, self.channels is not None
+
 
 def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, FloatArray | None, FloatArray]:
     """Return the dipoles' axes, (m, 3), and leaks, (m,), None without dipoles, and the largest gains, (m,).

@@ -79,56 +79,56 @@ def _compiling() -> Any:
     return total
 
 
-def precompile(dipoles: bool) -> None:
+def precompile(variant: tuple[bool, bool]) -> None:
     """Compile search and proof if this process has not, or load them from the cache.
 
     Two other processes compile them where a folder keeps what they make; otherwise this one does.
 
     Args:
-        dipoles: whether for ratios of points with dipoles, whose kernels are others.
+        variant: of the ratios, for each of which the kernels are others.
     """
     from numba.core import event
 
     from nullpose.solver.kernels.bounds.branch import branch
 
-    if _is_compiled(branch, dipoles):
+    if _is_compiled(branch, variant):
         return
     with _ONE_AT_A_TIME, event.trigger_event(PREPARING):
         if interpreted.compiler is None and branch.stats.cache_path is not None:
             elsewhere = BackgroundCompiler()
             with elsewhere.in_use():
-                compile_proof(dipoles)
-                compile_search(dipoles)
+                compile_proof(variant)
+                compile_search(variant)
                 elsewhere.wait()
-        compile_proof(dipoles)
-        compile_search(dipoles)
+        compile_proof(variant)
+        compile_search(variant)
 
 
-def _is_compiled(kernel: object, dipoles: bool) -> bool:
+def _is_compiled(kernel: object, variant: tuple[bool, bool]) -> bool:
     """Test if nothing is to be compiled in this process: done, or switched off."""
-    return isinstance(kernel, FunctionType) or dipoles in getattr(kernel, "entries", ())
+    return isinstance(kernel, FunctionType) or variant in getattr(kernel, "entries", ())
 
 
-def compile_proof(dipoles: bool) -> None:
+def compile_proof(variant: tuple[bool, bool]) -> None:
     """Compile the branch and bound by giving it no box to work off.
 
     Args:
-        dipoles: whether for ratios of points with dipoles.
+        variant: of the ratios.
     """
     from nullpose.solver.kernels.bounds import branch, node
     from nullpose.solver.kernels.bounds.records import Goal
 
-    family, field = _smallest_family(dipoles), AxisField.free()
+    family, field = _smallest_family(variant), AxisField.free()
     row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
     problem = family.arrays, family.domain, field.arrays
     branch.branch(*problem, 1.0, Goal(1.0, row, 0.0), rows, 0, rows, 0, 1, none, none)
 
 
-def compile_search(dipoles: bool) -> None:
+def compile_search(variant: tuple[bool, bool]) -> None:
     """Compile what is needed beside that, by a search of no round and a climb of no step.
 
     Args:
-        dipoles: whether for ratios of points with dipoles.
+        variant: of the ratios.
     """
     from nullpose.solver.kernels.bounds.node import COLUMNS, keep_largest
     from nullpose.solver.kernels.bounds.root import fill_root
@@ -136,9 +136,9 @@ def compile_search(dipoles: bool) -> None:
     from nullpose.solver.kernels.search.search import search_and_climb
     from nullpose.solver.multistart import climb
 
-    if _is_compiled(search_and_climb, dipoles):
+    if _is_compiled(search_and_climb, variant):
         return
-    family, weight = _smallest_family(dipoles), np.ones(1)
+    family, weight = _smallest_family(variant), np.ones(1)
     up, high_m, row = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0]), np.zeros(COLUMNS)
     climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
     fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, row)
@@ -146,11 +146,13 @@ def compile_search(dipoles: bool) -> None:
     keep_largest(weight, 1, row)
 
 
-def _smallest_family(dipoles: bool) -> Family:
-    """Build a family of one ratio: its arrays have the types of any other's."""
+def _smallest_family(variant: tuple[bool, bool]) -> Family:
+    """Build a family of one ratio: its arrays have the types of any other's of the variant."""
+    dipoles, channels = variant
     return Family(
         ground_axes=np.zeros((1, 3)) if dipoles else None,
         ground_leaks=np.zeros(1) if dipoles else None,
+        channels=np.zeros((1, 5)) if channels else None,
         points_m=np.zeros((1, 3)),
         numerator_isotropic=np.zeros(1),
         numerator_weight=np.ones(1),

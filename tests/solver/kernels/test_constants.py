@@ -36,18 +36,9 @@ THIRD = extremes(blocks(27.0 * K * M**2 - 6.0 * K**3, 9.0 * M**3 - 18.0 * K**2 *
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("FORM_RISE", max(MOST, float(np.max(8.0 * K**2 - 2.0)))),
-        ("FORM_FALL", -min(LEAST, float(np.min(8.0 * K**2 - 2.0)))),
-        # |w'|^2 + |w| |w''|, with |w| = 1 / a, |w'| <= 1 / a^2 + 1 / (a rho), |w''| as below
-        ("FORM_MIXED", 2.0 + 2.0),
+        # lemma 2, |w'|^2 + |w| |w''|: |w| = 1 / a, |w'| <= 1 / a^2 + 1 / (a rho), |w''| as TURN over a rho^2
         ("FORM_SWING", 1.0 + TURN),
-        ("ANCHOR_RISE", float(np.max(8.0 * K**2 - 2.0))),
-        ("ANCHOR_FALL", -float(np.min(8.0 * K**2 - 2.0))),
         ("CONSTANT_FORM_BEND", float(np.max(np.abs(np.sin(2.0 * ANGLES)) + 2.0 * M**2))),
-        # the vector's own bend, twice the rate of turning times its slope, the bend of the turning
-        ("NULL_BEND", 2.0),
-        ("NULL_MIXED", 2.0),
-        ("NULL_SWING", TURN),
         ("DIRECTION_BEND", TURN),
         # the verifier's, which puts them together where it uses them
         ("CONSTANT_SWING", float(np.max(np.abs(np.sin(2.0 * ANGLES)) + 2.0 * M**2))),

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from nullpose.channel import LinkChannel, PointChannels, excess_gain
 from nullpose.objectives import Ratios
 from nullpose.problem.axis_field import AxisField
 from nullpose.solver.kernels.bounds.enclosure import JET, axis_clearance, link_jet
@@ -46,16 +47,28 @@ def boxes(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
 @pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
 def test_a_jet_encloses_the_link(
-    field: AxisField, leak: float, dipole: np.ndarray | None, through: float, ratios_over: Callable
+    field: AxisField,
+    leak: float,
+    dipole: np.ndarray | None,
+    through: float,
+    channel: LinkChannel | None,
+    ratios_over: Callable[..., Ratios],
 ) -> None:
     """Value and gradient at the centre; over the box, the value and every second difference in bounds."""
     rng, jet, step = np.random.default_rng(2), np.empty(JET), 1e-3
 
     def at(p: np.ndarray) -> float:
-        return link(field, p, leak, dipole, through)
+        free = link(field, p, leak, dipole, through)
+        if channel is None:
+            return free
+        return float(free * excess_gain(PointChannels.of([channel]), POINT - p)[0] / channel.strength)
 
+    ratios = ratios_over(POINT, leak, dipole, through, channel)
     for centre, half in boxes(3, 40):
-        link_jet(ratios_over(POINT, leak, dipole, through), 0, field.arrays, centre, half, jet)
+        link_jet(ratios, 0, True, field.arrays, centre, half, jet)
+        if channel is not None and jet[0] > at(centre) * (1.0 + 1e-9):  # the end of its range, in a large box
+            assert np.max(half) > 0.5
+            continue
         assert jet[0] == pytest.approx(at(centre), rel=1e-9, abs=1e-15)
         slopes = [(at(centre + 1e-4 * e) - at(centre - 1e-4 * e)) / 2e-4 for e in np.eye(3)]
         np.testing.assert_allclose(jet[1:4], slopes, rtol=1e-5, atol=1e-9)
@@ -74,7 +87,7 @@ def test_the_enclosure_tightens_with_the_box(ratios_over: Callable[..., Ratios])
     radii = []
     for scale in (1e-2, 5e-3):
         here = FIELDS["broadside"].arrays, np.array([3.0, 20.0, 9.0]), np.full(3, scale)
-        link_jet(ratios_over(POINT, 0.0), 0, *here, jet)
+        link_jet(ratios_over(POINT, 0.0), 0, True, *here, jet)
         radii.append(jet[10:16].copy())
     np.testing.assert_allclose(radii[0] / radii[1], 2.0, rtol=0.05)
 

@@ -43,6 +43,7 @@ from nullpose.solver.kernels.bounds.node import (
 from nullpose.solver.kernels.bounds.records import Workspace
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
+from nullpose.solver.kernels.linear_algebra.channel import most_over_square
 from nullpose.solver.kernels.linear_algebra.forms import add_denominator
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
@@ -158,8 +159,10 @@ def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, a
 def lone_ratio(family, row, below):
     """Check whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
     for k in range(family.numerator_weight.shape[0]):
-        square = min_square(family.points_m, family.numerator_point[k], row[CENTRE:HALF], row[HALF:LEVEL])
-        most = family.numerator_isotropic[k] + family.numerator_weight[k] / square
+        j = family.numerator_point[k]
+        square = min_square(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL])
+        most = family.numerator_weight[k] * most_over_square(family.channels, j, square)
+        most += family.numerator_isotropic[k]
         if most < -below[family.denominator_of[k], MOST] * (1.0 - 1e-13):
             row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
             return True

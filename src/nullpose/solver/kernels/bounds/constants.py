@@ -4,12 +4,7 @@ They bound derivatives along a unit direction, times powers of distances: a is t
 to the box, rho that of the point that a frame turns towards. The certificate has its own copy.
 """
 
-FORM_RISE, FORM_FALL = 6.0, 4.0  # lemma 1: second derivative of a link form, above and below, over a^4
-FORM_MIXED, FORM_SWING = 4.0, 2.1548  # lemma 2: what a turning frame adds, over a^3 rho and a^2 rho^2
-ANCHOR_RISE, ANCHOR_FALL = 6.0, 2.0  # lemma 2: second derivative of 1 / rho^2, over rho^4
 CONSTANT_FORM_BEND = 2.4143  # lemma 2: of a constant form in a turning frame, over rho^2: 1 + sqrt(2)
-NULL_BEND = 2.0  # second derivative of r / |r|^2, over a^3
-NULL_MIXED, NULL_SWING = 2.0, 1.1548  # lemma 2: in a turning frame, over a^2 rho and a rho^2
 DIRECTION_BEND = 1.1548  # second derivative of the direction to a point, over rho^2: 2 / sqrt(3)
 DIRECTION_THIRD = 2.31  # lemma 5: third derivative of d / (d.d0), over y^3, where d is d0: 6 cos^2 sin
 VECTOR_SLOPE, VECTOR_BEND, VECTOR_THIRD = 1.1548, 3.0, 9.89  # lemma 5: of a link vector, over a^2, a^3, a^4

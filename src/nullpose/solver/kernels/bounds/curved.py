@@ -55,7 +55,7 @@ def denominator_jet(family, axis_field, row, jet, totals):
         total[0] = total[LEAST] = total[MOST] = -row[LEVEL] * family.denominator_isotropic[g]
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
             j = family.denominator_point[e]
-            link_jet(family, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+            link_jet(family, j, False, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
             add_jet(-row[LEVEL] * family.denominator_weight[e], jet, total)
 
 
@@ -142,7 +142,7 @@ def excludes_curved(family, domain, axis_field, row, below, jet, total):
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
         j, isotropic = family.numerator_point[k], row[WEIGHT + s] * family.numerator_isotropic[k]
-        link_jet(family, j, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
+        link_jet(family, j, True, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
         total[0], total[MOST] = total[0] + isotropic, total[MOST] + isotropic
         add_jet(row[WEIGHT + s] * family.numerator_weight[k], jet, total)
     total[0], total[MOST] = total[0] + ROUNDING * size, total[MOST] + ROUNDING * size
@@ -207,7 +207,7 @@ def curved_multipliers(family, axis_field, row, below, jet, workspace):
     weights, values, gradients = workspace.weights, workspace.values, workspace.gradients
     smallest = math.inf
     for k in range(ratios):
-        link_jet(family, family.numerator_point[k], axis_field, centre, half, jet)
+        link_jet(family, family.numerator_point[k], True, axis_field, centre, half, jet)
         minus = below[family.denominator_of[k]]
         smallest = min(smallest, (n0[k] + nw[k] * jet[0]) / -minus[0])
         values[k] = minus[0] + n0[k] + nw[k] * jet[0]

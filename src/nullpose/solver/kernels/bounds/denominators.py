@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solver.kernels.bounds.constants import NULL_BEND, NULL_MIXED, NULL_SWING, ROUNDING
-from nullpose.solver.kernels.bounds.expansion import expand_point, min_distance
+from nullpose.solver.kernels.bounds.constants import ROUNDING
+from nullpose.solver.kernels.bounds.expansion import expand_point
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT
 from nullpose.solver.kernels.compiler.jit import inner_kernel
@@ -39,15 +39,15 @@ def expand_denominator(family, g, level, frame, centre, half, out, out_slopes):
     radius = 0.5 * dot(half, half)
     for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
-        _, down = expand_point(family, j, frame, centre, half, form, slopes)
+        fall, _ = expand_point(family, j, False, frame, centre, half, form, slopes)
         add_scaled(-level * weight, form, slopes, out, out_slopes)
         if frame.kind == TOWARDS_POINT and j == frame.anchor:
-            rest = level * weight * (ROUNDING * (form[0] + form[1]) - radius * down)
+            rest = level * weight * (ROUNDING * (form[0] + form[1]) + radius * fall)
             across += (1.0 - family.leak) * rest
             everywhere += family.leak * rest
         else:
             size += weight * (form[0] + form[1] + form[2])
-            everywhere -= level * weight * radius * down
+            everywhere += level * weight * radius * fall
     return everywhere + ROUNDING * level * size, across
 
 
@@ -82,26 +82,16 @@ def add_mixed_denominators(family, frame, row, matrix, slopes):
 
 
 @inner_kernel
-def null_rest(a, rho):
-    """Return a bound on the second derivative of a link's vector w, in a frame that turns or stands still."""
-    rest = NULL_BEND / (a * a * a)
-    if rho < math.inf:
-        rest += NULL_MIXED / (a * a * rho) + NULL_SWING / (a * rho * rho)
-    return rest
-
-
-@inner_kernel
 def sharpen(family, frame, row, matrix, slopes):
     """Replace the denominators' remainders by smaller ones where they are smaller.
 
-    With ``w = r / |r|^2``, r seen in the frame, a link is ``|u x w|^2 + leak (u.w)^2``, a sum of squares of
-    numbers that are linear in w and together no longer than it; and the rest of w beyond first order is at
-    most ``W |x|^2 / 2`` at a step x from the centre. Since ``2 p q <= eta p^2 + q^2 / eta``, its
+    With ``w = h r / |r|^2``, r seen in the frame, a link is ``|u x w|^2 + leak (u.w)^2``, a sum of squares
+    of numbers that are linear in w and together no longer than it; and the rest of w beyond first order is
+    at most ``W |x|^2 / 2`` at a step x from the centre. Since ``2 p q <= eta p^2 + q^2 / eta``, its
     form is at least ``(1 - eta) (M + M'.x) - (W |x|^2 / 2)^2 / eta I`` for any eta in (0, 1): beside the
     null, where M is small, far better than a remainder of the second order. The point that the frame turns
     towards keeps its own.
     """
-    points = family.points_m
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
     form, form_slopes, v = scratch(6), scratch(3, 6), scratch(3)
     top_eigenvector(matrix, v)
@@ -116,10 +106,9 @@ def sharpen(family, frame, row, matrix, slopes):
             j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
             if frame.kind == TOWARDS_POINT and j == frame.anchor:
                 continue
-            _, down = expand_point(family, j, frame, centre, half, form, form_slopes)
+            fall, bend = expand_point(family, j, False, frame, centre, half, form, form_slopes)
             value, trace = bilinear(form, v, v), form[0] + form[1] + form[2]
-            rest = 0.5 * square * null_rest(min_distance(points, j, centre, half), frame.least_radius_m)
-            plain = -0.5 * square * down
+            rest, plain = 0.5 * square * bend, 0.5 * square * fall
             eta = rest / math.sqrt(max(value, 1e-12 * trace))
             if eta < _LARGEST_SHARE and eta * value + rest * rest / eta < plain:
                 add_scaled(scale * eta, form, form_slopes, matrix, slopes)

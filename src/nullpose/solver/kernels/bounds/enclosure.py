@@ -13,6 +13,8 @@ import math
 
 import numpy as np
 
+from nullpose.channel.model import BY_DISTANCE
+from nullpose.solver.kernels.bounds.excess import EXCESS, fill_excess, product, quotient, square, total
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.forms import entry
@@ -22,20 +24,6 @@ from nullpose.solver.kernels.linear_algebra.vectors import cross, dot, fill_affi
 
 JET = 18  # columns of a jet: the value, and from so many on
 SLOPE, BEND, RADIUS, LEAST, MOST = 1, 4, 10, 16, 17  # gradient, Hessian's middle and radius, and bounds
-
-
-@kernel
-def product(a, b):
-    """Return bounds on the product of two numbers of which bounds are given."""
-    w, x, y, z = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
-    return min(min(w, x), min(y, z)), max(max(w, x), max(y, z))
-
-
-@kernel
-def square(a):
-    """Return bounds on the square of a number of which bounds are given."""
-    x, y = a[0] * a[0], a[1] * a[1]
-    return (0.0 if a[0] < 0.0 < a[1] else min(x, y)), max(x, y)
 
 
 @inner_kernel
@@ -111,13 +99,6 @@ def enclose_entries(count, half, c, dc, hc, hr, boxed):
 
 
 @inner_kernel
-def relative_slopes(slope, swing, size):
-    """Return bounds on a derivative, ``slope`` give or take ``swing``, over a quantity within bounds."""
-    bottom, top = slope - swing, slope + swing
-    return bottom / size[1 if bottom > 0.0 else 0], top / size[0 if top > 0.0 else 1]
-
-
-@inner_kernel
 def square_range_about(v, swing):
     """Return bounds on the squared length of a vector, each entry of which swings so far."""
     least = most = 0.0
@@ -128,9 +109,11 @@ def square_range_about(v, swing):
 
 
 @inner_kernel
-def weight_of(b, s, power):
-    """Return ``1 / (b s^power)``."""
-    return 1.0 / (b * s * s * (s if power == 3.0 else 1.0))
+def weight_of(excess, b, s, power):
+    """Return ``1 / (b s^power)``; without a channel the power is 2 or 3."""
+    if excess is None:
+        return 1.0 / (b * s * s * (s if power == 3.0 else 1.0))
+    return 1.0 / (b * s**power)
 
 
 @inner_kernel
@@ -163,22 +146,28 @@ def turned_field(axis_field, turn, j, offset, matrix):
 
 
 @inner_kernel
-def of_gradients(i, k, power, dn, beta, sigma):
+def of_gradients(i, k, power, excess, dn, beta, sigma):
     """Return bounds on ``n_i l_k + l_i n_k`` and on q without its share of the second derivatives (lemma 3).
 
     ``l = -beta - power sigma`` is the gradient of the logarithm of w, and ``q`` is ``2 beta beta^T + power
-    (beta sigma^T + sigma beta^T) + power (power + 1) sigma sigma^T``.
+    (beta sigma^T + sigma beta^T) + power (power + 1) sigma sigma^T``. An excess gain of relative slopes g
+    adds g to the first and ``g l^T + l g^T`` to the second.
     """
     beta_i, beta_k, sigma_i, sigma_k = bounds(beta, i), bounds(beta, k), bounds(sigma, i), bounds(sigma, k)
     fall_i = (-beta_i[1] - power * sigma_i[1], -beta_i[0] - power * sigma_i[0])
     fall_k = (-beta_k[1] - power * sigma_k[1], -beta_k[0] - power * sigma_k[0])
+    more = 0.0, 0.0
+    if excess is not None:
+        gain_i, gain_k = (excess[1 + i, 1], excess[1 + i, 2]), (excess[1 + k, 1], excess[1 + k, 2])
+        more = total(product(gain_i, fall_k), product(fall_i, gain_k))
+        fall_i, fall_k = total(fall_i, gain_i), total(fall_k, gain_k)
     left, right = product(bounds(dn, i), fall_k), product(bounds(dn, k), fall_i)
     bb = square(beta_i) if i == k else product(beta_i, beta_k)
     ss = square(sigma_i) if i == k else product(sigma_i, sigma_k)
     bs, sb = product(beta_i, sigma_k), product(sigma_i, beta_k)
     low = 2.0 * bb[0] + power * (bs[0] + sb[0] + (power + 1.0) * ss[0])
     high = 2.0 * bb[1] + power * (bs[1] + sb[1] + (power + 1.0) * ss[1])
-    return left[0] + right[0], left[1] + right[1], low, high
+    return left[0] + right[0], left[1] + right[1], low + more[0], high + more[1]
 
 
 @inner_kernel
@@ -212,8 +201,34 @@ def dipole_entry(matrix, r, v, half, u, c, dc, hc, hr):
 
 
 @kernel
-def link_jet(family, j, axis_field, centre, half, jet):
-    """Fill the jet of point j over a box that it is outside of; the axis field vanishes nowhere in it."""
+def link_jet(family, j, is_above, axis_field, centre, half, jet):
+    """Fill the jet of point j over a box that it is outside of; the axis field vanishes nowhere in it.
+
+    It is to bound the link from above or from below, as ``is_above`` says.
+    """
+    excess_link_jet(family, family.channels, j, is_above, axis_field, centre, half, jet)
+
+
+@inner_kernel
+def excess_link_jet(family, channels, j, is_above, axis_field, centre, half, jet):
+    """Fill the jet of point j, with the excess gain of its channel if there are channels."""
+    if channels is None:
+        fill_link_jet(family, j, axis_field, centre, half, 0.0, None, jet)
+        return
+    excess, channel = scratch(EXCESS, 3), channels[j]
+    r = minus(row(family.points_m, j), centre)
+    fill_excess(channel, r, is_above, family.points_m[j], centre, half, excess)
+    if channel[0] == BY_DISTANCE:
+        fill_link_jet(family, j, axis_field, centre, half, -0.5 * channel[1], excess, jet)
+        for m in range(JET):
+            jet[m] *= channel[2] ** -channel[1]
+    else:
+        fill_link_jet(family, j, axis_field, centre, half, 0.0, excess, jet)
+
+
+@inner_kernel
+def fill_link_jet(family, j, axis_field, centre, half, more, excess, jet):
+    """Fill the jet of point j over ``|r|^(2 more)``, times an excess gain."""
     offset, matrix = scratch(3), scratch(3, 3)
     turned_field(axis_field, family.turn, j, offset, matrix)
     r, u, c = scratch(3), scratch(3), scratch(4)
@@ -223,36 +238,36 @@ def link_jet(family, j, axis_field, centre, half, jet):
     share, axes = isotropic_share(family.ground_leaks, j), family.ground_axes
     if share > 0.0:
         count = entries(family.leak, matrix, r, u, c, dc, hc)
-        quotient_jet(matrix, r, u, half, count, 2.0, c, dc, hc, hr, jet)
+        quotient_jet(matrix, r, u, half, count, 2.0 + more, excess, c, dc, hc, hr, jet)
     if share < 1.0:
         of_dipole = scratch(JET)
-        dipole_jet(family.leak, axes, j, matrix, r, half, u, c, dc, hc, hr, of_dipole)
+        dipole_jet(family.leak, axes, j, matrix, r, half, more, excess, u, c, dc, hc, hr, of_dipole)
         for m in range(JET):
             jet[m] = (share * jet[m] if share > 0.0 else 0.0) + (1.0 - share) * of_dipole[m]
 
 
 @inner_kernel
-def dipole_jet(leak, axes, j, matrix, r, half, u, c, dc, hc, hr, jet):
+def dipole_jet(leak, axes, j, matrix, r, half, more, excess, u, c, dc, hc, hr, jet):
     """Fill the jet of point j, which has a dipole; the arrays from c to hr are scratch."""
     if axes is not None:
         v = axes[j]
         dipole_entry(matrix, r, v, half, u, c, dc, hc, hr)
-        quotient_jet(matrix, r, u, half, np.int64(1), 3.0, c, dc, hc, hr, jet)
+        quotient_jet(matrix, r, u, half, np.int64(1), 3.0 + more, excess, c, dc, hc, hr, jet)
         if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
             leaking, still = scratch(JET), zeroed(3, 3)
             entries(0.0, still, r, v, c, dc, hc)
             hr[:, :, :] = 0.0
-            quotient_jet(still, r, v, half, np.int64(3), 2.0, c, dc, hc, hr, leaking)
+            quotient_jet(still, r, v, half, np.int64(3), 2.0 + more, excess, c, dc, hc, hr, leaking)
             for m in range(JET):
                 jet[m] = (1.0 - leak) * jet[m] + leak * leaking[m]
 
 
 @inner_kernel
-def quotient_jet(matrix, r, u, half, count, power, c, dc, hc, hr, jet):
+def quotient_jet(matrix, r, u, half, count, power, excess, c, dc, hc, hr, jet):
     """Fill the jet of ``n / (|u|^2 s^power)``, ``s = |r|^2``, n being the sum of the squares of entries.
 
     At the centre stand r, u with its derivative (that of r is -I), and so many entries c with their gradients
-    dc and Hessians hc, which may be off by hr in the box.
+    dc and Hessians hc, which may be off by hr in the box. An excess gain (:mod:`.excess`) multiplies it all.
     """
     # |r|^2 and |u|^2, at the centre and over the box, and their gradients over themselves
     s, b, swing = dot(r, r), dot(u, u), scratch(3)
@@ -260,7 +275,7 @@ def quotient_jet(matrix, r, u, half, count, power, c, dc, hc, hr, jet):
     s_range, b_range = square_range_about(r, half), square_range_about(u, swing)
     sigma, beta, dn, boxed = scratch(3, 2), scratch(3, 2), scratch(3, 2), scratch(4, 4, 2)
     n, n_low, n_high = enclose_entries(count, half, c, dc, hc, hr, boxed)
-    w = weight_of(b, s, power)
+    w = weight_of(excess, b, s, power)
     jet[0] = n * w
     for i in range(3):
         db = change = slope = low = high = 0.0
@@ -274,13 +289,22 @@ def quotient_jet(matrix, r, u, half, count, power, c, dc, hc, hr, jet):
                 change += 2.0 * abs(matrix[m, i] * matrix[m, k]) * half[k]
         jet[SLOPE + i] = w * (slope - n * (db / b - 2.0 * power * r[i] / s))
         dn[i, 0], dn[i, 1] = low, high
-        sigma[i, 0], sigma[i, 1] = relative_slopes(-2.0 * r[i], 2.0 * half[i], s_range)
-        beta[i, 0], beta[i, 1] = relative_slopes(db, change, b_range)
-    w_range = weight_of(b_range[1], s_range[1], power), weight_of(b_range[0], s_range[0], power)
-    jet[LEAST], jet[MOST] = n_low * w_range[0], min(n_high * w_range[1], 1.0 / s_range[0])
+        ends = -2.0 * (r[i] + half[i]), -2.0 * (r[i] - half[i])
+        sigma[i, 0], sigma[i, 1] = quotient(ends, s_range)
+        beta[i, 0], beta[i, 1] = quotient((db - change, db + change), b_range)
+    w_low = weight_of(excess, b_range[1], s_range[1], power)
+    w_high = weight_of(excess, b_range[0], s_range[0], power)
+    if excess is not None:
+        for i in range(3):
+            jet[SLOPE + i] = excess[0, 0] * (jet[SLOPE + i] + jet[0] * excess[1 + i, 0])
+        jet[0] *= excess[0, 0]
+        w_low, w_high = w_low * excess[0, 1], w_high * excess[0, 2]
+    jet[LEAST], jet[MOST] = n_low * w_low, n_high * w_high
+    if excess is None:
+        jet[MOST] = min(jet[MOST], 1.0 / s_range[0])
     for e in range(6):
         i, k = entry(e)
-        first_low, first_high, low, high = of_gradients(i, k, power, dn, beta, sigma)
+        first_low, first_high, low, high = of_gradients(i, k, power, excess, dn, beta, sigma)
         x, y = bend_of_squares(count, i, k, hc, hr, boxed)
         first_low, first_high = first_low + x, first_high + y
         gram = 0.0
@@ -290,6 +314,8 @@ def quotient_jet(matrix, r, u, half, count, power, c, dc, hc, hr, jet):
         high -= gram / b_range[1 if gram > 0.0 else 0]
         if i == k:
             low, high = low - 2.0 * power / s_range[0], high - 2.0 * power / s_range[1]
+        if excess is not None:
+            low, high = low + excess[4 + e, 1], high + excess[4 + e, 2]
         x, y = product((n_low, n_high), (low, high))
-        low, high = product(w_range, (first_low + x, first_high + y))
+        low, high = product((w_low, w_high), (first_low + x, first_high + y))
         jet[BEND + e], jet[RADIUS + e] = 0.5 * (low + high), 0.5 * (high - low)

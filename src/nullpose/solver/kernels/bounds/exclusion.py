@@ -49,6 +49,7 @@ from nullpose.solver.kernels.bounds.node import (
 from nullpose.solver.kernels.bounds.records import WORLD
 from nullpose.solver.kernels.compiler.jit import inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
+from nullpose.solver.kernels.linear_algebra.channel import most_over_square
 from nullpose.solver.kernels.linear_algebra.forms import congruence, form_value
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_identity,
@@ -156,7 +157,7 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
         weight = row[WEIGHT + s]
         isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
         j = family.numerator_point[k]
-        bend, _ = expand_point(family, j, frame, centre, half, form, form_slopes)
+        bend, _ = expand_point(family, j, True, frame, centre, half, form, form_slopes)
         add_with_slopes(weight * strength, form, form_slopes, matrix, slopes)
         add_identity(weight * isotropic, matrix)
         size = isotropic + strength * (form[0] + form[1] + form[2])
@@ -306,9 +307,12 @@ def out_of_reach(family, domain, row):
     """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
     centre, half, row[NU] = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
     for k in range(family.numerator_weight.shape[0]):
-        square = min_square(family.points_m, family.numerator_point[k], centre, half)
-        least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
-        if (family.numerator_isotropic[k] - least) * square + family.numerator_weight[k] < 0.0:
+        j, least = (
+            family.numerator_point[k],
+            row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]],
+        )
+        most = most_over_square(family.channels, j, min_square(family.points_m, j, centre, half))
+        if family.numerator_isotropic[k] - least + family.numerator_weight[k] * most < 0.0:
             row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
     border = forbidding(domain, centre, half)

@@ -1,10 +1,8 @@
 """Link forms over a box of positions: value, first derivatives and a bound on the second.
 
 The frame may stand still, or turn with the direction to a point, so that the form of that point keeps its
-null along the third axis. Along a straight line through the box's centre that direction turns about a fixed
-axis, at a rate of at most 1/rho and with an angular acceleration of at most 1/rho^2; from this the second
-derivative of ``R^T T R`` is bounded. The proof is in the documentation, "The certificate explained" (lemmas
-1 and 2).
+null along the third axis. The second derivative is bounded by the rules of ``link_field.py``. The proof is in
+the documentation, "The certificate explained" (lemmas 1 and 2).
 
 Forms are kept as (xx, yy, zz, xy, xz, yz), in the frame at the box's centre.
 """
@@ -13,21 +11,22 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solver.kernels.bounds.constants import (
-    ANCHOR_FALL,
-    ANCHOR_RISE,
-    FORM_FALL,
-    FORM_MIXED,
-    FORM_RISE,
-    FORM_SWING,
+from nullpose.solver.kernels.bounds.link_field import (
+    amplitude,
+    anchor_fall,
+    fall_of,
+    rise_of,
+    scaled_inverse,
+    turned,
 )
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
+from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.forms import seen_from
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
-from nullpose.solver.kernels.linear_algebra.symmetric import squared_distance, tangents
+from nullpose.solver.kernels.linear_algebra.symmetric import tangents
 from nullpose.solver.kernels.linear_algebra.vectors import (
     along,
     cross,
@@ -98,24 +97,48 @@ def fill_anchor(leak, frame, form, slopes):
 
 
 @kernel
-def expand_point(family, j, frame, centre, half, form, slopes):
+def expand_point(family, j, is_above, frame, centre, half, form, slopes):
     """Fill the form of point j at the centre and its derivative along each world axis.
 
     Points with a turn of their own are looked at in the frame at rest only.
 
-    Returns an upper and a lower bound on the second derivative along any unit direction, anywhere in the
-    box. For the anchor of a frame that turns towards it they hold on the first two axes, and multiplied by
-    the leak on the third, as the form does.
+    Returns a bound on its second derivative along any unit direction, anywhere in the box: from above if
+    ``is_above`` says so, else on minus it; and one on that of the link vector. For the anchor of a frame
+    that turns towards it the first holds on the first two axes, and multiplied by the leak on the third, as
+    the form does.
     """
-    points, turn, leak = family.points_m, family.turn, family.leak
+    a = min_distance(family.points_m, j, centre, half)
+    field = amplitude(family.channels, family.points_m, j, is_above, centre, half)
+    reach = scaled_inverse(field, a)
+    if frame.kind == TOWARDS_POINT and j == frame.anchor:
+        fill_anchor(family.leak, frame, form, slopes)
+        bend = rise_of(reach, reach) if is_above else anchor_fall(field, a)
+    else:
+        fill_form(family, j, frame, centre, form, slopes)
+        seen = turned(reach, 1.0 / frame.least_radius_m)
+        bend, reach = rise_of(reach, seen) if is_above else fall_of(seen), seen
+    scale_form(family.channels, field, form, slopes)
+    return bend, reach.bend
+
+
+@inner_kernel
+def scale_form(channels, field, form, slopes):
+    """Multiply a form and its derivatives by the square of an amplitude."""
+    if channels is not None:
+        for k in range(6):
+            for i in range(3):
+                slopes[i, k] *= field.value * field.value
+                slopes[i, k] += 2.0 * field.value * field.gradient[i] * form[k]
+            form[k] *= field.value * field.value
+
+
+@inner_kernel
+def fill_form(family, j, frame, centre, form, slopes):
+    """Fill the form of point j, without its channel's excess, and its derivatives."""
+    turn, leak = family.turn, family.leak
     bent = 1.0 - leak
-    x, y, z = seen_from(points, turn, j, centre, frame.basis)
+    x, y, z = seen_from(family.points_m, turn, j, centre, frame.basis)
     basis, turns = turn[j] if turn.shape[0] > 0 else frame.basis, frame.kind == TOWARDS_POINT
-    square = min_square(points, j, centre, half)
-    beyond = 1.0 / (square * square)
-    if turns and j == frame.anchor:
-        fill_anchor(leak, frame, form, slopes)
-        return ANCHOR_RISE * beyond, -ANCHOR_FALL * beyond
     i2 = 1.0 / (x * x + y * y + z * z)
     i4 = i2 * i2
     form[0] = (leak * x * x + y * y + z * z) * i4
@@ -139,12 +162,13 @@ def expand_point(family, j, frame, centre, half, form, slopes):
         slopes[i, 3] = -(x * v + y * u) * b4 + k * x * y
         slopes[i, 4] = -(x * w + z * u) * b4 + k * x * z
         slopes[i, 5] = -(y * w + z * v) * b4 + k * y * z
-    if not turns:
-        return FORM_RISE * beyond, -FORM_FALL * beyond
-    swing = 1.0 / (square * frame.least_radius_m * frame.least_radius_m)
-    mixed = math.sqrt(beyond * swing)  # 1 / (a^3 rho), for a the distance and rho that of the anchor
-    more = FORM_MIXED * mixed + FORM_SWING * swing
-    return FORM_RISE * beyond + more, -(FORM_FALL * beyond + more)
+
+
+@inner_kernel
+def reach_of_link(family, j, is_above, centre, half):
+    """Return the reach of point j's link vector over a box, in a frame at rest."""
+    field = amplitude(family.channels, family.points_m, j, is_above, centre, half)
+    return scaled_inverse(field, min_distance(family.points_m, j, centre, half))
 
 
 @inner_kernel
@@ -154,9 +178,10 @@ def strongest_point(family, centre):
     anchor = -1
     for e in range(family.denominator_weight.shape[0]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
-        d = squared_distance(family.points_m[j], centre)
-        if weight > strongest * d:
-            strongest, anchor = weight / d, j
+        r = minus(row_of(family.points_m, j), centre)
+        received = weight * excess_at(family.channels, j, r) / dot(r, r)
+        if received > strongest:
+            strongest, anchor = received, j
     return anchor
 
 
@@ -188,15 +213,14 @@ def best_frame(family, is_horizontal, row):
     still = turning = 0.0
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
-        square = min_square(points, family.numerator_point[k], centre, half)
-        a = math.sqrt(square)
-        scale = row[WEIGHT + s] * family.numerator_weight[k] / (square * square)
-        still += FORM_RISE * scale
-        turning += scale * (FORM_RISE + a / rho * (FORM_MIXED + FORM_SWING * a / rho))
+        weight, j = row[WEIGHT + s] * family.numerator_weight[k], family.numerator_point[k]
+        reach = reach_of_link(family, j, True, centre, half)
+        still += weight * rise_of(reach, reach)
+        turning += weight * rise_of(reach, turned(reach, 1.0 / rho))
     for e in range(family.denominator_weight.shape[0]):
-        a = min_distance(points, family.denominator_point[e], centre, half)
-        scale = row[LEVEL] * family.denominator_weight[e] / (a * a * a * a)
-        still += FORM_FALL * scale
-        if family.denominator_point[e] != anchor:
-            turning += scale * (FORM_FALL + a / rho * (FORM_MIXED + FORM_SWING * a / rho))
+        j, weight = family.denominator_point[e], row[LEVEL] * family.denominator_weight[e]
+        reach = reach_of_link(family, j, False, centre, half)
+        still += weight * fall_of(reach)
+        if j != anchor:
+            turning += weight * fall_of(turned(reach, 1.0 / rho))
     return (TOWARDS_POINT if turning < still else WORLD), anchor

@@ -11,6 +11,7 @@ from pathlib import Path
 import numba
 from numba import config
 
+from nullpose.channel import elevation, model
 from nullpose.objectives import Ratios, ratios
 from nullpose.problem import records
 from nullpose.solver.kernels.compiler.notices import OTHER_NUMBA, UNCACHED, warn_once
@@ -83,7 +84,7 @@ def _drop_outdated(cache_path: str) -> None:
     A cached kernel holds the code of those it calls, but numba compares only the file of the kernel itself.
     """
     kernels = sorted(Path(__file__).parents[1].rglob("*.py"))
-    sources = [*kernels, Path(records.__file__), Path(ratios.__file__)]
+    sources = [*kernels, *(Path(str(module.__file__)) for module in (records, ratios, model, elevation))]
     present = sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
     stamp = Path(cache_path) / "kernels.sha256"
     with contextlib.suppress(OSError):
@@ -104,4 +105,4 @@ def entry_of(kernel, ratios: Ratios):
         kernel: any whose first argument are ratios.
         ratios: those it will be called with.
     """
-    return getattr(kernel, "entries", {}).get(ratios.ground_axes is not None, kernel)
+    return getattr(kernel, "entries", {}).get(ratios.variant, kernel)

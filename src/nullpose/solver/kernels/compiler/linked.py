@@ -166,7 +166,7 @@ class LinkedDispatcher(CPUDispatcher):
 
     def __init__(self, function, options: dict[str, object]) -> None:
         super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
-        self.entries: dict[bool, object] = {}
+        self.entries: dict[tuple[bool, ...], object] = {}
         self._part = Part(function, options)
         self.makes_arrays = self._part.makes_arrays
 
@@ -194,5 +194,6 @@ class LinkedDispatcher(CPUDispatcher):
         super().add_overload(cres)
         for first in cres.signature.args[:1]:
             if isinstance(first, types.NamedTuple) and first.instance_class is Ratios:
-                has_dipoles = first.types[Ratios._fields.index("ground_axes")] is not types.none
-                self.entries[has_dipoles] = cres.entry_point
+                kinds = dict(zip(Ratios._fields, first.types, strict=True))
+                variant = tuple(kinds[name] is not types.none for name in ("ground_axes", "channels"))
+                self.entries[variant] = cres.entry_point

@@ -6,6 +6,7 @@ import math
 
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
+from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
 from nullpose.solver.kernels.linear_algebra.symmetric import add_identity
 from nullpose.solver.kernels.linear_algebra.vectors import along, dot, minus, row, scaled
@@ -120,6 +121,7 @@ def add_dipole_form(family, axes, j, basis, r, weight, out):
 @inner_kernel
 def add_point(family, j, p, basis, weight, isotropic, out):
     """Add ``weight * M`` of point j and ``isotropic * I``, in a frame, to a form of six numbers."""
+    weight *= excess_at(family.channels, j, minus(row(family.points_m, j), p))
     x, y, z = seen_from(family.points_m, family.turn, j, p, basis)
     share = isotropic_share(family.ground_leaks, j)
     add_form(x, y, z, family.leak, share * weight, isotropic, out)

@@ -3,7 +3,8 @@
 With ``r = q - p`` the link form of a point is ``h(p, u) = (|u x r|^2 + l (u.r)^2) / |r|^4``, l being the
 antenna's leak: for a unit axis, gain over ``|r|^2`` (design family (F); paper eqs. 1.2 to 1.4). That of a
 point with a dipole along v is ``(1 - l) B^2 / |r|^6 + l |u|^2 |v x r|^2 / |r|^4``, ``B = (u x r).(v x r)``.
-Of a dipole with a leak f of its own these are the parts f and ``1 - f``.
+Of a dipole with a leak f of its own these are the parts f and ``1 - f``. The excess gain of the point's
+channel multiplies all of them.
 Ratio k is ``N_k / D_g(k)`` with ``N = n0 |u|^2 + w h`` and ``D = d0 |u|^2 + sum_j b_j h_j``; it does not
 depend on the length of ``u``, so an axis that is an affine function of the position needs no normalising and
 no second derivative of its own.
@@ -15,6 +16,7 @@ import math
 
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
+from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet
 from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, minus, row, scaled, store
 
 
@@ -52,10 +54,12 @@ def link_form(family, j, p, u):
     """Return the link of point j, without cancellation beside the null."""
     r, seen = minus(row(family.points_m, j), p), seen_axis(family.turn, j, u)
     ahead, side, square = dot(seen, r), cross(seen, r), dot(r, r)
-    link = (dot(side, side) + family.leak * ahead * ahead) / (square * square)
+    link = excess_at(family.channels, j, r) / (square * square)
+    link *= dot(side, side) + family.leak * ahead * ahead
     share = isotropic_share(family.ground_leaks, j)
     if share < 1.0:
         of_dipole = dipole_link(family.leak, family.ground_axes, j, r, seen)
+        of_dipole *= excess_at(family.channels, j, r)
         return share * link + (1.0 - share) * of_dipole
     return link
 
@@ -102,7 +106,36 @@ def min_log_ratio(family, p, u, log_denominators, out):
 
 @inner_kernel
 def add_form(family, j, weight, p, u, grad, hess, second):
-    """Return ``weight * h_j``; add its derivatives in (p, u), as ``add_parts`` does for the axis seen."""
+    """Return ``weight * h_j``; add its derivatives in (p, u)."""
+    return add_excess(family, family.channels, j, weight, p, u, grad, hess, second)
+
+
+@inner_kernel
+def add_excess(family, channels, j, weight, p, u, grad, hess, second):
+    """Do what ``add_form`` does, by the product rule for the excess gain."""
+    if channels is None:
+        return add_turned_form(family, j, weight, p, u, grad, hess, second)
+    slopes, bends, g, h = scratch(3), scratch(3, 3), zeroed(6), zeroed(6, 6)
+    gain = excess_jet(channels[j], minus(row(family.points_m, j), p), slopes, bends)
+    value = add_turned_form(family, j, gain * weight, p, u, g, h, second)
+    for i in range(6):
+        grad[i] += g[i] + (value * slopes[i] if i < 3 else 0.0)
+    if second:
+        for i in range(6):
+            for k in range(6):
+                hess[i, k] += h[i, k]
+                if i < 3:
+                    hess[i, k] += slopes[i] * g[k]
+                if k < 3:
+                    hess[i, k] += g[i] * slopes[k]
+                if i < 3 and k < 3:
+                    hess[i, k] += value * bends[i, k]
+    return value
+
+
+@inner_kernel
+def add_turned_form(family, j, weight, p, u, grad, hess, second):
+    """Do what ``add_form`` does without the excess gain, as ``add_parts`` does for the axis seen."""
     turn = family.turn
     if turn.shape[0] == 0:
         return add_parts(family, j, weight, p, u, grad, hess, second)

@@ -14,9 +14,11 @@ import numpy as np
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.axis import best_axis_of_forms, smallest_form
+from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.forms import bilinear, fill_forms
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, normalise, squared_distance, tangents
+from nullpose.solver.kernels.linear_algebra.vectors import minus
 
 _TIE = 1e-11
 
@@ -56,7 +58,8 @@ def maximum_gain_value(family, p, axis):
     worst = -1
     for k in range(ratios):
         point = family.points_m[family.numerator_point[k]]
-        if level >= family.numerator_weight[k] / squared_distance(point, p) * (1.0 - _TIE):
+        excess = excess_at(family.channels, family.numerator_point[k], minus(point, p))
+        if level >= excess * family.numerator_weight[k] / squared_distance(point, p) * (1.0 - _TIE):
             worst = k
     if worst >= 0:
         point = family.points_m[family.numerator_point[worst]]

@@ -14,6 +14,7 @@ import numpy as np
 from nullpose.problem.records import AFFINE_AXIS
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
+from nullpose.solver.kernels.linear_algebra.channel import reach_of
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
@@ -46,7 +47,7 @@ def cut_box(family, low, high, level, box_low, box_high):
     for k in range(nw.shape[0]):
         least = d0[den[k]] * math.exp(level) - n0[k]
         if least > 0.0:
-            reach = math.sqrt(nw[k] / least)
+            reach = reach_of(family.channels, npt[k], nw[k] / least)
             for i in range(3):
                 box_low[i] = max(box_low[i], points[npt[k], i] - reach)
                 box_high[i] = min(box_high[i], points[npt[k], i] + reach)

@@ -1,0 +1,179 @@
+"""A link over a box of positions: what bounds its form's second derivative, and its channel's amplitude.
+
+A link is the squared length of something linear in the axis: ``|u x w|^2`` with ``w = h r / |r|^2``, h being
+the amplitude of the point's channel, the root of its excess gain. Four rules bound it along any unit
+direction: *invert* (``r / |r|^2``), *scale* by h, *turn* with a frame, and *square*. Proofs:
+docs/certificate.md, lemma 2.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from nullpose.channel.elevation import DB_AVERAGE
+from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.solver.kernels.bounds.constants import DIRECTION_BEND
+from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.linear_algebra.channel import elevation_gain, sight_probability, steepness
+from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of, square_range
+
+
+class Amplitude(NamedTuple):
+    """The amplitude of a channel over a box.
+
+    Args:
+        value: at the centre; or the end of its range in the box that makes the bound valid, with no slope.
+        gradient: by the position, at the centre.
+        most: the largest in the box.
+        slope: a bound on its first derivative along any unit direction, in the box.
+        bend: likewise on its second derivative.
+    """
+
+    value: float
+    gradient: tuple[float, float, float]
+    most: float
+    slope: float
+    bend: float
+
+
+class Reach(NamedTuple):
+    """Bounds over a box on the length of a vector and of its first two derivatives along a unit direction."""
+
+    length: float
+    slope: float
+    bend: float
+
+
+@inner_kernel
+def scaled_inverse(field, a):
+    """Return the reach of ``h r / |r|^2``, a being the least length of r: the rules *invert* and *scale*.
+
+    ``H0 / a``, ``H0 / a^2 + H1 / a`` and ``2 H0 / a^3 + 2 H1 / a^2 + H2 / a``.
+    """
+    inverse = 1.0 / a
+    length = field.most * inverse
+    slope = (length + field.slope) * inverse
+    return Reach(length, slope, (2.0 * slope + field.bend) * inverse)
+
+
+@inner_kernel
+def turned(reach, rate):
+    """Return the reach of a vector in a frame that turns at a rate of at most so much: the rule *turn*."""
+    bend = reach.bend + (2.0 * reach.slope + DIRECTION_BEND * reach.length * rate) * rate
+    return Reach(reach.length, reach.slope + reach.length * rate, bend)
+
+
+@inner_kernel
+def rise_of(reach, seen):
+    """Bound the second derivative of a form from above: the rule *square*.
+
+    Args:
+        reach: of the link vector at rest; turning does not change its length.
+        seen: the same in the frame.
+    """
+    along = reach.slope * reach.slope + reach.length * reach.bend
+    return along + seen.slope * seen.slope + seen.length * seen.bend
+
+
+@inner_kernel
+def fall_of(seen):
+    """Bound minus the second derivative of a form from above: the rule *square*."""
+    return 2.0 * seen.length * seen.bend
+
+
+@inner_kernel
+def anchor_fall(field, a):
+    """Bound minus the second derivative of ``(h / |r|)^2``: at least ``2 (h / |r|) (h / |r|)''``."""
+    inverse = 1.0 / a
+    bend = field.bend + (2.0 * field.slope + field.most * inverse) * inverse
+    return 2.0 * field.most * inverse * bend * inverse
+
+
+@inner_kernel
+def amplitude(channels, points, j, is_above, centre, half):
+    """Return the amplitude of point j's channel over a box that it is outside of.
+
+    Args:
+        channels: their rows, or None.
+        points: (m, 3).
+        j: which point.
+        is_above: whether the form is to be bounded from above, else from below.
+        centre: of the box.
+        half: its half sides.
+    """
+    if channels is not None:
+        row, r = channels[j], minus(row_of(points, j), centre)
+        least, most = square_range(points[j], centre, half, 3)
+        if row[0] == BY_DISTANCE:
+            return distance_amplitude(row, r, least, most)
+        if row[0] == BY_ELEVATION:
+            return elevation_amplitude(row, r, least, is_above, points[j], centre, half)
+    return Amplitude(1.0, (0.0, 0.0, 0.0), 1.0, 0.0, 0.0)
+
+
+@inner_kernel
+def distance_amplitude(row, r, least, most):
+    """Return the amplitude ``(d / d0)^c`` over squared distances from least to most."""
+    c, unit, square = 0.5 * row[1], row[2] * row[2], dot(r, r)
+    value, near = (square / unit) ** (0.5 * c), (least / unit) ** (0.5 * c)
+    top = near if c < 0.0 else (most / unit) ** (0.5 * c)
+    by = -c * value / square
+    slope = abs(c) * near / math.sqrt(least)  # falls with the distance: c is less than 1
+    return Amplitude(
+        value,
+        (by * r[0], by * r[1], by * r[2]),
+        top,
+        slope,
+        slope * max(1.0, abs(c - 1.0)) / math.sqrt(least),
+    )
+
+
+@inner_kernel
+def elevation_amplitude(row, r, least, is_above, point, centre, half):
+    """Return the amplitude of a channel by elevation, over squared distances of ``least`` or more."""
+    low, high = elevation_range(r, point, centre, half)
+    p_low, p_high = sight_probability(row, math.atan(low)), sight_probability(row, math.atan(high))
+    bottom, top = elevation_gain(row, p_low), elevation_gain(row, p_high)
+    # h' / h = g' / (2 g) and h'' / h = g'' / (2 g) - (g' / (2 g))^2
+    spread_low, spread_high = p_low * (1.0 - p_low), p_high * (1.0 - p_high)
+    spread = 0.25 if p_low < 0.5 < p_high else max(spread_low, spread_high)
+    first = 0.5 * steepness(row, bottom) * row[2] * spread
+    rest = 0.5 * steepness(row, top) * row[2] * min(spread_low, spread_high)
+    sign = 1.0 if row[4] == DB_AVERAGE else -1.0
+    ends = row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low)
+    shift = (rest, first) if sign > 0.0 else (-first, -rest)
+    second = first * max(abs(ends[0] + shift[0]), abs(ends[1] + shift[1]))
+    root = math.sqrt(top)
+    steep = max(abs(low), abs(high))
+    bend = 0.5 * (second + math.sqrt(second * second + 4.0 * first * first))
+    inverse = 1.0 / math.sqrt(least)
+    whole = Amplitude(
+        1.0,
+        (0.0, 0.0, 0.0),
+        root,
+        root * first * inverse,
+        root * max(first * steep, bend) * inverse * inverse,
+    )
+    level = math.hypot(r[0], r[1])
+    p = sight_probability(row, math.atan2(-r[2], level))
+    gain = elevation_gain(row, p)
+    value = math.sqrt(gain)
+    end = top if is_above else bottom
+    # first order, or the end of the range: whichever leaves out less
+    reach, square = scaled_inverse(whole, 1.0 / inverse), 0.5 * dot(half, half)
+    left_out = square * (reach.slope * reach.slope + reach.length * reach.bend)
+    if not left_out < abs(end - gain) * inverse * inverse + 3.0 * square * end * inverse**4:
+        return Amplitude(math.sqrt(end), (0.0, 0.0, 0.0), math.sqrt(end), 0.0, 0.0)
+    by = value * 0.5 * steepness(row, gain) * row[2] * p * (1.0 - p) / dot(r, r)
+    gradient = -by * r[2] * r[0] / level, -by * r[2] * r[1] / level, by * level
+    return Amplitude(value, gradient, whole.most, whole.slope, whole.bend)
+
+
+@inner_kernel
+def elevation_range(r, point, centre, half):
+    """Return the tangents of the least and of the largest elevation of a box, seen from a point."""
+    near, far = square_range(point, centre, half, 2)
+    near, far = math.sqrt(near), math.sqrt(far)
+    bottom, top = -r[2] - half[2], -r[2] + half[2]
+    return bottom / (far if bottom > 0.0 else near), top / (near if top > 0.0 else far)

@@ -1,0 +1,121 @@
+"""The excess gain of a point's channel at a position, and its derivatives (:mod:`nullpose.channel`).
+
+``g = (d / d0)^e`` by distance; ``1 - (1 - n) (1 - P)`` or ``n^(1 - P)`` by elevation, with the probability
+``P = 1 / (1 + exp(c - k theta))`` of line of sight. Derivatives are relative, ``g' / g``. Where no point has
+a channel, the rows are None, and what channels need is not even compiled.
+"""
+
+from __future__ import annotations
+
+import math
+
+from nullpose.channel.elevation import DB_AVERAGE
+from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch
+from nullpose.solver.kernels.linear_algebra.vectors import dot
+
+_ZENITH = 1e-12  # of the distance: directly above a point the elevation has no derivative
+
+
+@inner_kernel
+def sight_probability(row, elevation_rad):
+    """Return the probability of line of sight."""
+    return 1.0 / (1.0 + math.exp(row[1] - row[2] * elevation_rad))
+
+
+@inner_kernel
+def elevation_gain(row, probability):
+    """Return the excess gain at a probability of line of sight."""
+    if row[4] == DB_AVERAGE:
+        return row[3] ** (1.0 - probability)
+    return 1.0 - (1.0 - row[3]) * (1.0 - probability)
+
+
+@inner_kernel
+def steepness(row, gain):
+    """Return ``g' / g`` over ``k P (1 - P)``."""
+    return -math.log(row[3]) if row[4] == DB_AVERAGE else (1.0 - row[3]) / gain
+
+
+@inner_kernel
+def excess_at(channels, j, r):
+    """Return the excess gain of point j, r being the vector to it."""
+    if channels is not None:
+        row = channels[j]
+        if row[0] == BY_DISTANCE:
+            return (dot(r, r) / (row[2] * row[2])) ** (0.5 * row[1])
+        if row[0] == BY_ELEVATION:
+            return elevation_gain(row, sight_probability(row, math.atan2(-r[2], math.hypot(r[0], r[1]))))
+    return 1.0
+
+
+@inner_kernel
+def fill_elevation(r, slopes, bends):
+    """Fill the derivatives, by the position, of the elevation at a point; r is the vector to it.
+
+    First (3,) and second (3, 3): with ``(x, y, z) = -r``, ``q^2 = x^2 + y^2`` and ``s = |r|^2`` the first are
+    ``(-z x / q, -z y / q, q) / s``.
+    """
+    x, y, z, s = -r[0], -r[1], -r[2], dot(r, r)
+    level = max(math.hypot(x, y), _ZENITH * math.sqrt(s))
+    east, north = x / level, y / level
+    slopes[0], slopes[1], slopes[2] = -z * east / s, -z * north / s, level / s
+    outwards = 2.0 * z * level / (s * s)  # along (x, y)
+    across = -z / (level * s)  # horizontally across it
+    bends[0, 0] = outwards * east * east + across * north * north
+    bends[1, 1] = outwards * north * north + across * east * east
+    bends[0, 1] = bends[1, 0] = (outwards - across) * east * north
+    bends[0, 2] = bends[2, 0] = (z * z - level * level) * east / (s * s)
+    bends[1, 2] = bends[2, 1] = (z * z - level * level) * north / (s * s)
+    bends[2, 2] = -outwards
+
+
+@inner_kernel
+def excess_jet(row, r, slopes, bends):
+    """Return the excess gain of a channel; fill its relative derivatives by the position, (3,) and (3, 3)."""
+    slopes[:], bends[:, :] = 0.0, 0.0
+    s, e = dot(r, r), row[1]
+    if row[0] == BY_DISTANCE:
+        for i in range(3):
+            slopes[i] = -e * r[i] / s
+            for k in range(3):
+                bends[i, k] = e * (e - 2.0) * r[i] * r[k] / (s * s)
+            bends[i, i] += e / s
+        return (s / (row[2] * row[2])) ** (0.5 * e)
+    if row[0] == BY_ELEVATION:
+        angle = scratch(3)
+        fill_elevation(r, angle, bends)
+        p = sight_probability(row, math.atan2(-r[2], math.hypot(r[0], r[1])))
+        gain = elevation_gain(row, p)
+        first = steepness(row, gain) * row[2] * p * (1.0 - p)
+        second = first * row[2] * (1.0 - 2.0 * p) + (first * first if row[4] == DB_AVERAGE else 0.0)
+        for i in range(3):
+            slopes[i] = first * angle[i]
+            for k in range(3):
+                bends[i, k] = first * bends[i, k] + second * angle[i] * angle[k]
+        return gain
+    return 1.0
+
+
+@inner_kernel
+def reach_of(channels, j, square):
+    """Return how far off the gain of point j falls to one over ``square``, the farthest in any direction."""
+    if channels is not None:
+        row = channels[j]
+        if row[0] == BY_DISTANCE:
+            return (square * row[2] ** -row[1]) ** (1.0 / (2.0 - row[1]))
+    return math.sqrt(square)
+
+
+@inner_kernel
+def most_over_square(channels, j, square):
+    """Return the largest gain of point j, ``excess / d^2``, at a distance whose square is given or more.
+
+    It falls with the distance: by any power law, and in any elevation, where the excess is at most 1.
+    """
+    if channels is not None:
+        row = channels[j]
+        if row[0] == BY_DISTANCE:
+            return (square / (row[2] * row[2])) ** (0.5 * row[1]) / square
+    return 1.0 / square
