@@ -41,9 +41,9 @@ from nullpose.solver.kernels.bounds.node import (
     split_position,
 )
 from nullpose.solver.kernels.bounds.records import Workspace
-from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import most_over_square
+from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.forms import add_denominator
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
@@ -155,13 +155,13 @@ def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, a
     return FORESEEN, 1
 
 
-@inner_kernel
+@small_kernel
 def lone_ratio(family, row, below):
     """Check whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
     for k in range(family.numerator_weight.shape[0]):
         j = family.numerator_point[k]
         square = min_square(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL])
-        most = family.numerator_weight[k] * most_over_square(family.channels, j, square)
+        most = family.numerator_weight[k] * most_excess(family.channels, j, square) / square
         most += family.numerator_isotropic[k]
         if most < -below[family.denominator_of[k], MOST] * (1.0 - 1e-13):
             row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
@@ -169,7 +169,7 @@ def lone_ratio(family, row, below):
     return False
 
 
-@inner_kernel
+@small_kernel
 def examine_affine(family, domain, axis_field, goal, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half = row[HALF:LEVEL]

@@ -8,7 +8,7 @@ from nullpose.solver.kernels.bounds.constants import ROUNDING
 from nullpose.solver.kernels.bounds.expansion import expand_point
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT
-from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.forms import bilinear
 from nullpose.solver.kernels.linear_algebra.symmetric import (
@@ -21,7 +21,7 @@ from nullpose.solver.kernels.linear_algebra.vectors import dot
 _LARGEST_SHARE = 0.5
 
 
-@inner_kernel
+@small_kernel
 def add_scaled(weight, form, slopes, matrix, matrix_slopes):
     """Add a weighted form and its slopes to a matrix and its slopes."""
     add_multiple(weight, form, matrix)
@@ -51,7 +51,7 @@ def expand_denominator(family, g, level, frame, centre, half, out, out_slopes):
     return everywhere + ROUNDING * level * size, across
 
 
-@inner_kernel
+@small_kernel
 def group_weight(family, row, s):
     """Return the weight of a slot's denominator over all slots, or zero if an earlier slot has it."""
     den = family.denominator_of

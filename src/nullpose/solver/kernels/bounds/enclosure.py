@@ -15,7 +15,7 @@ import numpy as np
 
 from nullpose.channel.model import BY_DISTANCE
 from nullpose.solver.kernels.bounds.excess import EXCESS, fill_excess, product, quotient, square, total
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.forms import entry
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
@@ -209,7 +209,7 @@ def link_jet(family, j, is_above, axis_field, centre, half, jet):
     excess_link_jet(family, family.channels, j, is_above, axis_field, centre, half, jet)
 
 
-@inner_kernel
+@small_kernel
 def excess_link_jet(family, channels, j, is_above, axis_field, centre, half, jet):
     """Fill the jet of point j, with the excess gain of its channel if there are channels."""
     if channels is None:
@@ -226,7 +226,7 @@ def excess_link_jet(family, channels, j, is_above, axis_field, centre, half, jet
         fill_link_jet(family, j, axis_field, centre, half, 0.0, excess, jet)
 
 
-@inner_kernel
+@small_kernel
 def fill_link_jet(family, j, axis_field, centre, half, more, excess, jet):
     """Fill the jet of point j over ``|r|^(2 more)``, times an excess gain."""
     offset, matrix = scratch(3), scratch(3, 3)

@@ -47,9 +47,9 @@ from nullpose.solver.kernels.bounds.node import (
     cell_side,
 )
 from nullpose.solver.kernels.bounds.records import WORLD
-from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
-from nullpose.solver.kernels.linear_algebra.channel import most_over_square
+from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.forms import congruence, form_value
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_identity,
@@ -145,7 +145,7 @@ def add_side(form, weight, frame, matrix, matrix_slopes):
     return weight * CONSTANT_FORM_BEND * size / (frame.least_radius_m * frame.least_radius_m)
 
 
-@inner_kernel
+@small_kernel
 def add_numerators(family, axis_field, frame, row, matrix, slopes):
     """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
@@ -171,7 +171,7 @@ def add_numerators(family, axis_field, frame, row, matrix, slopes):
     return everywhere
 
 
-@inner_kernel
+@small_kernel
 def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
     """Fill the row's sum and its slopes and rest; return how much of the rest is the denominators'."""
     copy_into(below[0], matrix)
@@ -211,7 +211,7 @@ def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
         add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
 
 
-@inner_kernel
+@small_kernel
 def constraint_of(axis_field, row, number, form):
     """Fill the form of a cell's side (0 or 1) or of the band (2), but for a multiple of the identity.
 
@@ -302,7 +302,7 @@ def excludes_within_borders(domain, row, matrix, slopes, is_horizontal):
     return True
 
 
-@inner_kernel
+@small_kernel
 def out_of_reach(family, domain, row):
     """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
     centre, half, row[NU] = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
@@ -311,8 +311,9 @@ def out_of_reach(family, domain, row):
             family.numerator_point[k],
             row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]],
         )
-        most = most_over_square(family.channels, j, min_square(family.points_m, j, centre, half))
-        if family.numerator_isotropic[k] - least + family.numerator_weight[k] * most < 0.0:
+        square = min_square(family.points_m, j, centre, half)
+        most = family.numerator_weight[k] * most_excess(family.channels, j, square)
+        if (family.numerator_isotropic[k] - least) * square + most < 0.0:
             row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
     border = forbidding(domain, centre, half)

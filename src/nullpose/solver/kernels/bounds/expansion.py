@@ -21,7 +21,7 @@ from nullpose.solver.kernels.bounds.link_field import (
 )
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD, Frame
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.forms import seen_from
@@ -85,7 +85,7 @@ def frame_at(family, kind, anchor, centre, half, basis):
     return Frame(kind, anchor, basis, rho, min_distance(points, anchor, centre, half))
 
 
-@inner_kernel
+@small_kernel
 def fill_anchor(leak, frame, form, slopes):
     """Fill the anchor's form and its derivatives, exactly zero where they vanish, however strong it is."""
     form[:], slopes[:, :] = 0.0, 0.0
@@ -115,13 +115,13 @@ def expand_point(family, j, is_above, frame, centre, half, form, slopes):
         bend = rise_of(reach, reach) if is_above else anchor_fall(field, a)
     else:
         fill_form(family, j, frame, centre, form, slopes)
-        seen = turned(reach, 1.0 / frame.least_radius_m)
+        seen = turned(reach, 1.0 / frame.least_radius_m) if frame.kind == TOWARDS_POINT else reach
         bend, reach = rise_of(reach, seen) if is_above else fall_of(seen), seen
     scale_form(family.channels, field, form, slopes)
     return bend, reach.bend
 
 
-@inner_kernel
+@small_kernel
 def scale_form(channels, field, form, slopes):
     """Multiply a form and its derivatives by the square of an amplitude."""
     if channels is not None:
@@ -132,13 +132,14 @@ def scale_form(channels, field, form, slopes):
             form[k] *= field.value * field.value
 
 
-@inner_kernel
+@small_kernel
 def fill_form(family, j, frame, centre, form, slopes):
     """Fill the form of point j, without its channel's excess, and its derivatives."""
     turn, leak = family.turn, family.leak
     bent = 1.0 - leak
     x, y, z = seen_from(family.points_m, turn, j, centre, frame.basis)
     basis, turns = turn[j] if turn.shape[0] > 0 else frame.basis, frame.kind == TOWARDS_POINT
+    rate = 1.0 / frame.radius_m
     i2 = 1.0 / (x * x + y * y + z * z)
     i4 = i2 * i2
     form[0] = (leak * x * x + y * y + z * z) * i4
@@ -150,9 +151,9 @@ def fill_form(family, j, frame, centre, form, slopes):
         q0, q1, q2 = basis[i, 0], basis[i, 1], basis[i, 2]
         u, v, w = -q0, -q1, -q2
         if turns:
-            u += q0 * z / frame.radius_m
-            v += q1 * z / frame.radius_m
-            w -= (q1 * y + q0 * x) / frame.radius_m
+            u += q0 * z * rate
+            v += q1 * z * rate
+            w -= (q1 * y + q0 * x) * rate
         dot = x * u + y * v + z * w
         k = 4.0 * dot * b4 * i2
         base = -2.0 * dot * i4
@@ -164,14 +165,14 @@ def fill_form(family, j, frame, centre, form, slopes):
         slopes[i, 5] = -(y * w + z * v) * b4 + k * y * z
 
 
-@inner_kernel
+@small_kernel
 def reach_of_link(family, j, is_above, centre, half):
     """Return the reach of point j's link vector over a box, in a frame at rest."""
     field = amplitude(family.channels, family.points_m, j, is_above, centre, half)
     return scaled_inverse(field, min_distance(family.points_m, j, centre, half))
 
 
-@inner_kernel
+@small_kernel
 def strongest_point(family, centre):
     """Return the denominators' point that is received most strongly at the centre, or -1."""
     strongest = 0.0
@@ -179,9 +180,9 @@ def strongest_point(family, centre):
     for e in range(family.denominator_weight.shape[0]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
         r = minus(row_of(family.points_m, j), centre)
-        received = weight * excess_at(family.channels, j, r) / dot(r, r)
-        if received > strongest:
-            strongest, anchor = received, j
+        received, square = weight * excess_at(family.channels, j, r), dot(r, r)
+        if received > strongest * square:
+            strongest, anchor = received / square, j
     return anchor
 
 
@@ -193,7 +194,7 @@ def dipole_sine(axes, j, away):
     return 1.0
 
 
-@inner_kernel
+@small_kernel
 def best_frame(family, is_horizontal, row):
     """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
 

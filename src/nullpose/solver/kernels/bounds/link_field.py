@@ -14,7 +14,7 @@ from typing import NamedTuple
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
 from nullpose.solver.kernels.bounds.constants import DIRECTION_BEND
-from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.linear_algebra.channel import elevation_gain, sight_probability, steepness
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of, square_range
 
@@ -45,7 +45,7 @@ class Reach(NamedTuple):
     bend: float
 
 
-@inner_kernel
+@small_kernel
 def scaled_inverse(field, a):
     """Return the reach of ``h r / |r|^2``, a being the least length of r: the rules *invert* and *scale*.
 
@@ -57,14 +57,14 @@ def scaled_inverse(field, a):
     return Reach(length, slope, (2.0 * slope + field.bend) * inverse)
 
 
-@inner_kernel
+@small_kernel
 def turned(reach, rate):
     """Return the reach of a vector in a frame that turns at a rate of at most so much: the rule *turn*."""
     bend = reach.bend + (2.0 * reach.slope + DIRECTION_BEND * reach.length * rate) * rate
     return Reach(reach.length, reach.slope + reach.length * rate, bend)
 
 
-@inner_kernel
+@small_kernel
 def rise_of(reach, seen):
     """Bound the second derivative of a form from above: the rule *square*.
 
@@ -76,13 +76,13 @@ def rise_of(reach, seen):
     return along + seen.slope * seen.slope + seen.length * seen.bend
 
 
-@inner_kernel
+@small_kernel
 def fall_of(seen):
     """Bound minus the second derivative of a form from above: the rule *square*."""
     return 2.0 * seen.length * seen.bend
 
 
-@inner_kernel
+@small_kernel
 def anchor_fall(field, a):
     """Bound minus the second derivative of ``(h / |r|)^2``: at least ``2 (h / |r|) (h / |r|)''``."""
     inverse = 1.0 / a
@@ -90,7 +90,7 @@ def anchor_fall(field, a):
     return 2.0 * field.most * inverse * bend * inverse
 
 
-@inner_kernel
+@small_kernel
 def amplitude(channels, points, j, is_above, centre, half):
     """Return the amplitude of point j's channel over a box that it is outside of.
 

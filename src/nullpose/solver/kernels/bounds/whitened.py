@@ -7,7 +7,7 @@ import numpy as np
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS
 from nullpose.solver.kernels.bounds.exclusion import has_horizontal_axes
 from nullpose.solver.kernels.bounds.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
-from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.forms import (
     add_denominator,
@@ -33,7 +33,7 @@ def half_width(axis_field):
     return min(_THIN, _STEEP * min(c, 1.0 - c))
 
 
-@inner_kernel
+@small_kernel
 def fill_denominators(family, basis, centre, denominators, mean):
     """Fill every denominator at the centre, in the frame, and their mean."""
     groups = denominators.shape[0]
@@ -45,7 +45,7 @@ def fill_denominators(family, basis, centre, denominators, mean):
             mean[m] += denominators[g, m] / groups
 
 
-@inner_kernel
+@small_kernel
 def whiten(family, basis, row, denominator, denominators, mean, back):
     """Fill what whitens, and with several denominators each of them and their mean W, in the frame.
 
@@ -60,7 +60,7 @@ def whiten(family, basis, row, denominator, denominators, mean, back):
     inverse_factor(mean, back)
 
 
-@inner_kernel
+@small_kernel
 def ratio_form(family, is_horizontal, basis, row, whitening, k, out):
     """Fill the whitened form of one ratio at the centre."""
     denominators, mean, back = whitening
@@ -111,7 +111,7 @@ def constraint_forms(axis_field, basis, row, back, forms, places):
     return sides
 
 
-@inner_kernel
+@small_kernel
 def fill_values(family, centre, level, axis, size, values):
     """Fill every ratio's form at an axis of the world, whose squared length when whitened is ``size``.
 

@@ -45,6 +45,15 @@ def inner_kernel(function: Callable[..., object]):
     return _compiled(function, _LEAN, is_part=True)
 
 
+def small_kernel(function: Callable[..., object]):
+    """Return such a kernel that is put into each of its callers.
+
+    For a few operations, and where a family is handed on: to copy its arrays onto the stack takes as long as
+    forty multiplications.
+    """
+    return _compiled(function, _LEAN | {"forceinline": True}, is_part=True)
+
+
 def heap_kernel(function: Callable[..., object]):
     """Return a kernel that makes arrays whose size is not known when it is compiled."""
     return _compiled(function, _HEAP)

@@ -11,7 +11,7 @@ import math
 
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
-from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.vectors import dot
 
@@ -38,7 +38,7 @@ def steepness(row, gain):
     return -math.log(row[3]) if row[4] == DB_AVERAGE else (1.0 - row[3]) / gain
 
 
-@inner_kernel
+@small_kernel
 def excess_at(channels, j, r):
     """Return the excess gain of point j, r being the vector to it."""
     if channels is not None:
@@ -98,7 +98,7 @@ def excess_jet(row, r, slopes, bends):
     return 1.0
 
 
-@inner_kernel
+@small_kernel
 def reach_of(channels, j, square):
     """Return how far off the gain of point j falls to one over ``square``, the farthest in any direction."""
     if channels is not None:
@@ -108,14 +108,14 @@ def reach_of(channels, j, square):
     return math.sqrt(square)
 
 
-@inner_kernel
-def most_over_square(channels, j, square):
-    """Return the largest gain of point j, ``excess / d^2``, at a distance whose square is given or more.
+@small_kernel
+def most_excess(channels, j, square):
+    """Return the excess that bounds ``excess / d^2`` of point j beyond a distance whose square is given.
 
-    It falls with the distance: by any power law, and in any elevation, where the excess is at most 1.
+    By any power law the gain falls with the distance; by elevation the excess is at most 1.
     """
     if channels is not None:
         row = channels[j]
         if row[0] == BY_DISTANCE:
-            return (square / (row[2] * row[2])) ** (0.5 * row[1]) / square
-    return 1.0 / square
+            return (square / (row[2] * row[2])) ** (0.5 * row[1])
+    return 1.0

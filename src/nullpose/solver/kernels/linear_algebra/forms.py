@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
@@ -118,7 +118,7 @@ def add_dipole_form(family, axes, j, basis, r, weight, out):
             out[k] += (1.0 - family.leak) * s * a[m] * a[n]
 
 
-@inner_kernel
+@small_kernel
 def add_point(family, j, p, basis, weight, isotropic, out):
     """Add ``weight * M`` of point j and ``isotropic * I``, in a frame, to a form of six numbers."""
     weight *= excess_at(family.channels, j, minus(row(family.points_m, j), p))
@@ -129,7 +129,7 @@ def add_point(family, j, p, basis, weight, isotropic, out):
         add_dipole_form(family, family.ground_axes, j, basis, (x, y, z), (1.0 - share) * weight, out)
 
 
-@inner_kernel
+@small_kernel
 def add_denominator(family, g, weight, p, basis, out):
     """Add ``weight * D_g``, in a frame, to a form of six numbers."""
     add_identity(weight * family.denominator_isotropic[g], out)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet
 from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, minus, row, scaled, store
@@ -64,7 +64,7 @@ def link_form(family, j, p, u):
     return link
 
 
-@inner_kernel
+@small_kernel
 def numerator_at(family, k, p, u):
     """Return ``u^T N_k u`` at position p."""
     uu = dot(u, u)
@@ -72,7 +72,7 @@ def numerator_at(family, k, p, u):
     return family.numerator_isotropic[k] * uu + family.numerator_weight[k] * link
 
 
-@inner_kernel
+@small_kernel
 def denominator_at(family, g, p, u):
     """Return ``u^T D_g u`` at position p."""
     total = family.denominator_isotropic[g] * dot(u, u)
@@ -104,13 +104,13 @@ def min_log_ratio(family, p, u, log_denominators, out):
     return smallest
 
 
-@inner_kernel
+@small_kernel
 def add_form(family, j, weight, p, u, grad, hess, second):
     """Return ``weight * h_j``; add its derivatives in (p, u)."""
     return add_excess(family, family.channels, j, weight, p, u, grad, hess, second)
 
 
-@inner_kernel
+@small_kernel
 def add_excess(family, channels, j, weight, p, u, grad, hess, second):
     """Do what ``add_form`` does, by the product rule for the excess gain."""
     if channels is None:
@@ -133,7 +133,7 @@ def add_excess(family, channels, j, weight, p, u, grad, hess, second):
     return value
 
 
-@inner_kernel
+@small_kernel
 def add_turned_form(family, j, weight, p, u, grad, hess, second):
     """Do what ``add_form`` does without the excess gain, as ``add_parts`` does for the axis seen."""
     turn = family.turn
@@ -159,7 +159,7 @@ def add_turned_form(family, j, weight, p, u, grad, hess, second):
     return value
 
 
-@inner_kernel
+@small_kernel
 def add_parts(family, j, weight, p, u, grad, hess, second):
     """Do what ``add_seen_form`` does, for an isotropic point, one with a dipole, or a dipole that leaks."""
     value, share = 0.0, isotropic_share(family.ground_leaks, j)
