@@ -22,6 +22,7 @@ def family(random_problem: Callable) -> Family:
         turn=np.tile(np.eye(3), (len(plain.points_m), 1, 1)),
         ground_axes=np.tile([0.6, 0.0, 0.8], (len(plain.points_m), 1)),
         ground_leaks=np.full(len(plain.points_m), 0.1),
+        channels=np.tile([1.0, -0.5, 1.0, 0.0, 0.0], (len(plain.points_m), 1)),
         piece_start=np.array([0, 1]),
         piece_sides=np.array([[1.0, 3.0, 4.0, 0.0, 2.0]]),
         zone_kind=np.array([1]),

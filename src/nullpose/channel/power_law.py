@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from nullpose.channel.free_space import constant_channel
 from nullpose.channel.model import BY_DISTANCE, ChannelModel, FloatArray, LinkChannel
 
 
@@ -31,6 +32,8 @@ def power_law(exponent: float, reference_distance_m: float, is_interferer: bool 
         >>> float(channel.strength * channel.excess(channel.row, 100.0, 0.5) / 100.0**2)
         1e-06
     """
+    if exponent == 2.0:
+        return constant_channel(reference_distance_m**2)
     row = (BY_DISTANCE, 2.0 - exponent, reference_distance_m, 0.0, 0.0)
     return LinkChannel(reference_distance_m**2, row, distance_excess)
 

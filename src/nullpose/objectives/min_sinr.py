@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nullpose.objectives.ratios import FloatArray, Ratios, ground_of
+from nullpose.objectives.ratios import FloatArray, Ratios, channels_of, ground_of
 from nullpose.objectives.record import ObjectiveRecord, Quantity
 
 if TYPE_CHECKING:
@@ -21,11 +21,14 @@ def _ratios(scenario: Scenario) -> Ratios:
     """Build one ratio for each node, over a denominator that all share.
 
     ``(g0 P_k / (sigma^2 Gamma_k)) T(s_k - p)`` over ``I + sum_j (g0 J_j / sigma^2) T(m_j - p)``:
-    paper eq. 2.1 divided through by the noise and by the node's weight or required SINR.
+    paper eq. 2.1 divided through by the noise and by the node's weight or required SINR. Powers count by the
+    largest gain of the antenna on the ground and the strength of the channel.
     """
     n_nodes, n_jammers = len(scenario.nodes), len(scenario.jammers)
     scale = scenario.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
     axes, leaks, shares = ground_of(scenario, "node", "jammer")
+    channels, strengths = channels_of(scenario, "node", "jammer")
+    shares = shares * strengths
     return Ratios(
         points_m=scenario.source_positions_m,
         numerator_isotropic=np.zeros(n_nodes),
@@ -38,6 +41,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_weight=scale * scenario.jammer_powers_w * shares[n_nodes:],
         ground_axes=axes,
         ground_leaks=leaks,
+        channels=channels,
     )
 
 

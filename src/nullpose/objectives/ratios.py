@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.channel.model import CONSTANT, WIDTH
+
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
@@ -76,3 +78,21 @@ def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, Float
     parts = [antennas or (np.zeros((n, 3)), np.ones(n), np.ones(n)) for antennas, n in groups]
     axes, shares, leaks = (np.concatenate(part) for part in zip(*parts, strict=True))
     return (axes, leaks, shares) if np.any(axes) else (None, None, shares)
+
+
+def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[FloatArray | None, FloatArray]:
+    """Return the rows of the points' channels, (m + others, 5), and their strengths, (m,).
+
+    The rows are None where no link's gain over free space changes with the position.
+
+    Args:
+        scenario: with its points.
+        kinds: of the points, in order, as in ``"node"``.
+        others: the number of points after them that are in no ratio.
+    """
+    groups = [(getattr(scenario, f"{k}_channels"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
+    parts = [(c.rows, c.strengths) if c else (np.zeros((n, WIDTH)), np.ones(n)) for c, n in groups]
+    rows, strengths = (np.concatenate(part) for part in zip(*parts, strict=True))
+    if np.all(rows[:, 0] == CONSTANT):
+        return None, strengths
+    return np.vstack([rows, np.zeros((others, WIDTH))]), strengths

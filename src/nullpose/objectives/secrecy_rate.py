@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nullpose.objectives.ratios import FloatArray, Ratios, ground_of
+from nullpose.objectives.ratios import FloatArray, Ratios, channels_of, ground_of
 from nullpose.objectives.record import ObjectiveRecord, Quantity
 
 if TYPE_CHECKING:
@@ -33,6 +33,8 @@ def _ratios(scenario: Scenario) -> Ratios:
         scenario.jammer_positions_m.reshape(-1, 3),  # in no ratio, but to be kept clear of
     )
     axes, leaks, shares = ground_of(scenario, "node", "eavesdropper", "jammer")
+    channels, strengths = channels_of(scenario, "node", "eavesdropper", others=len(scenario.jammers))
+    shares = shares[: len(strengths)] * strengths
     return Ratios(
         points_m=np.vstack(positions),
         numerator_isotropic=np.ones(len(node)),
@@ -42,9 +44,10 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_isotropic=np.ones(n_eavesdroppers),
         denominator_start=np.arange(n_eavesdroppers + 1, dtype=np.int64),
         denominator_point=np.arange(n_nodes, n_nodes + n_eavesdroppers, dtype=np.int64),
-        denominator_weight=sent * shares[n_nodes : n_nodes + n_eavesdroppers] / scenario.eavesdropper_noise_w,
+        denominator_weight=sent * shares[n_nodes:] / scenario.eavesdropper_noise_w,
         ground_axes=axes,
         ground_leaks=leaks,
+        channels=channels,
     )
 
 

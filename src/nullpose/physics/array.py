@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas
+from nullpose.channel import PointChannels
 from nullpose.physics.error_case import ErrorCase
 from nullpose.physics.pose import Pose
 from nullpose.physics.sinr import received_power_w
@@ -97,12 +98,13 @@ def array_channels(
     reference_gain: float,
     ground: GroundAntennas | None = None,
     axis: FloatArray = _VERTICAL,
+    links: PointChannels | None = None,
 ) -> ComplexArray:
     """Evaluate the channel of every ground transmitter to the elements.
 
-    ``h_i = sqrt(g0 P_i sin^2(gamma_i)) / |r_i| a_i``, ``gamma_i`` being the angle between the dipoles and
-    the direction to the transmitter: the amplitude is that of the numerator of eq. 2.1, the phases are those
-    of :func:`steering_vectors`.
+    ``sqrt(g0 P_i sin^2(gamma_i)) h_i / |r_i| a_i``, ``gamma_i`` being the angle between the dipoles and the
+    direction to the transmitter: the amplitude is that of the numerator of eq. 2.1, with ``h_i^2`` the gain
+    over free space; the phases are those of :func:`steering_vectors`.
 
     Source: paper eqs. 1.2 and 2.1 for the amplitude.
 
@@ -114,11 +116,13 @@ def array_channels(
         reference_gain: path gain at 1 m, a power ratio.
         ground: the transmitters' antennas; None where all are isotropic.
         axis: of the dipoles, shape ``(..., 3)``, of unit length; vertical on a level vehicle.
+        links: the transmitters' channels; None where all are in free space with line of sight.
 
     Returns:
         Array of shape ``(..., m, K)``, in the square root of a watt.
     """
-    power_w = received_power_w(position_m, axis, points_m, powers_w, reference_gain, ground=ground)
+    sources = (points_m, powers_w, reference_gain)
+    power_w = received_power_w(position_m, axis, *sources, ground=ground, channels=links)
     return np.asarray(
         np.sqrt(power_w)[..., None] * steering_vectors(position_m, elements_wavelengths, points_m)
     )
@@ -248,6 +252,7 @@ def _both_channels(
         scenario.reference_gain,
         scenario.source_antennas,
         case.rotation_world[..., 2],
+        scenario.source_channels,
     )
     nodes = len(scenario.nodes)
     return channels[..., :nodes, :], channels[..., nodes:, :]

@@ -33,7 +33,7 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
 
     ``Gamma_i = (1 - <d_i, d_M>^2) P_i / (|p_i - p|^2 sigma^2)``, with ``d`` the unit directions: the jammer's
     power is gone from it. An antenna whose null is not perfect lets some of it in, and the nodes more;
-    antennas on the ground count as in :func:`link_gain`.
+    antennas on the ground count as in :func:`link_gain`, channels as in :func:`received_power_w`.
 
     Source: paper eq. 3.2.
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import GroundAntennas
+from nullpose.channel import PointChannels
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -17,6 +18,7 @@ def _snr(
     axis: ArrayLike,
     points_m: FloatArray,
     ground: GroundAntennas | None,
+    channels: PointChannels | None,
     noise_w: FloatArray,
 ) -> FloatArray:
     if scenario.transmitter is None:
@@ -24,14 +26,17 @@ def _snr(
     # The channel is reciprocal: a point receives from the drone what the drone would receive from it.
     powers_w = np.full(points_m.shape[-2], scenario.transmitter.transmit_power_w)
     link = (scenario.reference_gain, scenario.antenna_record)
-    return np.asarray(received_power_w(position_m, axis, points_m, powers_w, *link, ground) / noise_w)
+    return np.asarray(
+        received_power_w(position_m, axis, points_m, powers_w, *link, ground, channels) / noise_w
+    )
 
 
 def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
     """Evaluate the SNR of the drone's signal at every node, jamming counted as noise.
 
-    ``SNR_k = g0 G(gamma_k) P / (d_k^2 sigma_k^2)``, with ``P`` the drone's power and ``sigma_k^2`` the noise
-    of the node's receiver plus the jamming there, which does not depend on the pose.
+    ``SNR_k = g0 G(gamma_k) P h_k^2 / (d_k^2 sigma_k^2)``, with ``P`` the drone's power, ``h_k^2`` the
+    channel's gain over free space and ``sigma_k^2`` the noise of the node's receiver plus the jamming there,
+    which does not depend on the pose.
 
     Source: paper eqs. 1.2 to 1.4, with drone and node changing roles.
 
@@ -46,7 +51,8 @@ def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Floa
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    nodes = (scenario.node_positions_m, scenario.node_antennas, scenario.node_noise_w)
+    links = (scenario.node_antennas, scenario.node_channels)
+    nodes = (scenario.node_positions_m, *links, scenario.node_noise_w)
     return _snr(scenario, position_m, axis, *nodes)
 
 
@@ -69,7 +75,8 @@ def eavesdropper_snr(
         ValueError: the scenario has no transmitter.
     """
     points_m = scenario.eavesdropper_positions_m if points_m is None else points_m
-    eavesdroppers = (points_m, scenario.eavesdropper_antennas, scenario.eavesdropper_noise_w)
+    links = (scenario.eavesdropper_antennas, scenario.eavesdropper_channels)
+    eavesdroppers = (points_m, *links, scenario.eavesdropper_noise_w)
     return _snr(scenario, position_m, axis, *eavesdroppers)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas
+from nullpose.channel import PointChannels, excess_gain
 from nullpose.physics.gain import link_gain
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -19,11 +20,13 @@ def received_power_w(
     reference_gain: ArrayLike,
     antenna: Antenna = SHORT_DIPOLE,
     ground: GroundAntennas | None = None,
+    channels: PointChannels | None = None,
 ) -> FloatArray:
     """Evaluate the power that the drone receives from each ground transmitter.
 
-    ``g0 G_i P_i / |p_i - p|^2``, the numerator of eq. 2.1, with ``g0`` the path gain at 1 m (1 in the
-    paper) and ``G_i`` the gain of :func:`link_gain`.
+    ``g0 G_i P_i h_i^2 / |p_i - p|^2``, the numerator of eq. 2.1, with ``g0`` the path gain at 1 m (1 in the
+    paper), ``G_i`` the gain of :func:`link_gain`, and ``h_i^2`` that of the channel over free space
+    (:func:`nullpose.channel.excess_gain`; 1 in the paper).
 
     Source: paper eq. 2.1.
 
@@ -35,16 +38,18 @@ def received_power_w(
         reference_gain: path gain at 1 m, a power ratio.
         antenna: which antenna the drone has.
         ground: the transmitters' antennas; None where all are isotropic.
+        channels: theirs; None where all are in free space with line of sight.
 
     Returns:
-        Array of shape ``(..., m)``, watts. Line of sight and far field: valid beyond the keep-out radius.
+        Array of shape ``(..., m)``, watts. Far field: valid beyond the keep-out radius.
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     distance_sq = (to_points**2).sum(axis=-1)  # m^2
     gain = link_gain(position_m, axis, points_m, antenna, ground)
-    return np.asarray(
+    received_w = (
         np.asarray(reference_gain, dtype=float) * gain * np.asarray(powers_w, dtype=float) / distance_sq
     )
+    return np.asarray(received_w if channels is None else received_w * excess_gain(channels, to_points))
 
 
 def received_from_sources_w(
@@ -67,6 +72,7 @@ def received_from_sources_w(
         scenario.reference_gain,
         scenario.antenna_record,
         scenario.source_antennas,
+        scenario.source_channels,
     )
 
 
@@ -75,8 +81,9 @@ def sinr(
 ) -> FloatArray:
     """Evaluate the signal to interference-plus-noise ratio of every node.
 
-    ``Gamma_i = (G(gamma_i) P_i / d_i^2) / (sum_j G(gamma_j) J_j / d_j^2 + sigma^2)``, with the jammers summed
-    and every power scaled by the path gain at 1 m.
+    ``Gamma_i = (G(gamma_i) P_i h_i^2 / d_i^2) / (sum_j G(gamma_j) J_j h_j^2 / d_j^2 + sigma^2)``, with the
+    jammers summed and every power scaled by the path gain at 1 m; ``h^2`` is the channel's gain over free
+    space.
 
     Source: paper eq. 2.1, which has one jammer.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from nullpose.channel import excess_gain
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.problem.airspace import airspace_zones
@@ -14,7 +15,7 @@ LOUDEST = 1e16
 """The largest ratio of an interferer's power to the noise, without a null, that is solved."""
 
 
-def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
+def build_family(scenario: Scenario, *, any_antenna: bool = False, any_channel: bool = False) -> Family:
     """Build the family whose smallest ratio is what the scenario maximises.
 
     The objective's record says which ratios these are (:mod:`nullpose.objectives`).
@@ -22,9 +23,10 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
     Args:
         scenario: its units and names end here.
         any_antenna: whether the caller brings the gain of an antenna that is no dipole.
+        any_channel: whether the caller knows every channel, of a dipole.
 
     Raises:
-        UsageError: the antenna is no dipole.
+        UsageError: the antenna is no dipole, or a channel is not known to the caller.
         ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
     if not scenario.antenna_record.is_quadratic and not any_antenna:
@@ -32,6 +34,8 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
             f"antenna: given a {scenario.antenna_record.label}; allowed here: a dipole. For other antennas "
             "there are solve, evaluate and antenna compare"
         )
+    if not (any_channel and scenario.antenna_record.is_quadratic):
+        refuse_channels(scenario)
     ratios = scenario.objective_record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
@@ -39,12 +43,33 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False) -> Family:
     return family
 
 
+def refuse_channels(scenario: Scenario) -> None:
+    """Refuse a scenario with a link whose gain over free space changes with the position.
+
+    Raises:
+        UsageError: it has such a link.
+    """
+    if scenario.has_channels:
+        raise UsageError(
+            "channel: given a power law or line of sight by elevation; allowed for arrays, antennas with a "
+            'pattern, robust solving and certificates: free space, or average = "guaranteed"; solve and '
+            "evaluate know every channel for a dipole on the drone"
+        )
+
+
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
-    if not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():  # wherever they are
+    is_free = family.channels is None
+    if (
+        is_free and not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any()
+    ):  # wherever they are
         return
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
-    over_noise = family.denominator_weight / np.maximum(distance_m, family.keep_out_m) ** 2
+    distance_m = np.maximum(distance_m, family.keep_out_m)
+    over_noise = family.denominator_weight / distance_m**2
+    channels = getattr(scenario, f"{scenario.objective_record.interferers.removesuffix('s')}_channels")
+    if channels is not None:  # its gain is largest right below the drone
+        over_noise *= excess_gain(channels, distance_m[:, None] * [0.0, 0.0, -1.0]) / channels.strengths
     if not (over_noise > LOUDEST).any():
         return
     index = int(family.denominator_point[np.argmax(over_noise)]) - len(scenario.nodes)

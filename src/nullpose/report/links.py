@@ -73,7 +73,7 @@ def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
         noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
         names, powers_w = scenario.jammer_names, scenario.jammer_powers_w
         link = (pose.position_m, orientation, points, powers_w, scenario.reference_gain)
-        antennas = (scenario.antenna_record, scenario.jammer_antennas)
+        antennas = (scenario.antenna_record, scenario.jammer_antennas, scenario.jammer_channels)
         ratios = received_power_w(*link, *antennas) / scenario.receiver.noise_power_w
     is_even = scenario.antenna_record.is_even
     angles_deg = [math.degrees(axis_angle_rad(pose, point_m, is_even)) for point_m in points]

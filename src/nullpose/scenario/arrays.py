@@ -10,7 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas, unit_axis
+from nullpose.channel import PointChannels
+from nullpose.channel.model import CONSTANT
 from nullpose.errors import UsageError
+from nullpose.scenario.channel import Channel
 from nullpose.scenario.units import power_w, ratio_from_db
 
 if TYPE_CHECKING:
@@ -49,6 +52,23 @@ def _antennas(kinds: str) -> cached_property[GroundAntennas | None]:
     return cached_property(stack)
 
 
+def _channels(kinds: str) -> cached_property[PointChannels | None]:
+    """Make the channels of the points of some kinds; None where all are in free space with line of sight."""
+
+    def stack(table: PointArrays) -> PointChannels | None:
+        links = [
+            (point.channel or table.channel or Channel()).make(is_interferer=kind != "nodes")
+            for kind in kinds.split()
+            for point in _points_of(table, kind)
+        ]
+        if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links):
+            return None
+        strengths, rows, groups = PointChannels.of(links)
+        return PointChannels(read_only(strengths, strengths.shape), read_only(rows, rows.shape), groups)
+
+    return cached_property(stack)
+
+
 def _points_of(table: object, kinds: str) -> list[GroundPoint]:
     return [point for kind in kinds.split() for point in getattr(table, kind)]
 
@@ -61,6 +81,7 @@ class PointArrays:
         jammers: tuple[Jammer, ...]
         eavesdroppers: tuple[Eavesdropper, ...]
         receiver: Receiver
+        channel: Channel | None
 
     node_positions_m = _stacked("nodes", "position_m", 3)
     """Positions of the nodes [m], (n_nodes, 3)."""
@@ -70,6 +91,8 @@ class PointArrays:
     """What each node's SINR is divided by to give its margin, linear, (n_nodes,)."""
     node_antennas = _antennas("nodes")
     """The nodes' antennas; None where all are isotropic."""
+    node_channels = _channels("nodes")
+    """The nodes' channels; None where all are in free space with line of sight."""
     jammer_positions_m = _stacked("jammers", "position_m", 3)
     """Positions of the jammers [m], (n_jammers, 3)."""
     jammer_powers_w = _stacked("jammers", "transmit_power_w")
@@ -78,18 +101,30 @@ class PointArrays:
     """Matrices of the jammers' uncertainty sets [m], (n_jammers, 3, 3)."""
     jammer_antennas = _antennas("jammers")
     """The jammers' antennas; None where all are isotropic."""
+    jammer_channels = _channels("jammers")
+    """The jammers' channels; None where all are in free space with line of sight."""
     source_positions_m = _stacked("nodes jammers", "position_m", 3)
     """Positions of the sources [m], (n_nodes + n_jammers, 3)."""
     source_powers_w = _stacked("nodes jammers", "transmit_power_w")
     """Transmit powers of the sources [W], (n_nodes + n_jammers,)."""
     source_antennas = _antennas("nodes jammers")
     """The sources' antennas; None where all are isotropic."""
+    source_channels = _channels("nodes jammers")
+    """The sources' channels; None where all are in free space with line of sight."""
     eavesdropper_positions_m = _stacked("eavesdroppers", "position_m", 3)
     """Positions of the eavesdroppers [m], (n_eavesdroppers, 3)."""
     eavesdropper_uncertainty_m = _stacked("eavesdroppers", "uncertainty_matrix_m", 3, 3)
     """Matrices of the eavesdroppers' uncertainty sets [m], (n_eavesdroppers, 3, 3)."""
     eavesdropper_antennas = _antennas("eavesdroppers")
     """The eavesdroppers' antennas; None where all are isotropic."""
+    eavesdropper_channels = _channels("eavesdroppers")
+    """The eavesdroppers' channels; None where all are in free space with line of sight."""
+
+    @property
+    def has_channels(self) -> bool:
+        """Whether any link's gain over free space changes with the position."""
+        channels = (self.source_channels, self.eavesdropper_channels)
+        return any(np.any(each.rows[:, 0] != CONSTANT) for each in channels if each is not None)
 
     @property
     def node_names(self) -> tuple[str, ...]:
@@ -115,8 +150,8 @@ class PointArrays:
     def node_noise_w(self) -> Floats:
         """Noise and jamming at the nodes' own receivers [W], (n_nodes,); for the downlink.
 
-        The jamming is as stated, or ``sum_j g0 J_j / |s_k - m_j|^2``, in line of sight, times
-        the largest gains of both antennas whatever their directions.
+        The jamming is as stated, or ``sum_j g0 J_j / |s_k - m_j|^2``, in line of sight, times the largest
+        gains of both antennas whatever their directions, and the strength of the jammer's channel.
         """
         return read_only([self._noise_w(node) + self._jamming_w(node) for node in self.nodes], (-1,))
 
@@ -130,6 +165,8 @@ class PointArrays:
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
         gains = [ratio_from_db(node.gain_dbi + jammer.gain_dbi) for jammer in self.jammers]
         powers_w = self.receiver.reference_gain * self.jammer_powers_w * gains
+        if self.jammer_channels is not None:
+            powers_w = powers_w * self.jammer_channels.strengths
         return float(np.sum(powers_w / distance_squared))
 
 

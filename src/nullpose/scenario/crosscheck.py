@@ -60,6 +60,7 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     yield from shared_names(points)
     yield from shared_names(zones)
     yield from _antenna_faults(scenario, points)
+    yield from _channel_faults(scenario, {(): scenario, **points})
     if not misplaced:
         yield from _shared_places(positioned)
     if airspace is not None and not misplaced:
@@ -91,6 +92,37 @@ def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> 
             (point.antenna == "dipole" and not antenna.has_polarisation, (*place, "antenna"), unlike),
         ]
     return [(place, message) for is_wrong, place, message in faults if is_wrong]
+
+
+def _channel_faults(
+    scenario: Scenario, tables: Mapping[Place, Scenario | GroundPoint]
+) -> Iterator[tuple[Place, str]]:
+    """Yield the reference distances that the drone comes closer than, or where the gain is not known.
+
+    Args:
+        scenario: as for ``scenario_faults``.
+        tables: those that may have a channel, by their place.
+    """
+    receiver: Receiver | None = scenario.receiver
+    keep_out_m = getattr(scenario.airspace, "keep_out_m", None)
+    for place, table in tables.items():
+        d0_m = getattr(table.channel, "reference_distance_m", None) or 1.0
+        key = (*place, "channel", "reference_distance_m")
+        if table.channel is None or table.channel.model != "power-law":
+            continue
+        if keep_out_m is not None and d0_m > keep_out_m:
+            yield (
+                key,
+                f"got {d0_m:g}, must be at most airspace.keep_out_m = {keep_out_m:g}: a power law has no "
+                "meaning at a shorter distance; make keep_out_m longer",
+            )
+        if d0_m != 1.0 and receiver is not None and receiver.frequency_hz is not None:
+            gain_db = 10.0 * np.log10(receiver.reference_gain) - 20.0 * np.log10(d0_m)
+            yield (
+                key,
+                f"got {d0_m:g}, but receiver.frequency_hz gives the gain at 1 m; state the gain at "
+                f"{d0_m:g} m in its place, in free space reference_gain_db = {gain_db:.2f}",
+            )
 
 
 def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:

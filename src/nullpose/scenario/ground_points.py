@@ -9,6 +9,7 @@ from pydantic import Field
 
 from nullpose.antenna import GROUND_ANTENNAS, short_dipole
 from nullpose.files import PlainTable
+from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.faults import Place
 from nullpose.scenario.radio import POWER, Powered
 from nullpose.scenario.rules import Choice
@@ -61,6 +62,7 @@ class GroundPoint(Section):
         null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
             perfect null.
         gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
+        channel: of its link with the drone; None for the scenario's.
     """
 
     ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE)
@@ -115,6 +117,10 @@ class GroundPoint(Section):
         "one): 1.76 for a short dipole, 2.15 for a half-wave dipole. Left out: 0, as in the paper; the power "
         "of a transmitter is then its EIRP.",
         examples=[2.15],
+    )
+    channel: NamedChannel | None = optional(
+        'Its own channel: "free-space", or a table like [channel]. Left out: that of the scenario.',
+        "free-space",
     )
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:

@@ -18,6 +18,7 @@ from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.arrays import PointArrays, rows_of_points
+from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
@@ -80,6 +81,10 @@ class Scenario(Section, PointArrays):
     receiver: Receiver = Field(
         description="A table headed [receiver]: noise power (W or dBm) and path gain at 1 m (dB, or from a "
         "frequency in Hz)."
+    )
+    channel: NamedChannel | None = optional(
+        "A table headed [channel]: how the power of a link falls with distance and elevation. Left out: free "
+        "space with line of sight."
     )
     transmitter: Transmitter | None = optional(
         "A table headed [transmitter]: the drone's own power (W or dBm), where it transmits."

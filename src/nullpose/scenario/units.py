@@ -60,12 +60,19 @@ NullDepthDecibels = Annotated[
     float,
     Quantity("a depth in dB", 0.0, 200.0, "30 is a null 30 dB below the broadside gain; it is not negative"),
 ]
+LossDecibels = Annotated[
+    float, Quantity("a loss in dB", 0.0, 200.0, "a loss is never negative; 20 dB leave a hundredth")
+]
+BlockedDecibels = Annotated[float, Quantity("a loss in dB", 1e-3, 200.0, "20 dB leave a hundredth")]
 Hertz = Annotated[float, Quantity("a frequency in Hz", 1e3, 1e13, "2.4 GHz is written 2.4e9")]
 Metres = Annotated[
     float, Quantity("a length in m", -1e7, 1e7, "use metres from a nearby local origin: east, north and up")
 ]
 KeepOutMetres = Annotated[
     float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
+]
+ReferenceMetres = Annotated[
+    float, Quantity("a distance in m", 1e-3, 1e7, "where the reference gain holds; mostly 1")
 ]
 MarginMetres = Annotated[
     float, Quantity("a length in m", 0.0, 1e7, "a margin is never negative; 0 means none")

@@ -171,7 +171,7 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     from nullpose.solver.kernels.linear_algebra.axis import best_axis as kernel
 
     position = as_position(position_m)
-    family = build_family(scenario)
+    family = build_family(scenario, any_channel=True)
     nearest_m = float(np.min(np.linalg.norm(family.points_m - position, axis=1)))
     if nearest_m < family.keep_out_m:
         raise UsageError(

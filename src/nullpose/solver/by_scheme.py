@@ -49,6 +49,7 @@ def solve_by_scheme(
     outcome, fields = solve_scheme(scenario, record, options, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = evaluate(scenario, pose)
+    is_verifiable = outcome.proofs and fields is not None and not scenario.has_channels
     return Answer(
         scheme=scheme,
         pose=pose,
@@ -62,7 +63,7 @@ def solve_by_scheme(
             evaluations=outcome.incumbent.evaluations,
             boxes=outcome.nodes,
         ),
-        rigour=Rigour.VERIFIABLE if outcome.proofs and fields is not None else None,
+        rigour=Rigour.VERIFIABLE if is_verifiable else None,
         note=record.note(scenario, tuple(fields or ()), outcome.chosen),
         proofs=outcome.proofs,
     )
@@ -86,7 +87,7 @@ def solve_scheme(
     names = scenario.jammer_names
     if null_jammer is not None and null_jammer not in names:
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
-    family = build_family(scenario, any_antenna=True)
+    family = build_family(scenario, any_antenna=True, any_channel=True)
     if not scenario.antenna_record.is_quadratic:
         from nullpose.solver.pattern import solve_pattern  # and SciPy with it
 

@@ -15,7 +15,7 @@ from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.certificate.profile import profiles_of
 from nullpose.errors import UsageError
 from nullpose.problem.axis_field import AxisField
-from nullpose.problem.build import build_family
+from nullpose.problem.build import build_family, refuse_channels
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import MOST_LEAVES
 from nullpose.solver.proof import MOST_HALVINGS, Proof
@@ -145,6 +145,7 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     Raises:
         UsageError: the scheme has no certificate for this scenario.
     """
+    refuse_channels(scenario)
     antenna = scenario.antenna_record
     if not antenna.is_axisymmetric:
         raise UsageError(

@@ -201,7 +201,7 @@ def _by_vehicle(
     scenario: Scenario, vehicles: Sequence[Airframe | None], options: SolveOptions
 ) -> list[Outcome | None]:
     """Solve for each vehicle, that with most freedom first; None where no pose was found."""
-    family = build_family(scenario)
+    family = build_family(scenario, any_channel=True)
     bands = [(0.0, 1.0) if vehicle is None else vehicle.axis_band for vehicle in vehicles]
     solved: dict[tuple[float, float], Outcome | None] = {}
     for band in sorted(dict.fromkeys(bands), key=lambda band: band[0] - band[1]):

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.channel import excess_gain
 from nullpose.errors import UsageError
 from nullpose.physics import link_gain, objective_value, to_db
 from nullpose.problem.build import build_family
@@ -180,7 +181,7 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
 def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     from nullpose.solver.kernels.linear_algebra.axis import best_axis
 
-    arrays = build_family(scenario).arrays
+    arrays = build_family(scenario, any_channel=True).arrays
     axes = np.empty_like(positions_m)
     for position_m, axis in zip(np.ascontiguousarray(positions_m), axes, strict=True):
         go_on()
@@ -194,6 +195,8 @@ def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> Fl
     loss = np.sum((nodes - positions_m[..., None, :]) ** 2, axis=-1)
     gain = link_gain(positions_m, axes, nodes, scenario.antenna_record, scenario.node_antennas)
     received = gain * scenario.node_powers_w / loss
+    if scenario.node_channels is not None:
+        received *= excess_gain(scenario.node_channels, nodes - positions_m[..., None, :])
     return np.asarray(np.min(received / scenario.node_required_sinr, axis=-1))
 
 

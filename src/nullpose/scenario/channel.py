@@ -1,0 +1,143 @@
+"""Which channel a link has: free space, a power law, or line of sight by elevation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+from pydantic.json_schema import JsonSchemaValue
+
+from nullpose.channel import CHANNELS, ENVIRONMENTS, LinkChannel
+from nullpose.channel.elevation import AVERAGES
+from nullpose.files import PlainTable
+from nullpose.scenario.faults import Place
+from nullpose.scenario.rules import Choice, Quantity, Rule
+from nullpose.scenario.section import Section, optional
+from nullpose.scenario.units import BlockedDecibels, LossDecibels, ReferenceMetres
+from nullpose.scenario.ways import Ways
+
+_Model = Annotated[str, Choice("a channel model", CHANNELS)]
+_Environment = Annotated[str, Choice("an environment", tuple(ENVIRONMENTS))]
+_Average = Annotated[str, Choice("an average", AVERAGES)]
+_Exponent = Annotated[
+    float,
+    Quantity("a path-loss exponent", 1.6, 6.0, "2 is that of free space; the loss is 10 x it dB/decade"),
+]
+_Degrees = Annotated[float, Quantity("an angle in degrees", 0.1, 90.0, "4.88 is suburban, 27.23 high-rise")]
+_PerDegree = Annotated[float, Quantity("a number per degree", 1e-3, 5.0, "0.43 is suburban, 0.08 high-rise")]
+_NUMBERS = ("a", "b", "los_loss_db", "nlos_loss_db")
+_DEFAULTS = {"reference_distance_m": 1.0}
+
+
+class Channel(Section):
+    """How the power of a link falls with distance and elevation.
+
+    Args:
+        model: a key of ``CHANNELS``: free-space, power-law or elevation.
+        exponent: of a power law.
+        reference_distance_m: where a power law has the receiver's reference gain [m]; 1 if left out.
+        environment: a key of ``ENVIRONMENTS``; or else
+        a, b, los_loss_db, nlos_loss_db: its numbers [deg, 1/deg, dB, dB].
+        average: power, db or guaranteed.
+        blocked_loss_db: loss of a link that a building blocks [dB].
+    """
+
+    ways: ClassVar[tuple[Ways, ...]] = (Ways((("environment",), _NUMBERS), fewest=0),)
+
+    model: _Model = Field(
+        default="free-space",
+        description="Which channel: "
+        + "; ".join(f'"{name}", {model.summary}' for name, model in CHANNELS.items())
+        + ".",
+        examples=list(CHANNELS),
+    )
+    exponent: _Exponent | None = optional(
+        "Exponent of a power law: the gain is the reference gain times (distance / reference "
+        "distance)^-exponent.",
+        2.4,
+    )
+    reference_distance_m: ReferenceMetres | None = optional(
+        "The distance in metres at which a power law has the reference gain of [receiver]; at most the "
+        "keep-out radius. Left out: 1.",
+        1.0,
+    )
+    environment: _Environment | None = optional(
+        "Where the ground points are, for elevation: the source's numbers at 2 GHz. Either this, or a, b, "
+        "los_loss_db and nlos_loss_db.",
+        "urban",
+    )
+    a: _Degrees | None = optional(
+        "Of the probability of line of sight 1 / (1 + a exp(-b (theta - a))), theta the elevation angle: a, "
+        "in degrees.",
+        9.61,
+    )
+    b: _PerDegree | None = optional("The same: b, per degree.", 0.16)
+    los_loss_db: LossDecibels | None = optional("Loss over free space with line of sight, in dB.", 1.0)
+    nlos_loss_db: LossDecibels | None = optional("Loss over free space without line of sight, in dB.", 20.0)
+    average: _Average | None = optional(
+        'What counts of links with and without line of sight, for elevation: "power", the mean power; "db", '
+        'the mean of the losses in dB, as published; or "guaranteed": nodes never have line of sight, and '
+        "jammers and eavesdroppers always have.",
+        "power",
+    )
+    blocked_loss_db: BlockedDecibels | None = optional(
+        "Loss in dB where a building blocks the line of sight.", 20.0
+    )
+
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
+        """Return keys that have no meaning for the model, what it lacks, and losses that are exchanged."""
+        if self.model is None:
+            return
+        given, named = {key for key in raw if raw[key] is not None}, f'model = "{self.model}"'
+        for key in sorted(given - {"model", "blocked_loss_db", *_keys_of(self.model)}):
+            others = " or ".join(f'model = "{name}"' for name in CHANNELS if key in _keys_of(name))
+            yield (key,), f"has no meaning with {named}; remove it, or write {others}"
+        for key in CHANNELS[self.model].keys:
+            if key not in given | _DEFAULTS.keys() | {*_NUMBERS}:
+                description = type(self).model_fields[key].description
+                yield (key,), f"missing, but {named} needs it; add it: {description}"
+        if "environment" in _keys_of(self.model) and given.isdisjoint(("environment", *_NUMBERS)):
+            instead = f"{', '.join(_NUMBERS[:-1])} and {_NUMBERS[-1]}"
+            yield ("environment",), f"missing, but {named} needs it, or {instead}; add either"
+        if self.los_loss_db is not None and (self.nlos_loss_db or math.inf) < self.los_loss_db:
+            yield (
+                ("nlos_loss_db",),
+                f"got {self.nlos_loss_db:g}, less than los_loss_db = {self.los_loss_db:g}: losses that make "
+                "line of sight the weaker; exchange them",
+            )
+
+    def make(self, is_interferer: bool) -> LinkChannel:
+        """Return the channel of a link.
+
+        Args:
+            is_interferer: whether it is that of a jammer or an eavesdropper.
+        """
+        named = {} if self.environment is None else ENVIRONMENTS[self.environment]._asdict()
+        values = _DEFAULTS | named | {key: value for key, value in self if value is not None}
+        model = CHANNELS[self.model]
+        return model.make(**{key: values[key] for key in model.keys}, is_interferer=is_interferer)
+
+
+def _keys_of(model: str) -> tuple[str, ...]:
+    """List the keys that have a meaning for a model: its own, and one that stands for some of them."""
+    keys = CHANNELS[model].keys
+    return (*keys, "environment") if "a" in keys else keys
+
+
+class _ByName(Rule):
+    """A table, in place of which the model's name may stand."""
+
+    def read(self, value: object) -> object:
+        """Return the table."""
+        return {"model": value} if isinstance(value, str) else value
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Return the JSON Schema: the name of a model that needs no more, or that of the table."""
+        names = [name for name, model in CHANNELS.items() if not model.keys]
+        return {"anyOf": [{"type": "string", "enum": names}, inner]}
+
+
+NamedChannel = Annotated[Channel, _ByName()]
+"""The type of the key ``channel``: a table, or the name of a model."""
