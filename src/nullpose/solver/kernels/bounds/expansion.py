@@ -40,6 +40,8 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
     unit,
 )
 
+_WITH_DIPOLES = 0.4  # of the distance of turning: the rest of link vectors grows faster with the rate
+
 
 @inner_kernel
 def min_square(points, j, centre, half):
@@ -206,6 +208,8 @@ def best_frame(family, is_horizontal, row):
     if anchor < 0 or family.turn.shape[0] > 0 or is_horizontal:
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
+    if family.ground_axes is not None:
+        rho *= _WITH_DIPOLES
     if isotropic_share(family.ground_leaks, anchor) < 1.0:
         # the nearer to its own null, the faster its form turns
         rho *= dipole_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
