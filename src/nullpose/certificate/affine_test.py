@@ -15,6 +15,7 @@ import numpy as np
 from nullpose.certificate.allowed import Weighted, negative_where_allowed
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.channels import Excess, Interval3, excess
 from nullpose.certificate.forms import (
     COLUMN,
     COUNTED,
@@ -38,7 +39,14 @@ _UNIT = Interval(np.eye(3)[:, :, None])
 _AFTER, _LAST = [1, 2, 0], [2, 0, 1]
 
 
-def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, axes: FloatArray) -> Jet:
+def link_jet(
+    field: AxisField,
+    boxes: Boxes,
+    points: FloatArray,
+    leak: float,
+    axes: FloatArray,
+    gain: Excess | None = None,
+) -> Jet:
     """Expand a link: value and gradient at the centres, its Hessian and what it is over the boxes.
 
     Args:
@@ -47,17 +55,18 @@ def link_jet(field: AxisField, boxes: Boxes, points: FloatArray, leak: float, ax
         points: (b, 3) the ground point of each.
         leak: the antenna's gain along its axis.
         axes: (b, 3) the axes of the dipoles there, zero where there is none.
+        gain: the excess gains of their channels.
     """
     has = np.any(axes != 0.0, axis=1)
     if not np.any(has):
-        return _isotropic_jet(field, boxes, points, leak)
-    jets = _dipole_jet(field, boxes, points, axes)
+        return _isotropic_jet(field, boxes, points, leak, gain)
+    jets = _dipole_jet(field, boxes, points, axes, gain)
     if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
-        alone = _isotropic_jet(axes, boxes, points, 0.0)
+        alone = _isotropic_jet(axes, boxes, points, 0.0, gain)
         share = 1.0 - Interval(leak)
         jets = _joined(lambda jet, other: jet * share + other * leak, jets, alone)
     if not np.all(has):
-        others = _isotropic_jet(field, boxes, points, leak)
+        others = _isotropic_jet(field, boxes, points, leak, gain)
         jets = _joined(partial(where, has), jets, others)
     return jets
 
@@ -68,7 +77,9 @@ def _joined(join: Callable[[Interval, Interval], Interval], first: Jet, second: 
     return Jet(value, slopes, join(first.bends, second.bends), join(first.over, second.over))
 
 
-def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray) -> Jet:
+def _dipole_jet(
+    field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatArray, gain: Excess | None
+) -> Jet:
     """Expand links as :func:`link_jet` where points have dipoles, without what leaks.
 
     Their link is ``B^2 / (|u|^2 |r|^6)``, ``B = (u.v) |r|^2 - (u.r) (v.r)``.
@@ -87,19 +98,30 @@ def _dipole_jet(field: AxisField, boxes: Boxes, points: FloatArray, axes: FloatA
 
     u, r = _axis_and_offset(field, points, Interval(boxes.centre.T))
     product, gradient, bend = parts(u, r)
-    value, slopes, _ = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
+    centre = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
     u, r = _axis_and_offset(field, points, boxes.hull)
     _, _, bend = parts(u, r)
     half = Interval(boxes.half.T)
     swing = dot(Interval(bend.magnitude())[PLACE], half[:, None]).high
     reach = dot(Interval(gradient.magnitude()) + Interval(swing) * 0.5, half).high
     product, gradient = product + Interval(-reach, reach), gradient + Interval(-swing, swing)
-    over, _, hessian = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
-    most = np.fmin(over.high, (1.0 / r.squared().total()).high)
-    return Jet(value, slopes, hessian, Interval(np.maximum(over.low, 0.0), most))
+    over = _quotient(matrix, u, r, stack([product]), stack([gradient]), stack([bend]), 3)
+    return _jet(centre, over, r, gain)
 
 
-def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float) -> Jet:
+def _jet(centre: Interval3, over: Interval3, r: Interval, gain: Excess | None) -> Jet:
+    """Return the jet of a link from its value, slopes and Hessian at the centres and over the boxes."""
+    # the gain is at most 1, and never below zero
+    most = np.fmin(over[0].high, (1.0 / r.squared().total()).high)
+    ranged = Interval(np.maximum(over[0].low, 0.0), most)
+    if gain is not None:
+        return gain.times(centre, (ranged, *over[1:]))
+    return Jet(*centre[:2], over[2], ranged)
+
+
+def _isotropic_jet(
+    field: AxisField | FloatArray, boxes: Boxes, points: FloatArray, leak: float, gain: Excess | None
+) -> Jet:
     """Expand links as :func:`link_jet` where points have no dipoles; the axis may be given, (b, 3)."""
     matrix = Interval(field.matrix[:, :, None] if isinstance(field, AxisField) else np.zeros((3, 3, 1)))
     half = Interval(boxes.half.T)
@@ -113,17 +135,14 @@ def _isotropic_jet(field: AxisField | FloatArray, boxes: Boxes, points: FloatArr
             stack([each[0], each[1], each[2], root * last])
             for each, last in zip((cross, slopes, bend), along, strict=True)
         )
-    value, gradient, _ = _quotient(matrix, u, r, cross, slopes, bend)
+    centre = _quotient(matrix, u, r, cross, slopes, bend)
     # u x r is quadratic in the position: over the boxes it is what its expansion at the centre makes of it
     swing = dot(Interval(np.moveaxis(bend.magnitude()[:, PLACE], 2, 0)), half[:, None, None]).high
     steep = Interval(slopes.magnitude()) + Interval(swing) * 0.5
     reach = dot(swapped(steep), half[:, None]).high
     cross, slopes = cross + Interval(-reach, reach), slopes + Interval(-swing, swing)
     u, r = _axis_and_offset(field, points, boxes.hull)
-    over, _, hessian = _quotient(matrix, u, r, cross, slopes, bend)
-    # the gain is at most 1, and never below zero
-    most = np.fmin(over.high, (1.0 / r.squared().total()).high)
-    return Jet(value, gradient, hessian, Interval(np.maximum(over.low, 0.0), most))
+    return _jet(centre, _quotient(matrix, u, r, cross, slopes, bend), r, gain)
 
 
 def _cross(x: Interval, y: Interval) -> Interval:
@@ -183,10 +202,22 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         boxes: to be tested.
     """
     family, identity, above, below = weighted_sum(family, leaves)
-    terms = above + [(point, -scale) for point, scale in below]
+    terms = [(*term, True) for term in above] + [(point, -scale, False) for point, scale in below]
     dipoles = np.zeros_like(family.points_m) if family.ground_axes is None else family.ground_axes
-    at = ((scale, family.points_m[point], dipoles[point]) for point, scale in terms)
-    jets = [(scale, link_jet(field, boxes, place, family.leak, axes)) for scale, place, axes in at]
+    jets = [
+        (
+            scale,
+            link_jet(
+                field,
+                boxes,
+                family.points_m[point],
+                family.leak,
+                dipoles[point],
+                excess(family, boxes, point, is_above),
+            ),
+        )
+        for point, scale, is_above in terms
+    ]
     zero = Interval(np.zeros((6, len(boxes))))
     starts = {"value": identity, "slopes": zero[:3], "bends": zero, "over": identity}
     value, slopes, hessian, ranged = (

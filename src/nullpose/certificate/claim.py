@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 
 from nullpose.certificate.certificate import Certificate, FloatArray
+from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import (
     Exact,
     antenna_axis,
@@ -78,7 +79,7 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     )
     if fault:
         return f"pose: {fault}"
-    value = smallest_ratio(family, position, axis, *profiles_of(fields))
+    value = smallest_ratio(family, position, axis, *profiles_of(fields), gains=excess_at(family, position))
     if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
         quantity = Quantity.of(certificate.scenario)
         what = "ratio" if quantity.is_rate else quantity.noun

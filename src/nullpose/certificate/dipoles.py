@@ -6,6 +6,7 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.channels import excess
 from nullpose.certificate.forms import (
     COLUMN,
     COUNTED,
@@ -44,7 +45,7 @@ def dipole_sum(
     shear = shear_of(family, leaves, boxes)
     family, identity, above, below = weighted_sum(family, leaves)
     terms = [
-        (_vectors(family, shear, boxes, point), point, scale, sign)
+        (_vectors(family, shear, boxes, point), point, scale * _excess_end(family, boxes, point, sign), sign)
         for sign, each in ((1.0, above), (-1.0, below))
         for point, scale in each
     ]
@@ -75,6 +76,14 @@ def dipole_sum(
         bent = shear.most[2] * boxes.half2 + shear.most[0].squared()
         total = total + form.times(Interval(weight)).plus(shear.gram * (norm * bent * np.abs(weight)).most())
     return total, shear
+
+
+def _excess_end(family: Family, boxes: Boxes, point: IntArray, sign: float) -> Interval | float:
+    """Return the largest excess gain in each box, or the least: what a link's form is bounded with."""
+    gain = excess(family, boxes, point, sign > 0.0)
+    if gain is None:
+        return 1.0
+    return Interval(gain.over.high if sign > 0.0 else gain.over.low)
 
 
 def _vectors(family: Family, shear: Shear, boxes: Boxes, point: IntArray) -> list[Jet]:

@@ -13,9 +13,10 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
+from nullpose.certificate.channels import Amplitude, amplitude
 from nullpose.certificate.forms import COLUMN, Linear, congruence, gram, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
-from nullpose.certificate.lemmas import FORM_SWING
+from nullpose.certificate.lemmas import DIRECTION_BEND
 from nullpose.problem.family import Family
 
 _UNIT = np.eye(3)[:, :, None]  # the world's axes, for any number of boxes
@@ -84,12 +85,13 @@ def axes_across(third: FloatArray, mask: np.ndarray) -> FloatArray:
 
 
 def expansion(
-    family: Family, frames: Frames, boxes: Boxes, point: IntArray
+    family: Family, frames: Frames, boxes: Boxes, point: IntArray, is_above: bool
 ) -> tuple[Linear, Interval, Interval]:
-    """Return the form of one point for each box, and bounds on its second derivative, (b,) each.
+    """Return the form of one point for each box, and bounds on two second derivatives, (b,) each.
 
-    The bounds, up and (positive) down, multiply the identity; for the anchor of a turning frame, what its
-    form is made of: :func:`anchor_shape`.
+    The first bounds the form's from above, or minus it, as ``is_above`` says, and multiplies the identity;
+    for the anchor of a turning frame, what its form is made of: :func:`anchor_shape`. The second bounds the
+    length of the link vector's.
     """
     anchored = frames.turning & (point == frames.anchor)
     points_m = family.points_m[point]
@@ -109,13 +111,30 @@ def expansion(
     slopes = rate * twice[:, None] * 2.0 / (s.squared() * s) - bent / s.squared()
     pull = frames.direction * 2.0 / (s * frames.rho)
     slopes = where(anchored, shape[:, None] * pull, slopes)
-    near, turn = boxes.nearest(points_m), frames.turning & ~anchored
-    fourth = 1.0 / near.squared().squared()
-    mixed = where(turn, 1.0 / (near.squared() * near * frames.rho_least), 0.0)
-    both = where(turn, 1.0 / (near.squared() * frames.rho_least.squared()), 0.0)
-    more = mixed * 4.0 + both * FORM_SWING
-    up, down = fourth * 6.0 + more, fourth * np.where(anchored, 2.0, 4.0) + more
-    return Linear(form, slopes), up.most(), down.most()
+    near = boxes.nearest(points_m)
+    field = amplitude(family, boxes, point, is_above)
+    rate = where(frames.turning & ~anchored, 1.0 / frames.rho_least, 0.0)
+    # the rules invert, scale and turn: bounds on the link vector and on its first two derivatives
+    h0, h1, h2 = (1.0, 0.0, 0.0) if field is None else (field.most, field.slope, field.bend)
+    length = h0 / near
+    slope = (length + h1) / near
+    bend = (slope * 2.0 + h2) / near
+    seen_slope = slope + length * rate
+    seen_bend = bend + (slope * 2.0 + length * rate * DIRECTION_BEND) * rate
+    # the rule square; the anchor's is the square of h / rho
+    if is_above:
+        second = slope.squared() + length * bend + seen_slope.squared() + length * seen_bend
+    else:
+        falling = (slope + h1 / near + h2) / near * length
+        second = where(anchored, falling, length * seen_bend) * 2.0
+    result = Linear(form, slopes) if field is None else _scaled(Linear(form, slopes), field)
+    return result, second.most(), seen_bend.most()
+
+
+def _scaled(link: Linear, field: Amplitude) -> Linear:
+    """Return a form multiplied by the square of an amplitude."""
+    square, change = field.value.squared(), field.gradient * field.value * 2.0
+    return Linear(link.value * square, link.slopes * square + link.value[:, None] * change)
 
 
 def anchor_shape(family: Family, frames: Frames) -> Interval:

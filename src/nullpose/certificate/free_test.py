@@ -14,7 +14,7 @@ from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import COUNTED, IDENTITY, Linear, quadratic, side_form, top_vectors
 from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.lemmas import CONSTANT_SWING, DIRECTION_BEND, SPREAD_OVER_NORM
+from nullpose.certificate.lemmas import CONSTANT_SWING, SPREAD_OVER_NORM
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -81,15 +81,15 @@ def ratio_forms(
     half2 = boxes.half2 * 0.5
     total = Linear(frames.gram * identity, Interval(np.zeros((6, 3, len(boxes)))))
     for point, scale in above:
-        form, up, _ = expansion(family, frames, boxes, point)
+        form, up, _ = expansion(family, frames, boxes, point, True)
         used = where(scale.high > 0.0, (scale * up * half2).most(), 0.0)
         # a numerator's remainder is bounded by the identity, anchored or not
         total = total + form.times(scale).plus(frames.gram * used)
     for point, scale in below:
-        form, _, down = expansion(family, frames, boxes, point)
+        form, down, bend = expansion(family, frames, boxes, point, False)
         share, rest = np.zeros(len(boxes)), down * half2
         if vectors is not None:
-            share, rest = sharper(form.value, vectors, boxes, frames, point, family.points_m[point], rest)
+            share, rest = sharper(form.value, vectors, boxes, frames, point, bend, rest)
         used = where(scale.high > 0.0, (scale * rest).most(), 0.0)
         around = where(frames.turning & (point == frames.anchor), anchor_shape(family, frames), frames.gram)
         total = total + form.times(-(scale * (1.0 - Interval(share)))).plus(around * used)
@@ -102,7 +102,7 @@ def sharper(
     boxes: Boxes,
     frames: Frames,
     point: IntArray,
-    point_m: FloatArray,
+    bend: Interval,
     plain: Interval,
 ) -> tuple[FloatArray, Interval]:
     """Return each box's eta and the remainder near a null, or zero and the plain one where that is smaller.
@@ -113,14 +113,11 @@ def sharper(
         boxes: whose remainders they are.
         frames: of the boxes.
         point: (b,) which point; the one that a frame turns towards keeps its own remainder.
-        point_m: (b, 3) where it is.
+        bend: (b,) bounds on the second derivatives of its link vectors.
         plain: lemma 2's remainder, positive.
     """
     at_centre = form.middle()
     seen = quadratic(at_centre, vectors)
-    near, rho = boxes.nearest(point_m), frames.rho_least
-    turning = 2.0 / (near.squared() * rho) + DIRECTION_BEND / (near * rho.squared())
-    bend = 2.0 / (near.squared() * near) + where(frames.turning, turning, 0.0)
     square = (bend * boxes.half2 * 0.5).squared()
     eta = np.sqrt(square.high / np.maximum(seen, 1e-12 * at_centre[:3].sum(axis=0)))
     use = (eta > 0.0) & (eta < _LARGEST_ETA) & ~(frames.turning & (point == frames.anchor))

@@ -18,8 +18,6 @@ DIRECTION_THIRD = 2.31
 """Of its third derivative what is no multiple of the step: 6 cos^2 sin at most, 4 / sqrt(3)."""
 CONSTANT_SWING = (1.0 + math.sqrt(2.0)) * _UP
 """The second derivative of a constant form in a turning frame, over the spread of its eigenvalues."""
-FORM_SWING = 1.0 + DIRECTION_BEND
-"""What the frame's turning alone adds to the second derivative of a link form, over a^2 rho^2."""
 
 # The derivatives of a link vector along a unit direction (lemma 5).
 VECTOR_SLOPE = 2.0 / math.sqrt(3.0) * ROUNDING

@@ -6,6 +6,7 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import FloatArray, Leaves
+from nullpose.certificate.channels import most_excess
 from nullpose.certificate.forms import cell_ends
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
@@ -16,7 +17,8 @@ from nullpose.problem.family import Family
 def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Check which boxes keep their node too far off to reach the level, whatever the axis.
 
-    ``N <= n + w / a^2`` and ``D >= d``, a being the least distance that box and keep-out ball allow.
+    ``N <= n + w g(a) / a^2`` and ``D >= d``, a being the least distance that box and keep-out ball allow and
+    g the largest excess gain of the channel there.
 
     Args:
         family: the ratios.
@@ -25,11 +27,12 @@ def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) ->
         boxes: to be tested.
     """
     k = leaves.point
-    nearest2 = boxes.nearest2(family.points_m[family.numerator_point[k]])
-    a2 = np.maximum(nearest2, Interval(family.keep_out_m).squared().low)
+    point = family.numerator_point[k]
+    a2 = np.maximum(boxes.nearest2(family.points_m[point]), Interval(family.keep_out_m).squared().low)
+    weight = most_excess(family, point, a2) * Interval(family.numerator_weight[k])
     below = Interval(leaves.level) * family.denominator_isotropic[family.denominator_of[k]]
     lack = Interval(family.numerator_isotropic[k]) - below
-    return np.asarray((lack.high < 0.0) & ((lack * a2 + family.numerator_weight[k]).high < 0.0))
+    return np.asarray((lack.high < 0.0) & ((lack * a2 + weight).high < 0.0))
 
 
 def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
@@ -68,7 +71,9 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
     lack = Interval(upper_bound) * below - family.numerator_isotropic
     for face_m, end_m, inwards in zip(root_m, (family.low_m, family.high_m), (1.0, -1.0), strict=True):
         reach = Interval(((Interval(points) - face_m) * inwards).low.T)
-        out = (reach.low > 0.0) & ((reach.squared() * lack - family.numerator_weight).low >= 0.0)
+        square = reach.squared()
+        weight = most_excess(family, family.numerator_point, square.low) * Interval(family.numerator_weight)
+        out = (reach.low > 0.0) & ((square * lack - weight).low >= 0.0)
         fine = (face_m * inwards <= end_m * inwards) | np.any(out, axis=1)
         if not np.all(fine):
             i = int(np.argmin(fine))

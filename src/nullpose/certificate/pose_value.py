@@ -13,6 +13,7 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 
 if TYPE_CHECKING:
+    from nullpose.certificate.interval import Interval
     from nullpose.certificate.profile import Profile
 
 # An array of fractions.
@@ -131,15 +132,26 @@ def link(
     return isotropic
 
 
-def smallest_ratio(family: Family, position: Exact, axis: Exact, profile: Profile | None = None) -> Fraction:
+def smallest_ratio(
+    family: Family,
+    position: Exact,
+    axis: Exact,
+    profile: Profile | None = None,
+    *,
+    gains: Interval | None = None,
+) -> Fraction:
     """Return the smallest ratio at a pose (of paper eq. 2.1, say), exactly for the numbers given.
+
+    With channels a lower bound of it, as near as their excess gains are enclosed.
 
     Args:
         family: the ratios.
         position: where, metres.
         axis: the antenna's axis, of any length.
         profile: its gain, if it is no dipole.
+        gains: (m,) excess gains of all points there; None in free space.
     """
+    assert (gains is None) == (family.channels is None)
     leak = Fraction(family.leak)
     none = np.zeros_like(family.points_m), np.ones(len(family.points_m))
     dipoles = none if family.ground_axes is None else (family.ground_axes, family.ground_leaks)
@@ -152,12 +164,15 @@ def smallest_ratio(family: Family, position: Exact, axis: Exact, profile: Profil
             for point, dipole, through in rows
         ]
     )
-    entries = exact(family.denominator_weight) * links[family.denominator_point]
+    heard, jamming = links, links
+    if gains is not None:
+        heard, jamming = links * exact(gains.low), links * exact(gains.high)
+    entries = exact(family.denominator_weight) * jamming[family.denominator_point]
     starts, isotropic = family.denominator_start, exact(family.denominator_isotropic)
     denominators = np.array(
         [sum(entries[a:b], below) for a, b, below in zip(starts, starts[1:], isotropic, strict=False)]
     )
-    above = exact(family.numerator_weight) * links[family.numerator_point]
+    above = exact(family.numerator_weight) * heard[family.numerator_point]
     ratios = (exact(family.numerator_isotropic) + above) / denominators[family.denominator_of]
     return Fraction(min(ratios))
 

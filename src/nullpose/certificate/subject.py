@@ -54,7 +54,7 @@ def differences(certificate: Certificate, scenario: Scenario) -> tuple[str, ...]
 def _problem(scenario: Scenario) -> tuple[object, ...]:
     airframe = scenario.airframe
     reach = None if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
-    return build_family(scenario).digest, scenario.objective, scenario.axis_band, reach
+    return build_family(scenario, any_channel=True).digest, scenario.objective, scenario.axis_band, reach
 
 
 def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:

@@ -67,10 +67,12 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         for e in range(*family.denominator_start[g : g + 2]) if np.any(counts) else ():
             point = np.full(len(leaves), family.denominator_point[e])
             below += parts(point, where(counts, level * family.denominator_weight[e], 0.0))
+    rows = family.channels
     if len(leaky):
         family = family.changed(
             points_m=np.vstack([family.points_m, family.points_m[leaky]]),
             ground_axes=np.vstack([family.ground_axes, np.zeros((len(leaky), 3))]),
             ground_leaks=None,
+            channels=None if rows is None else np.vstack([rows, rows[leaky]]),
         )
     return family, identity, above, below

@@ -52,7 +52,7 @@ def refuse_channels(scenario: Scenario) -> None:
     if scenario.has_channels:
         raise UsageError(
             "channel: given a power law or line of sight by elevation; allowed for arrays, antennas with a "
-            'pattern, robust solving and certificates: free space, or average = "guaranteed"; solve and '
+            'pattern and robust solving: free space, or average = "guaranteed"; solve and '
             "evaluate know every channel for a dipole on the drone"
         )
 

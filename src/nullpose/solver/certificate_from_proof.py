@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, PROFILE, TOWARDS, WORLD
+from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.certificate.profile import profiles_of
 from nullpose.errors import UsageError
 from nullpose.problem.axis_field import AxisField
-from nullpose.problem.build import build_family, refuse_channels
+from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import MOST_LEAVES
 from nullpose.solver.proof import MOST_HALVINGS, Proof
@@ -145,7 +146,6 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     Raises:
         UsageError: the scheme has no certificate for this scenario.
     """
-    refuse_channels(scenario)
     antenna = scenario.antenna_record
     if not antenna.is_axisymmetric:
         raise UsageError(
@@ -235,6 +235,8 @@ def _ratios(solution: Result, fields: Mapping[str, AxisField]) -> tuple[float, f
         return objective.value, objective.upper_bound
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
-    family = build_family(solution.scenario, any_antenna=True)
-    value = float(smallest_ratio(family, exact(pose.position_m), axis, *profiles_of(fields)))
+    family = build_family(solution.scenario, any_antenna=True, any_channel=True)
+    place = exact(pose.position_m)
+    gains = excess_at(family, place)
+    value = float(smallest_ratio(family, place, axis, *profiles_of(fields), gains=gains))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))

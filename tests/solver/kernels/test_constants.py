@@ -36,8 +36,6 @@ THIRD = extremes(blocks(27.0 * K * M**2 - 6.0 * K**3, 9.0 * M**3 - 18.0 * K**2 *
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        # lemma 2, |w'|^2 + |w| |w''|: |w| = 1 / a, |w'| <= 1 / a^2 + 1 / (a rho), |w''| as TURN over a rho^2
-        ("FORM_SWING", 1.0 + TURN),
         ("CONSTANT_FORM_BEND", float(np.max(np.abs(np.sin(2.0 * ANGLES)) + 2.0 * M**2))),
         ("DIRECTION_BEND", TURN),
         # the verifier's, which puts them together where it uses them

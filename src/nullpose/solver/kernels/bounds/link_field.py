@@ -113,6 +113,21 @@ def amplitude(channels, points, j, is_above, centre, half):
 
 
 @inner_kernel
+def excess_end(channels, points, j, is_above, centre, half):
+    """Return the largest excess gain of point j in a box, or the least, as ``is_above`` says."""
+    if channels is not None:
+        row = channels[j]
+        if row[0] == BY_DISTANCE:
+            least, most = square_range(points[j], centre, half, 3)
+            unit, power = row[2] * row[2], 0.5 * row[1]
+            return ((least if is_above == (power < 0.0) else most) / unit) ** power
+        if row[0] == BY_ELEVATION:
+            low, high = elevation_range(minus(row_of(points, j), centre), points[j], centre, half)
+            return elevation_gain(row, sight_probability(row, math.atan(high if is_above else low)))
+    return 1.0
+
+
+@inner_kernel
 def distance_amplitude(row, r, least, most):
     """Return the amplitude ``(d / d0)^c`` over squared distances from least to most."""
     c, unit, square = 0.5 * row[1], row[2] * row[2], dot(r, r)
