@@ -54,6 +54,8 @@ def allowed(entry: dict[str, Any]) -> str:
     """Describe the values that a key takes."""
     if table_schema(entry):
         return "a table"
+    if "anyOf" in entry:
+        return ", or ".join(map(allowed, entry["anyOf"]))
     if "$ref" in entry:
         return "a number, or a [distribution](#what-drawn-points-keep)"
     if "enum" in entry:

@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
+from nullpose.channel.elevation import AVERAGES, elevation_excess
+from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, CONSTANT
+from nullpose.channel.power_law import distance_excess
 from nullpose.objectives import RECORDS, USUAL, Quantity
 from nullpose.physics import Pose, evaluate, objective_value
 from nullpose.scenario import Scenario
+
+EXCESS = {CONSTANT: lambda *_: 1.0, BY_DISTANCE: distance_excess, BY_ELEVATION: elevation_excess}
 
 
 def _scenario(name: str, rng: np.random.Generator) -> Scenario:
@@ -28,6 +33,10 @@ def _scenario(name: str, rng: np.random.Generator) -> Scenario:
     if record.transmits:
         data["transmitter"] = {"power_w": 1.0}
         data["eavesdroppers"] = [{"position_m": spot()} for _ in range(2)]
+    channels = [{"model": "power-law", "exponent": float(rng.uniform(1.6, 4.0))}]
+    channels += [{"model": "elevation", "environment": "urban", "average": each} for each in AVERAGES]
+    data["channel"] = channels[rng.integers(len(channels))]
+    data["nodes"][2]["channel"] = data[record.interferers][1]["channel"] = "free-space"
     return Scenario.from_dict(data)
 
 
@@ -42,6 +51,9 @@ def test_smallest_ratio_is_the_value_of_the_physics(name: str, seed: int) -> Non
     away = ratios.points_m - pose.position_m
     squared = np.sum(away**2, axis=1)
     link = 1.0 / squared - (away @ pose.antenna_axis) ** 2 / squared**2
+    for j, row in enumerate([] if ratios.channels is None else ratios.channels):
+        seen_rad = np.arcsin(-away[j, 2] / np.sqrt(squared[j]))
+        link[j] *= EXCESS[int(row[0])](row, np.sqrt(squared[j]), seen_rad)
     leaks = ratios.denominator_weight * link[ratios.denominator_point]
     below = ratios.denominator_isotropic + np.add.reduceat(leaks, ratios.denominator_start[:-1])
     above = ratios.numerator_isotropic + ratios.numerator_weight * link[ratios.numerator_point]

@@ -14,7 +14,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.document import Row, View, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import outline_m
 from nullpose.report.words import airframe_words, array_words, place_words, reach_words
-from nullpose.scenario import Antenna, Eavesdropper, Jammer, Node, NoFlyZone, Origin, Scenario
+from nullpose.scenario import Antenna, Channel, Eavesdropper, Jammer, Node, NoFlyZone, Origin, Scenario
 
 _Point = Node | Jammer | Eavesdropper
 _EARTHLY = {
@@ -29,7 +29,7 @@ def summarise(scenario: Scenario) -> PlainTable:
     """Compute a scenario's numbers as plain data: powers in both units, and the most that a link can carry.
 
     The best a link can do is the drone as close as the airspace's box and the keep-out allow, the dipole
-    broadside: ``g0 P / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. Points with a noise
+    broadside: ``g0 P h^2 / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. Points with a noise
     of their own receive from the drone; any other point transmits to it.
     """
     receiver, node_noise_w = scenario.receiver, None
@@ -81,7 +81,9 @@ def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray |
         if noises_w is not None and transmitter is not None:
             sent_w, noise_w = transmitter.transmit_power_w, float(noises_w[i])
             noise = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
-        ratio = point.largest_gain * scenario.reference_gain * sent_w / nearest_m**2 / noise_w
+        channel = scenario.channel_of(point)  # the excess gain is largest right above the point
+        gain = channel.strength * float(channel.excess(channel.row, nearest_m, math.pi / 2.0))
+        ratio = gain * point.largest_gain * scenario.reference_gain * sent_w / nearest_m**2 / noise_w
         rows.append(
             {
                 "name": point.name,
@@ -173,7 +175,7 @@ def _zone_row(zone: NoFlyZone) -> dict[str, str]:
 def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
     receiver, airframe, array = scenario.receiver, scenario.airframe, scenario.array
     attitude_deg, position_m = receiver.attitude_error_deg, receiver.position_error_m
-    sender = scenario.transmitter
+    sender, distance_m = scenario.transmitter, (scenario.channel or Channel()).gain_distance_m
     return {
         "maximised": f"the {Quantity.of(scenario).smallest} over the nodes",
         "array": None if array is None else array_words(array),
@@ -183,8 +185,17 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
         "position error": f"at most {position_m:g} m" if position_m else None,
         "transmits": None if sender is None else _power_words(sender.transmit_power_w),
         "noise": _power_words(receiver.noise_power_w),
-        "path gain at 1 m (dB)": f"{to_db(receiver.reference_gain):.2f}",
+        f"path gain at {distance_m:g} m (dB)": f"{to_db(receiver.reference_gain):.2f}",
+        "channel": _channel_words(scenario),
     }
+
+
+def _channel_words(scenario: Scenario) -> str | None:
+    """Describe the channel, and those of points that have their own; None where none is stated."""
+    points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
+    own = {f"{point.name}: ": point.channel for point in points}
+    stated = {name: channel for name, channel in ({"": scenario.channel} | own).items() if channel}
+    return "; ".join(f"{name}{channel.words}" for name, channel in stated.items()) or None
 
 
 def _power_words(power_w: float) -> str:

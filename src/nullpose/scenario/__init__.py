@@ -3,6 +3,7 @@
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
+from nullpose.scenario.channel import Channel
 from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
 from nullpose.scenario.json_schema import json_schema
 from nullpose.scenario.loading import load
@@ -18,6 +19,7 @@ __all__ = [
     "Airspace",
     "Antenna",
     "Array",
+    "Channel",
     "Eavesdropper",
     "GroundPoint",
     "Jammer",

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas, unit_axis
-from nullpose.channel import PointChannels
+from nullpose.channel import LinkChannel, PointChannels
 from nullpose.channel.model import CONSTANT
 from nullpose.errors import UsageError
 from nullpose.scenario.channel import Channel
@@ -56,11 +56,7 @@ def _channels(kinds: str) -> cached_property[PointChannels | None]:
     """Make the channels of the points of some kinds; None where all are in free space with line of sight."""
 
     def stack(table: PointArrays) -> PointChannels | None:
-        links = [
-            (point.channel or table.channel or Channel()).make(is_interferer=kind != "nodes")
-            for kind in kinds.split()
-            for point in _points_of(table, kind)
-        ]
+        links = [table.channel_of(point) for point in _points_of(table, kinds)]
         if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links):
             return None
         strengths, rows, groups = PointChannels.of(links)
@@ -119,6 +115,10 @@ class PointArrays:
     """The eavesdroppers' antennas; None where all are isotropic."""
     eavesdropper_channels = _channels("eavesdroppers")
     """The eavesdroppers' channels; None where all are in free space with line of sight."""
+
+    def channel_of(self, point: GroundPoint) -> LinkChannel:
+        """Return the channel of a point's link: its own, or the scenario's."""
+        return (point.channel or self.channel or Channel()).make(point.is_interferer)
 
     @property
     def has_channels(self) -> bool:

@@ -108,6 +108,18 @@ class Channel(Section):
                 "line of sight the weaker; exchange them",
             )
 
+    @property
+    def gain_distance_m(self) -> float:
+        """The distance at which the reference gain holds [m]."""
+        return self.reference_distance_m or _DEFAULTS["reference_distance_m"]
+
+    @property
+    def words(self) -> str:
+        """What it is, as in ``elevation, environment urban, average power``."""
+        keys = (key for key in _keys_of(self.model) if getattr(self, key) is not None)
+        values = (f"{key.replace('_', ' ')} {getattr(self, key)}" for key in keys)
+        return ", ".join([self.model, *values])
+
     def make(self, is_interferer: bool) -> LinkChannel:
         """Return the channel of a link.
 
@@ -123,7 +135,7 @@ class Channel(Section):
 def _keys_of(model: str) -> tuple[str, ...]:
     """List the keys that have a meaning for a model: its own, and one that stands for some of them."""
     keys = CHANNELS[model].keys
-    return (*keys, "environment") if "a" in keys else keys
+    return ("environment", *keys) if "a" in keys else keys
 
 
 class _ByName(Rule):
@@ -140,4 +152,4 @@ class _ByName(Rule):
 
 
 NamedChannel = Annotated[Channel, _ByName()]
-"""The type of the key ``channel``: a table, or the name of a model."""
+"""The type of a point's key ``channel``: a table, or the name of a model."""

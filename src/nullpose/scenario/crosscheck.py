@@ -106,10 +106,10 @@ def _channel_faults(
     receiver: Receiver | None = scenario.receiver
     keep_out_m = getattr(scenario.airspace, "keep_out_m", None)
     for place, table in tables.items():
-        d0_m = getattr(table.channel, "reference_distance_m", None) or 1.0
-        key = (*place, "channel", "reference_distance_m")
         if table.channel is None or table.channel.model != "power-law":
             continue
+        d0_m = table.channel.gain_distance_m
+        key = (*place, "channel", "reference_distance_m")
         if keep_out_m is not None and d0_m > keep_out_m:
             yield (
                 key,

@@ -67,6 +67,8 @@ class GroundPoint(Section):
 
     ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE)
     unstated: ClassVar[frozenset[str]] = frozenset({"antenna", "gain_dbi"})
+    is_interferer: ClassVar[bool] = True
+    """Whether its link is unwanted."""
 
     name: Label = Field(
         default="",
@@ -174,6 +176,7 @@ class Node(Emitter):
 
     header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
     letter: ClassVar[str] = "S"
+    is_interferer: ClassVar[bool] = False
     # A node need not transmit where the drone does; a scenario judges whether it has to.
     ways: ClassVar[tuple[Ways, ...]] = (
         PLACE,
