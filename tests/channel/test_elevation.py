@@ -100,7 +100,7 @@ def test_numbers_of_the_recommendation(
     ("environment", "most"), [("suburban", 0.1), ("urban", 0.15), ("dense-urban", 0.25), ("high-rise", 0.55)]
 )
 def test_the_curve_follows_the_recommendation(environment: str, most: float) -> None:
-    """The curve was fitted to the recommendation for platforms of 500 m and more; among towers it is rough."""
+    """The curve was fitted to it for platforms of 500 m and more; among towers it is rough."""
     for up_m in (500.0, 1000.0, 2000.0):
         for elevation_deg in range(5, 90, 5):
             away_m = (up_m - LOW_M) / math.tan(math.radians(elevation_deg))
