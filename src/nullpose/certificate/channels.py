@@ -117,10 +117,9 @@ def _by_elevation(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above
     gradient = stack([-(by * r[2] * r[0] / level), -(by * r[2] * r[1] / level), by * level])
     end = gain.high if is_above else gain.low
     inverse, square, (h0, h1, h2) = 1.0 / near.low, 0.5 * boxes.half2.low, (x.high for x in whole)
-    with np.errstate(invalid="ignore"):
-        b0, b1 = h0 * inverse, (h0 * inverse + h1) * inverse
-        left_out = square * (b1 * b1 + b0 * (2.0 * b1 + h2) * inverse)
-        use = left_out < np.abs(end - here.middle()) * inverse**2 + 3.0 * square * end * inverse**4
+    b0, b1 = h0 * inverse, (h0 * inverse + h1) * inverse
+    left_out = square * (b1 * b1 + b0 * (2.0 * b1 + h2) * inverse)
+    use = left_out < np.abs(end - here.middle()) * inverse**2 + 3.0 * square * end * inverse**4
     ends = Interval(end).sqrt()
     ends = Interval(ends.high if is_above else ends.low)
     return Amplitude(
@@ -174,7 +173,10 @@ class _Angles:
         ee, nn = east.squared(), north.squared()
         bends = [outwards * ee + across * nn, outwards * nn + across * ee, -outwards]
         bends += [east * north * (outwards - across), upright * east, upright * north]
-        return cls(z / level, slopes, stack(bends))
+        # where a box is over the point, or under it, one end is infinite
+        low = Interval(z.low) / np.where(z.low > 0.0, level.high, level.low)
+        high = Interval(z.high) / np.where(z.high > 0.0, level.low, level.high)
+        return cls(Interval(low.low, high.high), slopes, stack(bends))
 
 
 def _cosine(x: Interval) -> Interval:
@@ -232,7 +234,9 @@ def _by_kind(
         mask = rows[0] == kind
         if np.any(mask):
             # numbers of a row of the same kind for all others
-            other = part(np.where(mask, rows, rows[:, [np.argmax(mask)]]), points_m, boxes, is_above)
+            alike = np.where(mask, rows, rows[:, [np.argmax(mask)]])
+            with np.errstate(invalid="ignore"):  # directly over a point nothing is known: infinity less that
+                other = part(alike, points_m, boxes, is_above)
             names = type(result).__slots__
             result = replace(result, **{n: where(mask, getattr(other, n), getattr(result, n)) for n in names})
     return result
@@ -264,8 +268,7 @@ def _excess_by_elevation(rows: FloatArray, points_m: FloatArray, boxes: Boxes, i
     end = gain.high if is_above else gain.low
     half = boxes.half.T
     weight = np.where(IDENTITY > 0.0, 0.25, 0.5)[:, None] * half[ROW] * half[COLUMN]
-    with np.errstate(invalid="ignore"):
-        use = np.sum((bends.high - bends.low) * weight, axis=0) < np.abs(end - value.middle())
+    use = np.sum((bends.high - bends.low) * weight, axis=0) < np.abs(end - value.middle())
     return Excess(
         where(use, value, end),
         where(use, centre.slopes * (value * change), 0.0),
