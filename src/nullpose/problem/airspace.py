@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
+from nullpose.channel.convex import convex_parts, outlines_of
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.problem.family import DEFAULTS, Family
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import area_m2
-
-if TYPE_CHECKING:
-    from shapely.geometry.base import BaseGeometry
 
 _Zone: TypeAlias = tuple[int, FloatArray, float, float]  # kind, edges, lowest and highest altitude
 
@@ -105,21 +103,6 @@ def _outer_sides(part_m: FloatArray) -> FloatArray:
     return np.column_stack([zero, normal, zero, offset])
 
 
-def convex_parts(outline_m: FloatArray) -> list[FloatArray]:
-    """Cut a simple polygon, counter-clockwise, into triangles; leave a convex one as it is.
-
-    Args:
-        outline_m: vertices, (n, 2), metres.
-    """
-    import shapely  # here, for most scenarios have no polygon
-
-    along = np.roll(outline_m, -1, axis=0) - outline_m
-    after = np.roll(along, -1, axis=0)
-    if np.all(along[:, 0] * after[:, 1] >= along[:, 1] * after[:, 0]):
-        return [outline_m]
-    return _outlines(shapely.constrained_delaunay_triangles(shapely.Polygon(outline_m)))
-
-
 def hull_and_pockets(outline_m: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
     """Find the convex hull of a simple polygon and the parts of the hull outside the polygon.
 
@@ -129,12 +112,4 @@ def hull_and_pockets(outline_m: FloatArray) -> tuple[FloatArray, list[FloatArray
     import shapely
 
     polygon = shapely.Polygon(outline_m)
-    return _outlines(polygon.convex_hull)[0], _outlines(polygon.convex_hull - polygon)
-
-
-def _outlines(shapes: BaseGeometry) -> list[FloatArray]:
-    """List the vertices of shapely's polygons, each counter-clockwise."""
-    import shapely
-
-    parts = shapely.get_parts(shapely.orient_polygons(shapes))
-    return [shapely.get_coordinates(part)[:-1] for part in parts if part.geom_type == "Polygon" and part.area]
+    return outlines_of(polygon.convex_hull)[0], outlines_of(polygon.convex_hull - polygon)

@@ -93,7 +93,7 @@ def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, FloatArray 
         scenario: with its airspace.
         points_m: the points that are to be kept clear of, (m, 3), metres.
     """
-    airspace = scenario.airspace.inner
+    airspace = scenario.open_airspace.inner
     low_m, high_m = airspace.lower_m, airspace.upper_m
     outline = airspace.geofence_outline_m
     if len(outline):

@@ -3,6 +3,7 @@
 from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
+from nullpose.scenario.buildings import Building
 from nullpose.scenario.channel import Channel
 from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
 from nullpose.scenario.json_schema import json_schema
@@ -19,6 +20,7 @@ __all__ = [
     "Airspace",
     "Antenna",
     "Array",
+    "Building",
     "Channel",
     "Eavesdropper",
     "GroundPoint",

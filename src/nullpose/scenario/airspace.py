@@ -166,6 +166,16 @@ class Airspace(Section):
         zones = tuple(zone.grown(self.margin_m) for zone in self.no_fly)
         return self.model_construct(**raw | {"margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
 
+    def outside(self, solids: Iterable[NoFlyZone]) -> Airspace:
+        """Return the same without more zones, such as buildings.
+
+        Args:
+            solids: the zones.
+        """
+        raw = {key: getattr(self, key) for key in type(self).model_fields}
+        more = tuple(zone for zone in solids if self.reached(zone.grown(self.margin_m or 0.0)))
+        return self.model_construct(**raw | {"no_fly": (*self.no_fly, *more)}) if more else self
+
     def reached(self, zone: NoFlyZone) -> bool:
         """Check if a zone may forbid anything that the ranges and the fence allow.
 

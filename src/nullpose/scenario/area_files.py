@@ -51,8 +51,7 @@ def with_zones(airspace: PlainTable, features: Sequence[Feature], origin: PlainT
     """
     listed, place = list(airspace.get("no_fly", ())), _place(origin)
     names = {str(zone.get("name")) for zone in listed if isinstance(zone, Mapping)}
-    reach = _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
-    areas, counts, remarks = areas_of(features, reach, _ground_m(origin), names)
+    areas, counts, remarks = areas_of(features, reach_deg(origin), _ground_m(origin), names)
     bounds: PlainTable = {}
     words = ""
     for half_m in _HALVES_M:
@@ -70,6 +69,16 @@ def with_zones(airspace: PlainTable, features: Sequence[Feature], origin: PlainT
     places = {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(zones, len(listed))}
     filled = {**airspace, **bounds, "no_fly": [*listed, *(zone for zone, _ in zones)]}
     return filled, account_of(areas, counts, remarks), places
+
+
+def reach_deg(origin: PlainTable) -> Polygon:
+    """Return the box of degrees in which the areas of a file count.
+
+    Args:
+        origin: the scenario's, raw; empty without one.
+    """
+    place = _place(origin)
+    return _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
 
 
 def with_fence(airspace: PlainTable, features: Sequence[Feature], origin: PlainTable) -> Filled:

@@ -141,7 +141,7 @@ def areas_of(
     areas, counts, taken, faults = list[Area](), Counter[str](), set(names or ()), list[Fault]()
     for feature in features:
         try:
-            area = _area(feature, reach, counts, is_fence)
+            area = area_of(feature, reach, counts, is_fence)
             if area is not None:
                 area.limits, area.remarks = altitude_limits(feature, ground_m)
                 area.name = unique(area.name, taken)
@@ -156,8 +156,21 @@ def areas_of(
     return areas, counts, [unread] if keys else []
 
 
-def _area(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> Area | None:
-    """Find what a feature covers within reach; count what it is."""
+def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> Area | None:
+    """Find what a feature covers within reach; count what it is.
+
+    Args:
+        feature: of a file.
+        reach: the box of degrees in which areas count.
+        counts: of features by what became of them, which are raised.
+        is_fence: whether every crossing of a border is a fault.
+
+    Returns:
+        The area without altitudes; None without one.
+
+    Raises:
+        ScenarioError: its border crosses itself.
+    """
     west, _, east, _ = reach.bounds
     middle_deg = 0.5 * (west + east)
     polygons, cylinders = [], []

@@ -10,6 +10,7 @@ import numpy as np
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS
+from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.faults import ONLY_LOCAL, Place, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS
@@ -49,7 +50,10 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     airspace: Airspace | None = scenario.airspace
     listed = getattr(airspace, "no_fly", None) or ()
     zones: dict[Place, NoFlyZone] = {("airspace", "no_fly", index): zone for index, zone in enumerate(listed)}
-    tables = points | ({} if airspace is None else {("airspace",): airspace}) | zones
+    buildings: dict[Place, Building] = {
+        ("buildings", index): each for index, each in enumerate(scenario.buildings or ()) if each is not None
+    }
+    tables = points | buildings | ({} if airspace is None else {("airspace",): airspace}) | zones
     positioned = {place: point for place, point in points.items() if is_placed(point)}
     misplaced = [
         *origin_faults(scenario.origin, tables, raw),
@@ -59,13 +63,27 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     yield from _objective_faults(scenario, points)
     yield from shared_names(points)
     yield from shared_names(zones)
+    yield from _buildings_faults(buildings)
     yield from _antenna_faults(scenario, points)
     yield from _channel_faults(scenario, {(): scenario, **points})
     if not misplaced:
         yield from _shared_places(positioned)
     if airspace is not None and not misplaced:
-        receiver: Receiver | None = scenario.receiver
-        yield from airspace_faults(airspace, positioned, receiver.position_error_m if receiver else 0.0)
+        solid = {at: each for at, each in buildings.items() if each.polygon_m and each.height_m is not None}
+        buried = list(buried_points(solid, positioned))
+        yield from buried
+        if not buried:
+            receiver: Receiver | None = scenario.receiver
+            outside = airspace.outside(each.zone for each in solid.values())
+            yield from airspace_faults(outside, positioned, receiver.position_error_m if receiver else 0.0)
+
+
+def _buildings_faults(buildings: Mapping[Place, Building]) -> Iterator[tuple[Place, str]]:
+    """Yield the buildings whose name is another's, and those whose file was not read."""
+    yield from shared_names(buildings)
+    for place, building in buildings.items():
+        if building.buildings_from is not None:
+            yield (*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it"
 
 
 def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> list[tuple[Place, str]]:

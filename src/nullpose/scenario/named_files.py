@@ -1,4 +1,4 @@
-"""The files that a scenario file names: nodes, fence, zones and the antenna's pattern."""
+"""The files that a scenario file names: nodes, fence, zones, buildings and the antenna's pattern."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable
 from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
+from nullpose.scenario.building_files import buildings_of
+from nullpose.scenario.buildings import Building
 from nullpose.scenario.faults import refusal
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
 from nullpose.scenario.node_files import ListedNode, nodes_of_csv, nodes_of_features
@@ -21,6 +23,7 @@ from nullpose.scenario.toml_file import FileKind, file_content, file_text, insid
 from nullpose.scenario.wording import described
 
 _NODES_KEY, _FENCE_KEY, _ZONES_KEY = "nodes_from", "geofence_from", "no_fly_from"
+_BUILDINGS_KEY = "buildings_from"
 _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
 _AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
 _FENCES = {"geofence_m", "geofence_lat_lon_deg"}
@@ -42,11 +45,16 @@ class NamedFiles:
         Raises:
             ScenarioError: with its faults.
         """
-        has_zones = _ZONES_KEY in (tables.get("airspace") or ())
+        listed = [f"airspace.{_ZONES_KEY}"] if _ZONES_KEY in (tables.get("airspace") or ()) else []
         if "antenna" in tables:
             tables |= {"antenna": self._antenna(tables["antenna"])}
         if "airspace" in tables:
             tables |= {"airspace": self._airspace(tables["airspace"], tables.get("origin"))}
+        if isinstance(buildings := tables.get("buildings"), list):
+            tables |= {"buildings": self._buildings(buildings, tables.get("origin"))}
+            listed += [
+                f"buildings[{i}].{_BUILDINGS_KEY}" for i, each in enumerate(buildings) if _is_file(each)
+            ]
         if _NODES_KEY in tables and "nodes" not in tables:
             # The nodes take the place of the key, so that faults come in the order of the file.
             tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
@@ -59,8 +67,8 @@ class NamedFiles:
             self._faults += [self._placed(fault) for fault in error.faults if fault.path != repeated]
         if self._faults:
             raise ScenarioError(self._faults)
-        if has_zones:
-            _require_nodes_in_reach(scenario)
+        if listed:
+            _require_nodes_in_reach(scenario, listed[0])
         return scenario
 
     def _placed(self, fault: Fault) -> Fault:
@@ -73,12 +81,12 @@ class NamedFiles:
         return Fault(fault.path, message)
 
     @contextmanager
-    def _reading(self, label: str) -> Iterator[None]:
+    def _reading(self, label: str, joint: str = ": ") -> Iterator[None]:
         """Collect the faults of a file, in whose place the rest of the scenario is judged without it."""
         try:
             yield
         except ScenarioError as error:
-            self._faults += [_in_file(label, fault) for fault in error.faults]
+            self._faults += [_in_file(label, fault, joint) for fault in error.faults]
 
     def _path(self, file: object, kind: FileKind, place: str = "") -> Path:
         if not isinstance(file, str) or not file.strip():
@@ -121,6 +129,34 @@ class NamedFiles:
                 self._places |= {path: f"{label}: {place}" for path, place in places.items()}
         return airspace
 
+    def _buildings(self, tables: list[object], origin: object) -> list[object]:
+        """Put the buildings of other files in place of the tables that name these."""
+        whole: list[object] = []
+        names = {str(table.get("name")) for table in tables if isinstance(table, dict)}
+        for index, table in enumerate(tables):
+            place = f"buildings[{index}]"
+            found: list[tuple[str, object]] = [] if _is_file(table) else [(place, table)]
+            if _is_file(table):
+                with self._reading(place, "."):
+                    found = self._buildings_of_file(place, Building.from_dict(table), origin, names)
+            for of_feature, each in found:
+                self._places[f"buildings[{len(whole)}]"] = of_feature
+                whole.append(each)
+        return whole
+
+    def _buildings_of_file(
+        self, place: str, rules: Building, origin: object, names: set[str]
+    ) -> list[tuple[str, object]]:
+        """Return the raw buildings of a file, each with its place there; none where it is at fault."""
+        file, label = rules.buildings_from, f"{place}.{_BUILDINGS_KEY}: {rules.buildings_from}"
+        with self._reading(label):
+            features = self._features(self._path(file, _AREA_FILE), _AREA_FILE)
+            found, notes = buildings_of(features, rules, origin if isinstance(origin, dict) else {}, names)
+            for note in notes:
+                self._on_note(f"{file}: {note}")
+            return [(f"{label}: {of_feature}", table) for table, of_feature in found]
+        return []
+
     def _nodes(self, file: object) -> list[PlainTable]:
         """Read the nodes that another file lists."""
         nodes: list[ListedNode] = []
@@ -139,19 +175,24 @@ class NamedFiles:
         return [node.values for node in nodes]
 
 
-def _require_nodes_in_reach(scenario: Scenario) -> None:
-    """Refuse a node near which zones of a file would not count."""
+def _is_file(building: object) -> bool:
+    return isinstance(building, dict) and _BUILDINGS_KEY in building
+
+
+def _require_nodes_in_reach(scenario: Scenario, key: str) -> None:
+    """Refuse a node near which zones or buildings of a file would not count."""
+    nouns = "zones" if key.endswith(_ZONES_KEY) else "buildings"
     for name, node in zip(scenario.node_names, scenario.nodes, strict=True):
         away_m = float(np.abs(np.asarray(node.position_m)[:2]).max())
         if away_m > REACH_M:
             raise refusal(
-                f"airspace.{_ZONES_KEY}",
-                f"its zones count up to {REACH_M / 1e3:g} km east, west, north and south of the origin, and "
-                f"node {name} is {away_m / 1e3:.0f} km away; move [origin] to the nodes",
+                key,
+                f"its {nouns} count up to {REACH_M / 1e3:g} km east, west, north and south of the origin, "
+                f"and node {name} is {away_m / 1e3:.0f} km away; move [origin] to the nodes",
             )
 
 
-def _in_file(label: object, fault: Fault) -> Fault:
+def _in_file(label: object, fault: Fault, joint: str = ": ") -> Fault:
     if fault.path == _NODES_KEY:  # which stands in the scenario's own file
         return fault
-    return Fault(f"{label}: {fault.path}" if fault.path else f"{label}", fault.message)
+    return Fault(f"{label}{joint}{fault.path}" if fault.path else f"{label}", fault.message)

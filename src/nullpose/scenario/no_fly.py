@@ -22,6 +22,8 @@ from nullpose.scenario.ways import Ways
 ALTITUDES = Ways((("altitude_m",), ("altitude_msl_m",), ("altitude_ellipsoid_m",)), fewest=0, most=3)
 """The ways to state a range of altitudes."""
 
+_SAME_M = 1e-9  # an offset smaller than this is lost in the coordinates
+
 
 def unplaced(table: Section, raw: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
     """Yield the keys of an airspace or a zone that mean nothing without the origin of a scenario."""
@@ -150,6 +152,8 @@ class NoFlyZone(Section):
         Args:
             by_m: how much [m]; a polygon's corners as ``offset_outlines_m`` moves them.
         """
+        if abs(by_m) < _SAME_M:
+            return self
         x_m, y_m, altitude_m = (
             ends_m and (ends_m[0] - by_m, ends_m[1] + by_m)
             for ends_m in (self.x_m, self.y_m, self.altitude_m)

@@ -14,6 +14,7 @@ from nullpose.errors import UsageError
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.arrays import Floats, read_only
+from nullpose.scenario.buildings import Building
 from nullpose.scenario.faults import EXCHANGED
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
@@ -42,6 +43,7 @@ _PLACEHOLDERS: PlainTable = {  # of what cannot be told; such a scenario is refu
     "altitude_m": [1.0, 2.0],
     "geofence_m": [[0.0, 0.0], [1e4, 0.0], [0.0, 1e4]],
     "polygon_m": [[0.0, 0.0], [1e4, 0.0], [0.0, 1e4]],
+    "courtyards_m": [],
 }
 
 
@@ -151,6 +153,8 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
     for key in POINT_LISTS:
         if isinstance(members := data.get(key), list | tuple):
             whole[key] = [_located(GroundPoint, each, origin) for each in members]
+    if isinstance(buildings := data.get("buildings"), list | tuple):
+        whole["buildings"] = [_located(Building, each, origin) for each in buildings]
     airspace = data.get("airspace")
     if isinstance(airspace, Mapping):
         whole["airspace"] = found = dict(_located(Airspace, airspace, origin))
@@ -167,12 +171,16 @@ def _located(kind: type[Section], raw: object, origin: Origin | None) -> Any:
     wanted = [EARTHLY[key] for key in earthly if raw.get(EARTHLY[key]) is None]
     if not wanted:
         return raw
-    found = {} if origin is None else in_metres(kind._sound_part(earthly), origin)
-    near = {
+    sound = kind._sound_part(earthly)
+    found = {} if origin is None else in_metres(sound, origin)
+    near: dict[str, Any] = {
         key: value.tolist()
         for key, value in found.items()
         if key == "altitude_m" or size_m(value) <= FARTHEST_M
     }
+    if rings := getattr(sound, "courtyards_lat_lon_deg", None):
+        yards = (_located(kind, {"polygon_lat_lon_deg": ring}, origin) for ring in rings)
+        near["courtyards_m"] = [yard["polygon_m"] for yard in yards]
     return {**raw} | {key: near.get(key, _PLACEHOLDERS[key]) for key in wanted}
 
 

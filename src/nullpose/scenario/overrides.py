@@ -141,7 +141,7 @@ def _apply(override: Override, data: PlainTable) -> None:
     if steps[0] == "origin":  # points and areas stay where they are on the Earth
         airspace = data.get("airspace", {})
         points = (point for kind in POINT_LISTS for point in data.get(kind, ()))
-        for table in (*points, airspace, *airspace.get("no_fly", ())):
+        for table in (*points, airspace, *airspace.get("no_fly", ()), *data.get("buildings", ())):
             for key, metric in EARTHLY.items() if isinstance(table, dict) else ():
                 if key in table:
                     table.pop(metric, None)

@@ -117,8 +117,8 @@ def airspace_faults(
     if corners > MOST_CORNERS:
         yield (
             ("airspace",),
-            f"its geofence and no-fly zones have {corners} corners, must be at most {MOST_CORNERS} in all; "
-            "leave out those that change the areas least",
+            f"its geofence, no-fly zones and buildings have {corners} corners, must be at most "
+            f"{MOST_CORNERS} in all; leave out those that change the areas least, or bound x_m and y_m",
         )
     elif may_hold_a_position(airspace, centres_m):
         yield from _reach_faults(airspace, points, centres_m, error_m)
@@ -126,9 +126,9 @@ def airspace_faults(
         yield (
             ("airspace",),
             f"every position in it is less than keep_out_m = {airspace.keep_out_m!r} m from a node or "
-            "jammer, in a no-fly zone or outside the geofence, or within their margin_m, so there is no room "
-            "for the vehicle; widen altitude_m, x_m or y_m, make keep_out_m or a zone smaller, lower "
-            "margin_m or move the geofence",
+            "jammer, in a no-fly zone or a building, or outside the geofence, or within their margin_m, so "
+            "there is no room for the vehicle; widen altitude_m, x_m or y_m, make keep_out_m or a zone "
+            "smaller, lower margin_m or move the geofence",
         )
 
 

@@ -190,7 +190,7 @@ class Members(ListOf):
         )
 
 
-def list_of_tables(key: str, fewest: int = 0) -> Members:
+def list_of_tables(key: str, fewest: int = 0, most: int = MOST_MEMBERS) -> Members:
     """Return the rule of a list of so many tables that are headed by a key."""
-    noun = f"a list of {'at least one table' if fewest else 'tables'}, each headed [[{key}]]"
-    return Members(noun, fewest, MOST_MEMBERS)
+    number = "at least one table" if fewest else f"at most {most} tables" if most < MOST_MEMBERS else "tables"
+    return Members(f"a list of {number}, each headed [[{key}]]", fewest, most)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 from numpy.typing import ArrayLike
@@ -11,6 +12,7 @@ from pydantic import Field
 
 from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna
 from nullpose.antenna.from_file import ESTIMATE
+from nullpose.channel.buildings import Prisms, prisms_of
 from nullpose.errors import WrongTypeError
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
@@ -18,6 +20,7 @@ from nullpose.scenario.airframe import Airframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.arrays import PointArrays, rows_of_points
+from nullpose.scenario.buildings import MOST_BUILDINGS, Building
 from nullpose.scenario.channel import Channel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
@@ -42,7 +45,7 @@ class Scenario(Section, PointArrays):
     """
 
     header: ClassVar[str] = "a table with the keys of a scenario file"
-    unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers"})
+    unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers", "buildings"})
     ways: ClassVar[tuple[Ways, ...]] = (Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),)
 
     name: Title = Field(
@@ -97,6 +100,10 @@ class Scenario(Section, PointArrays):
     )
     eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
         default=(), description="Tables headed [[eavesdroppers]], one for each; where the drone transmits."
+    )
+    buildings: Annotated[tuple[Building, ...], list_of_tables("buildings", most=MOST_BUILDINGS)] = Field(
+        default=(),
+        description="Tables headed [[buildings]], one for each building or file of some; none if left out.",
     )
 
     @classmethod
@@ -214,6 +221,23 @@ class Scenario(Section, PointArrays):
     def reference_gain(self) -> float:
         """Path gain at 1 m times the largest gain of the drone's antenna, linear."""
         return self.receiver.reference_gain * ratio_from_db(self.antenna_gain_dbi)
+
+    @cached_property
+    def open_airspace(self) -> Airspace:
+        """The airspace less the buildings, which are no-fly zones in it."""
+        return self.airspace.outside(building.zone for building in self.buildings)
+
+    @cached_property
+    def prisms(self) -> Prisms | None:
+        """The buildings in convex pieces; None without any that is higher than its base."""
+        if all(building.heights_m[1] <= building.base_m for building in self.buildings):
+            return None
+        return prisms_of(
+            [building.outline_m for building in self.buildings],
+            [building.courtyard_outlines_m for building in self.buildings],
+            [building.floor_m for building in self.buildings],
+            [building.heights_m for building in self.buildings],
+        )
 
     @property
     def has_margins(self) -> bool:

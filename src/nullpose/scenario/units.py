@@ -29,6 +29,7 @@ EARTHLY_RANGES = {"altitude_msl_m": "alt_msl_m", "altitude_ellipsoid_m": "alt_m"
 EARTHLY = {
     **dict.fromkeys(("lat_deg", "lon_deg", *ALTITUDE_KEYS), "position_m"),
     **EARTHLY_CORNERS,
+    "courtyards_lat_lon_deg": "courtyards_m",
     **dict.fromkeys(EARTHLY_RANGES, "altitude_m"),
 }
 """The keys that state something on the Earth, and those in metres that follow from the origin."""

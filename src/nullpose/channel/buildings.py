@@ -1,0 +1,153 @@
+"""Buildings as upright prisms, and whether one stands between two points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nullpose.channel.convex import convex_parts
+from nullpose.channel.model import FloatArray
+
+TOUCHING_M = 1e-9
+"""What enters a prism by less than this touches it only [m]."""
+OVERLAP_M = 1e-6
+"""How far the pieces of a building reach into each other, so that no line slips between them [m]."""
+_BLOCK = 2_000_000  # numbers of an array
+
+
+class Prisms(NamedTuple):
+    """Convex upright prisms, of which buildings are made.
+
+    Args:
+        start: (n + 1,) int64, where the sides of each prism begin in ``sides``, and where the last ones end.
+        sides: (s, 3) outward unit normal (east, north) and offset [m] of each side: ``n . x <= c`` inside.
+        base_m: (n,) altitude of the floor of each [m].
+        least_height_m: (n,) altitude of the roof, at the low end of what is known [m].
+        most_height_m: (n,) the same at the high end.
+        building: (n,) int64, which building each is a piece of.
+    """
+
+    start: NDArray[np.int64]
+    sides: FloatArray
+    base_m: FloatArray
+    least_height_m: FloatArray
+    most_height_m: FloatArray
+    building: NDArray[np.int64]
+
+
+def prisms_of(
+    outlines_m: Sequence[FloatArray],
+    courtyards_m: Sequence[Sequence[FloatArray]],
+    bases_m: ArrayLike,
+    heights_m: ArrayLike,
+) -> Prisms:
+    """Cut buildings into convex prisms; one of convex shape stays whole.
+
+    Args:
+        outlines_m: of each building, its vertices counter-clockwise, (v, 2), metres.
+        courtyards_m: of each building, the vertices of its courtyards.
+        bases_m: (b,) altitudes of the floors.
+        heights_m: (b, 2) lowest and highest altitude that each roof may have.
+
+    Example:
+        >>> import numpy as np
+        >>> square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+        >>> prisms_of([square], [[]], [0.0], [[20.0, 22.0]]).sides
+        array([[ 0., -1.,  0.],
+               [ 1.,  0., 10.],
+               [ 0.,  1., 10.],
+               [-1.,  0.,  0.]])
+    """
+    pieces = [
+        (index, sides)
+        for index, (outline_m, courtyards) in enumerate(zip(outlines_m, courtyards_m, strict=True))
+        for sides in _overlapping(convex_parts(outline_m, courtyards))
+    ]
+    building = np.array([index for index, _ in pieces], dtype=np.int64)
+    least_m, most_m = np.asarray(heights_m, dtype=np.float64).reshape(-1, 2)[building].T
+    return Prisms(
+        np.cumsum([0, *(len(sides) for _, sides in pieces)]).astype(np.int64),
+        np.vstack([np.zeros((0, 3)), *(sides for _, sides in pieces)]),
+        np.asarray(bases_m, dtype=np.float64).reshape(-1)[building],
+        least_m,
+        most_m,
+        building,
+    )
+
+
+def _overlapping(parts: Sequence[FloatArray]) -> list[FloatArray]:
+    """List the sides of each convex part of a polygon, those between two parts moved outwards."""
+    edges = [
+        list(zip(map(tuple, part), map(tuple, np.roll(part, -1, axis=0)), strict=True)) for part in parts
+    ]
+    known = {edge for part in edges for edge in part}
+    return [
+        _sides(part) + [[0.0, 0.0, OVERLAP_M * ((end, begin) in known)] for begin, end in part_edges]
+        for part, part_edges in zip(parts, edges, strict=True)
+    ]
+
+
+def _sides(part_m: FloatArray) -> FloatArray:
+    along = np.roll(part_m, -1, axis=0) - part_m
+    normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
+    return np.column_stack([normal, np.sum(normal * part_m, axis=1)])
+
+
+def is_blocked(
+    prisms: Prisms, positions_m: ArrayLike, points_m: ArrayLike, heights_m: FloatArray
+) -> NDArray[np.bool_]:
+    """Check if a building stands on the straight line between positions and ground points.
+
+    A line is clipped by the half-spaces of each prism; what is left of it lies inside. A line that touches
+    an edge, a wall or a roof is clear.
+
+    Args:
+        prisms: the buildings.
+        positions_m: of the drone, (..., 3), metres.
+        points_m: on the ground, (m, 3), metres.
+        heights_m: (n,) the roof of each prism: ``prisms.most_height_m`` where a building makes the value
+            worse (nodes), ``prisms.least_height_m`` where it makes it better (jammers).
+
+    Returns:
+        Array of shape (..., m).
+
+    Example:
+        >>> import numpy as np
+        >>> square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+        >>> tower = prisms_of([square], [[]], [0.0], [[20.0, 22.0]])
+        >>> is_blocked(tower, [-10.0, 5.0, 30.0], [[20.0, 5.0, 11.0], [20.0, 5.0, 20.0]], tower.most_height_m)
+        array([ True, False])
+    """
+    positions, points = np.asarray(positions_m, dtype=np.float64), np.asarray(points_m, dtype=np.float64)
+    flat = positions.reshape(-1, 3)
+    rows = max(1, _BLOCK // max(1, len(prisms.sides)))  # links at a time
+    blocked = np.zeros((len(flat), len(points)), dtype=np.bool_)
+    links = np.indices(blocked.shape).reshape(2, -1) if len(prisms.base_m) else np.zeros((2, 0), np.int64)
+    for first in range(0, links.shape[1], rows):
+        position, point = links[:, first : first + rows]
+        blocked[position, point] = _meets(prisms, flat[position], points[point], heights_m)
+    return blocked.reshape(*positions.shape[:-1], len(points))
+
+
+def _meets(
+    prisms: Prisms, begin_m: FloatArray, end_m: FloatArray, heights_m: FloatArray
+) -> NDArray[np.bool_]:
+    """Clip the lines from begins to ends, (l, 3) each, by all prisms, (l,)."""
+    enters, leaves = np.zeros((len(begin_m), len(heights_m))), np.ones((len(begin_m), len(heights_m)))
+    for normals, offsets, start in (
+        (np.insert(prisms.sides[:, :2], 2, 0.0, axis=1), prisms.sides[:, 2], prisms.start[:-1]),
+        (np.array([[0.0, 0.0, 1.0]]), heights_m, np.arange(len(heights_m))),
+        (np.array([[0.0, 0.0, -1.0]]), -prisms.base_m, np.arange(len(heights_m))),
+    ):
+        outside = offsets - TOUCHING_M
+        at_begin, at_end = begin_m @ normals.T - outside, end_m @ normals.T - outside
+        slope = at_begin - at_end
+        crossing = np.divide(at_begin, slope, out=np.zeros_like(slope), where=slope != 0.0)
+        enter = np.where(at_begin < 0.0, 0.0, np.where(at_end < 0.0, crossing, np.inf))
+        leave = np.where(at_end < 0.0, 1.0, np.where(at_begin < 0.0, crossing, -np.inf))
+        enters = np.maximum(enters, np.maximum.reduceat(enter, start, axis=1))
+        leaves = np.minimum(leaves, np.minimum.reduceat(leave, start, axis=1))
+    return np.asarray(np.any(enters < leaves, axis=1))

@@ -1,0 +1,111 @@
+"""The buildings that a scenario file takes from another file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from nullpose.errors import Fault, ScenarioError
+from nullpose.files import PlainTable
+from nullpose.scenario.area_files import reach_deg
+from nullpose.scenario.areas import Area, area_of, counted, unique
+from nullpose.scenario.building_heights import BuildingHeight, height_of
+from nullpose.scenario.buildings import MOST_BUILDINGS, Building
+from nullpose.scenario.faults import EXCHANGED, require
+from nullpose.scenario.geo_file import Feature
+from nullpose.scenario.shapes import corners_of
+
+_MARKS = ("building", "building:part")  # of OpenStreetMap
+_PASSED_OVER = ("point", "line", "wall", "feature without a place", "other feature")
+
+
+def buildings_of(
+    features: Sequence[Feature], rules: Building, origin: PlainTable, names: set[str]
+) -> tuple[list[tuple[PlainTable, str]], list[str]]:
+    """Make raw buildings of features: one of each polygon, open where it has a hole.
+
+    Where some features are marked as buildings, as those of OpenStreetMap are, the others are left out.
+
+    Args:
+        features: of the file.
+        rules: the table that names the file.
+        origin: the scenario's, raw; empty without one.
+        names: that are taken; those of the file are added.
+
+    Returns:
+        The buildings, each with the place of its feature, and notes on what became of the features.
+
+    Raises:
+        ScenarioError: with the faults of all features.
+    """
+    counts, faults, found = Counter[str](), list[Fault](), list[tuple[Area, BuildingHeight]]()
+    marked = [feature for feature in features if _is_marked(feature)] or features
+    counts["other feature"], reach = len(features) - len(marked), reach_deg(origin)
+    for feature in marked:
+        try:
+            area = area_of(feature, reach, counts, is_fence=True)
+            if area is not None:
+                counts["point"] += len(area.cylinders)
+                found += [(area, height_of(feature, rules))] if area.polygons else []
+        except ScenarioError as error:
+            faults += error.faults
+    faults += _without_height([area for area, height in found if not height.by])
+    if faults:
+        raise ScenarioError(faults)
+    total = sum(len(area.polygons) for area, _ in found)
+    require(
+        total <= MOST_BUILDINGS,
+        "",
+        f"it has {total} buildings in reach, must be at most {MOST_BUILDINGS}; cut it to the "
+        "streets of the scene",
+    )
+    tables = [(table, area.place) for area, height in found for table in _tables(area, height, rules, names)]
+    return tables, list(_notes(found, counts))
+
+
+def _is_marked(feature: Feature) -> bool:
+    return any(feature.properties.get(mark, "no") not in ("no", False) for mark in _MARKS)
+
+
+def _without_height(areas: Sequence[Area]) -> Iterator[Fault]:
+    """Yield, once for all, that buildings state no height and no rule says which to assume."""
+    for area in areas[:1]:
+        yield Fault(
+            area.place,
+            "it states no height (height, or building:levels with storey_height_m)"
+            f"{f', and so {len(areas) - 1} more' if areas[1:] else ''}; write storey_height_m = 3, or "
+            "missing_height_m = 9 or [4, 12] for those that state none, beside buildings_from",
+        )
+
+
+def _tables(area: Area, height: BuildingHeight, rules: Building, names: set[str]) -> Iterator[PlainTable]:
+    """Yield the raw buildings of an area."""
+    low_m, high_m = height.ends_m
+    for polygon in area.polygons:
+        name = unique(area.name, names)
+        yards = [corners_of(ring) for ring in polygon.interiors]
+        yield {
+            **({"name": name} if name else {}),
+            "polygon_lat_lon_deg": corners_of(polygon.exterior),
+            **({"courtyards_lat_lon_deg": yards} if yards else {}),
+            "height_m": low_m if low_m == high_m else [low_m, high_m],
+            "base_m": height.base_m,
+            "clearance_m": rules.clearance_m,
+        }
+
+
+def _notes(found: Sequence[tuple[Area, BuildingHeight]], counts: Counter[str]) -> Iterator[str]:
+    """Yield how the heights of all buildings are stated and what is passed over, then what is not read."""
+    ways = Counter(height.by for area, height in found for _ in area.polygons)
+    passed = counted({kind: counts[kind] for kind in _PASSED_OVER})
+    parts = {
+        f"buildings: {ways.total()}": True,
+        ": " + ", ".join(f"{number} {way}" for way, number in ways.most_common()): found,
+        f"; {EXCHANGED}": counts["area"] and not found,
+        f"; out of reach: {counts['area'] - len(found)}": counts["area"] > len(found),
+        f"; passed over: {passed}": passed,
+    }
+    yield "".join(part for part, is_so in parts.items() if is_so)
+    unread = Counter(key for _, height in found for key in height.unread)
+    if unread:
+        yield f"not read: {', '.join(f'{key} (of {number})' for key, number in unread.items())}"

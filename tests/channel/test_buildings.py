@@ -1,0 +1,115 @@
+"""Lines of sight past buildings, against shapely on sections and known answers."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+import shapely
+
+from nullpose.channel.buildings import Prisms, is_blocked, prisms_of
+from scenes import star
+
+SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+NEAR_M = 1e-4
+"""A shorter way through a building, or past one, is left to rounding."""
+
+
+def towers(*heights_m: tuple[float, float]) -> Prisms:
+    """Return the square with these heights, once for each."""
+    count = len(heights_m)
+    return prisms_of([SQUARE] * count, [[]] * count, [0.0] * count, heights_m)
+
+
+def longest_inside_m(
+    polygons: Sequence[shapely.Polygon], ends_m: Sequence[tuple[float, float]], at: np.ndarray, to: np.ndarray
+) -> float:
+    """Return how much of a line is inside the buildings, seen from above, at the altitudes they have."""
+    inside = 0.0
+    for polygon, (base, roof) in zip(polygons, ends_m, strict=True):
+        low, high = sorted((np.array([base, roof]) - at[2]) / (to[2] - at[2]))
+        low, high = max(low, 0.0), min(high, 1.0)
+        if low < high:
+            part = shapely.LineString([(at + t * (to - at))[:2] for t in (low, high)])
+            inside = max(inside, part.intersection(polygon).length)
+    return inside
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_lines_are_clipped_as_by_shapely(seed: int) -> None:
+    """A link is blocked where a part of it is inside a building that may have a courtyard, and only there."""
+    rng = np.random.default_rng(seed)
+    outlines = [star(rng, int(rng.integers(3, 12)), 25.0) + rng.uniform(-60.0, 60.0, 2) for _ in range(8)]
+    yards = [[outline.mean(axis=0) + 0.02 * (outline - outline.mean(axis=0))] for outline in outlines]
+    polygons = [shapely.Polygon(*both) for both in zip(outlines, yards, strict=True)]
+    sound = [polygon.is_valid for polygon in polygons]
+    yards = [yard if is_sound else [] for yard, is_sound in zip(yards, sound, strict=True)]
+    polygons = [shapely.Polygon(*both) for both in zip(outlines, yards, strict=True)]
+    base = rng.choice([0.0, 4.0], 8)
+    ends = np.column_stack([base, base + rng.uniform(1.0, 30.0, 8)])
+    prisms = prisms_of(outlines, yards, base, ends[:, [1, 1]])
+    at, to = rng.uniform(-80.0, 80.0, (20, 3)), rng.uniform(-80.0, 80.0, (10, 3))
+    at[:, 2], to[:, 2] = rng.uniform(5.0, 60.0, 20), rng.uniform(0.0, 5.0, 10)
+    blocked = is_blocked(prisms, at, to, prisms.most_height_m)
+    lengths = np.array([[longest_inside_m(polygons, ends, a, b) for b in to] for a in at])
+    assert 0.2 < blocked.mean() < 0.95
+    assert blocked[lengths > NEAR_M].all()
+    assert not blocked[lengths == 0.0].any()
+
+
+def test_what_touches_is_clear() -> None:
+    """Along a wall, over the roof's edge, past a corner, on the roof or at the foot of a wall: all clear."""
+    tower = towers((20.0, 20.0))
+    for at, to in (
+        ([-10.0, 0.0, 9.0], [30.0, 0.0, 1.0]),
+        ([-10.0, 5.0, 20.0], [30.0, 5.0, 20.0]),
+        ([-10.0, 5.0, 30.0], [30.0, 5.0, 10.0]),
+        ([-5.0, 5.0, 9.0], [5.0, -5.0, 9.0]),
+        ([5.0, 5.0, 20.0], [50.0, 5.0, 30.0]),
+        ([0.0, 5.0, 1.0], [-50.0, 5.0, 30.0]),
+        ([5.0, 20.0, 5.0], [5.0, 20.0, 15.0]),
+    ):
+        for begin, end in ((at, to), (to, at)):
+            assert not is_blocked(tower, begin, [end], tower.most_height_m).any()
+    through = np.array([[[-10.0, 5.0, 9.0], [5.0, 5.0, 30.0]], [[5.0, 30.0, 9.0], [5.0, 5.0, 21.0]]])
+    assert is_blocked(tower, through, [[30.0, 5.0, 1.0], [5.0, 5.0, 0.0]], tower.most_height_m).tolist() == [
+        [[True, True], [False, True]],
+        [[False, True], [True, True]],
+    ]
+
+
+def test_no_line_slips_between_the_pieces_of_a_building() -> None:
+    """An L is cut into pieces; a line that runs along the cut is blocked like any other."""
+    corner = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [10.0, 10.0], [10.0, 20.0], [0.0, 20.0]])
+    prisms = prisms_of([corner], [[]], [0.0], [[9.0, 9.0]])
+    assert set(prisms.building) == {0}
+    assert len(prisms.start) == len(prisms.base_m) + 1 > 2
+    for begin, end in zip(prisms.start, prisms.start[1:], strict=False):
+        sides = prisms.sides[begin:end]
+        vertices = [
+            np.linalg.solve(both[:, :2], both[:, 2]) for both in np.stack([sides, np.roll(sides, 1, 0)], 1)
+        ]
+        for a, b in zip(vertices, np.roll(vertices, 1, axis=0), strict=True):
+            middle, along = 0.5 * (a + b), b - a
+            is_inner = shapely.Polygon(corner).contains(shapely.Point(middle).buffer(0.01))
+            at, to = [*(middle - 0.4 * along), 1.0], [*(middle + 0.4 * along), 1.0]
+            assert not is_inner or is_blocked(prisms, at, [to], prisms.most_height_m).all()
+
+
+def test_the_roof_is_the_one_that_is_asked_for() -> None:
+    """Of an interval of heights the upper end blocks more; a building of height 0 blocks nothing."""
+    tower = towers((0.0, 0.0), (8.0, 12.0))
+    at, to = [-10.0, 5.0, 10.0], [[30.0, 5.0, 10.0]]
+    assert is_blocked(tower, at, to, tower.most_height_m).all()
+    assert not is_blocked(tower, at, to, tower.least_height_m).any()
+    flat = towers((0.0, 0.0))
+    rng = np.random.default_rng(3)
+    assert not is_blocked(flat, rng.normal(size=(50, 3)), rng.normal(size=(9, 3)), flat.most_height_m).any()
+    none = prisms_of([], [], [], [])
+    assert not is_blocked(none, at, to, none.most_height_m).any()
+
+
+def test_a_passage_is_open() -> None:
+    """Below its base a building lets links through."""
+    arch = prisms_of([SQUARE], [[]], [4.0], [[9.0, 9.0]])
+    at = [[-10.0, 5.0, 3.0], [-10.0, 5.0, 5.0]]
+    assert is_blocked(arch, at, [[30.0, 5.0, 3.0]], arch.most_height_m)[:, 0].tolist() == [False, True]
