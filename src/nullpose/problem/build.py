@@ -35,7 +35,7 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False, any_channel: 
             "there are solve, evaluate and antenna compare"
         )
     if not (any_channel and scenario.antenna_record.is_quadratic):
-        refuse_channels(scenario)
+        _refuse_channels(scenario)
     ratios = scenario.objective_record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
@@ -43,7 +43,7 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False, any_channel: 
     return family
 
 
-def refuse_channels(scenario: Scenario) -> None:
+def _refuse_channels(scenario: Scenario) -> None:
     """Refuse a scenario with a link whose gain over free space changes with the position.
 
     Raises:
