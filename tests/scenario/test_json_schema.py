@@ -14,6 +14,7 @@ from nullpose.scenario import (
     Airframe,
     Airspace,
     Array,
+    Building,
     Eavesdropper,
     Jammer,
     Node,
@@ -26,7 +27,7 @@ from nullpose.scenario import (
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENARIOS = sorted(path for path in EXAMPLES.glob("*.toml") if path.name != "study.toml")  # which is a spec
-KINDS = (Airframe, Airspace, Array, Eavesdropper, Jammer, Node, NoFlyZone, Receiver, Transmitter)
+KINDS = (Airframe, Airspace, Array, Building, Eavesdropper, Jammer, Node, NoFlyZone, Receiver, Transmitter)
 TABLES = {kind.__name__: kind for kind in KINDS}
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.channel.convex import convex_parts
+from nullpose.channel.convex import convex_parts, edges_of, joined
 from nullpose.channel.model import FloatArray
 
 TOUCHING_M = 1e-9
@@ -64,7 +64,7 @@ def prisms_of(
     pieces = [
         (index, sides)
         for index, (outline_m, courtyards) in enumerate(zip(outlines_m, courtyards_m, strict=True))
-        for sides in _overlapping(convex_parts(outline_m, courtyards))
+        for sides in _overlapping(joined(convex_parts(outline_m, courtyards)))
     ]
     building = np.array([index for index, _ in pieces], dtype=np.int64)
     least_m, most_m = np.asarray(heights_m, dtype=np.float64).reshape(-1, 2)[building].T
@@ -80,10 +80,8 @@ def prisms_of(
 
 def _overlapping(parts: Sequence[FloatArray]) -> list[FloatArray]:
     """List the sides of each convex part of a polygon, those between two parts moved outwards."""
-    edges = [
-        list(zip(map(tuple, part), map(tuple, np.roll(part, -1, axis=0)), strict=True)) for part in parts
-    ]
-    known = {edge for part in edges for edge in part}
+    edges = [edges_of([tuple(vertex) for vertex in part.tolist()]) for part in parts]
+    known = {edge for part_edges in edges for edge in part_edges}
     return [
         _sides(part) + [[0.0, 0.0, OVERLAP_M * ((end, begin) in known)] for begin, end in part_edges]
         for part, part_edges in zip(parts, edges, strict=True)

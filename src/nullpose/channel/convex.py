@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -12,18 +12,21 @@ from nullpose.channel.model import FloatArray
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
+_Vertex: TypeAlias = tuple[float, ...]
+
 # shapely is imported where there is a polygon: most scenarios have none.
 
 
 def is_convex(outline_m: FloatArray) -> bool:
-    """Check if a simple polygon, counter-clockwise, turns left or goes on straight at every vertex.
+    """Check if a polygon, counter-clockwise, turns left or goes on straight at every vertex.
 
     Args:
         outline_m: vertices, (n, 2), metres.
     """
     along = np.roll(outline_m, -1, axis=0) - outline_m
     after = np.roll(along, -1, axis=0)
-    return bool(np.all(along[:, 0] * after[:, 1] >= along[:, 1] * after[:, 0]))
+    turn = along[:, 0] * after[:, 1] - along[:, 1] * after[:, 0]
+    return bool(np.all((turn > 0.0) | ((turn == 0.0) & (np.sum(along * after, axis=1) > 0.0))))
 
 
 def convex_parts(outline_m: FloatArray, courtyards_m: Sequence[FloatArray] = ()) -> list[FloatArray]:
@@ -38,6 +41,37 @@ def convex_parts(outline_m: FloatArray, courtyards_m: Sequence[FloatArray] = ())
     import shapely
 
     return outlines_of(shapely.constrained_delaunay_triangles(shapely.Polygon(outline_m, courtyards_m)))
+
+
+def joined(parts_m: Sequence[FloatArray]) -> list[FloatArray]:
+    """Join convex parts of a polygon over common edges as long as they stay convex (Hertel and Mehlhorn).
+
+    Args:
+        parts_m: vertices of each, (n, 2), metres, counter-clockwise; neighbours have whole edges in common.
+    """
+    parts = {index: [tuple(vertex) for vertex in part.tolist()] for index, part in enumerate(parts_m)}
+    owners = {edge: index for index, part in parts.items() for edge in edges_of(part)}
+    for begin, end in list(owners):
+        one, other = owners[begin, end], owners.get((end, begin))
+        if other is None or other == one:
+            continue
+        first, second = _from(parts[one], end), _from(parts[other], begin)
+        both = [*first, *second[1:-1]]
+        if is_convex(np.array(both)):
+            owners |= dict.fromkeys(edges_of(second), one)
+            parts[one] = both
+            del parts[other]
+    return [np.array(part) for part in parts.values()]
+
+
+def edges_of(part: Sequence[_Vertex]) -> list[tuple[_Vertex, _Vertex]]:
+    """List the pairs of vertices that follow each other around a polygon."""
+    return list(zip(part, [*part[1:], part[0]], strict=True))
+
+
+def _from(part: list[_Vertex], vertex: _Vertex) -> list[_Vertex]:
+    place = part.index(vertex)
+    return part[place:] + part[:place]
 
 
 def outlines_of(shapes: BaseGeometry) -> list[FloatArray]:

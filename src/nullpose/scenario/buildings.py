@@ -16,7 +16,7 @@ from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone, unplaced
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
-from nullpose.scenario.rules import Ascending, Choice, Quantity
+from nullpose.scenario.rules import Ascending, Choice, ListOf, Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label, MarginMetres
 from nullpose.scenario.ways import Ways
@@ -33,6 +33,7 @@ _ABOVE_GROUND = Quantity(
 HIGHEST_M = _ABOVE_GROUND.high
 """The highest roof [m]."""
 _STOREY = Quantity("a height of a storey in m", 1.0, 20.0, "3 m is common")
+_COURTYARDS = ListOf("a list of at most 1000 polygons, each a list of vertices", 0, 1000)
 _Height = Annotated[float, _ABOVE_GROUND]
 _BOTH_ENDS: TypeAdapter[tuple[float, float]] = TypeAdapter(
     Annotated[tuple[_Height, _Height], Ascending("one height in m, or two, the lowest first", 2, 2)]
@@ -102,11 +103,11 @@ class Building(Section):
         "with an [origin].",
         [[50.0, 14.5], [50.0, 14.5003], [50.0002, 14.5001]],
     )
-    courtyards_m: tuple[Polygon, ...] | None = optional(
+    courtyards_m: Annotated[tuple[Polygon, ...], _COURTYARDS] | None = optional(
         "Outlines of what is open inside it, in metres: a list of polygons. The vehicle may not enter them.",
         [[[25.0, 5.0], [35.0, 5.0], [35.0, 10.0], [25.0, 10.0]]],
     )
-    courtyards_lat_lon_deg: tuple[EarthlyPolygon, ...] | None = optional(
+    courtyards_lat_lon_deg: Annotated[tuple[EarthlyPolygon, ...], _COURTYARDS] | None = optional(
         "The same in degrees, in place of courtyards_m.",
         [[[50.00001, 14.50005], [50.00001, 14.50015], [50.00005, 14.5001]]],
     )
