@@ -156,6 +156,14 @@ def test_what_becomes_of_features(tmp_path: Path) -> None:
     ]
 
 
+def test_corners_with_altitudes(tmp_path: Path) -> None:
+    """The altitudes of corners are no heights, which is told where no other is stated; zeros are silent."""
+    for altitude_m, rest in ((0.0, []), (250.0, ["town.geojson: not read: altitudes of corners (of 1)"])):
+        high = shapely.force_3d(box(0), altitude_m)
+        assert town(tmp_path, [(high, {})], "missing_height_m = 9")[1][1:] == rest
+        assert not town(tmp_path, [(high, {"height": 9})])[1][1:]
+
+
 def _areas(scenario: Scenario, building: int) -> list[float]:
     """Return the areas of the convex pieces of a building, from their sides."""
     prisms, areas = scenario.prisms, []

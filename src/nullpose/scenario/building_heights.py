@@ -6,6 +6,10 @@ import math
 import re
 from typing import NamedTuple
 
+import numpy as np
+import shapely
+
+from nullpose.scenario.arrays import Floats
 from nullpose.scenario.buildings import HIGHEST_M, Building
 from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.geo_file import Feature
@@ -22,6 +26,7 @@ _FEET = ("ft", "feet", "foot", "'")
 _LEVELS = ("building:levels", "levels")
 _LIKE_HEIGHTS = re.compile(r"height|level|floor|store?y|stories|elev|h(?:oe|ö)he|(?:\b|_)alt(?:\b|_|i)", re.I)
 _LIKE_BASES = re.compile(r"(?:\b|_)min(?:\b|_)", re.I)
+_OF_CORNERS = "altitudes of corners"
 _BELOW_GROUND = "underground"
 
 
@@ -63,6 +68,8 @@ def height_of(feature: Feature, rules: Building) -> BuildingHeight:
         and _LIKE_HEIGHTS.search(key)
         and (by in (BY_LEVELS, ASSUMED) or _LIKE_BASES.search(key))
     )
+    if by in (BY_LEVELS, ASSUMED) and np.nan_to_num(_altitudes_m(feature)).any():
+        unread += (_OF_CORNERS,)
     if by:
         require(
             0.0 <= base_m <= ends_m[0] and 0.0 < ends_m[1] <= HIGHEST_M,
@@ -71,6 +78,10 @@ def height_of(feature: Feature, rules: Building) -> BuildingHeight:
             f"and no lower than its min_height, {base_m:g} m, itself 0 or more; correct it in the file",
         )
     return BuildingHeight(base_m, ends_m, by, unread)
+
+
+def _altitudes_m(feature: Feature) -> Floats:
+    return np.asarray(shapely.get_coordinates(feature.geometry, include_z=True)[:, 2])
 
 
 def _roof(feature: Feature, rules: Building) -> tuple[str, tuple[float, float]]:
