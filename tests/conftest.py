@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from nullpose.channel import ENVIRONMENTS, LinkChannel
+from nullpose.channel.elevation import elevation_channel
+from nullpose.channel.power_law import power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 
 if TYPE_CHECKING:
@@ -82,6 +85,23 @@ def random_scene(scene: Callable[..., Scenario]) -> Callable[..., Scenario]:
         )
 
     return build
+
+
+CHANNELS: dict[str, LinkChannel | None] = {
+    "free space": None,
+    "power law 1.6": power_law(1.6, 2.0),
+    "power law 3": power_law(3.0, 1.0),
+    "power law 6": power_law(6.0, 1.0),
+    "suburban": elevation_channel(*ENVIRONMENTS["suburban"], average="power"),
+    "urban in dB": elevation_channel(*ENVIRONMENTS["urban"], average="db"),
+    "high-rise": elevation_channel(*ENVIRONMENTS["high-rise"], average="power"),
+}
+
+
+@pytest.fixture(params=CHANNELS.values(), ids=CHANNELS, scope="session")
+def channel(request: pytest.FixtureRequest) -> LinkChannel | None:
+    """A channel of each kind."""
+    return request.param  # type: ignore[no-any-return]
 
 
 @pytest.fixture(scope="session")

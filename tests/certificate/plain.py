@@ -12,6 +12,10 @@ from nullpose.certificate.certificate import COLUMNS, TOWARDS, WORLD
 from nullpose.certificate.forms import matrices
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
+from nullpose.channel import LinkChannel, PointChannels, excess_gain
+from nullpose.channel.elevation import elevation_excess
+from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.channel.power_law import distance_excess
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
@@ -119,9 +123,14 @@ def cut_into_cells(certificate: Certificate) -> Certificate:
 
 
 def random_family(
-    rng: np.random.Generator, ratios: int, others: int, keep_out_m: float = 1.0, groups: int = 1
+    rng: np.random.Generator,
+    ratios: int,
+    others: int,
+    keep_out_m: float = 1.0,
+    groups: int = 1,
+    channel: LinkChannel | None = None,
 ) -> Family:
-    """So many ratios over denominators of so many points each, with keep-out balls."""
+    """So many ratios over denominators of so many points each, with keep-out balls and a channel."""
     entries = groups * others
     points_m = rng.uniform([0.0, 0.0, 0.0], [60.0, 60.0, 5.0], (ratios + entries, 3))
     return Family(
@@ -139,7 +148,18 @@ def random_family(
         keep_out_points_m=points_m,
         keep_out_m=keep_out_m,
         leak=float(np.choose(int(points_m[0, 0]) % 3, [0.0, 0.001, 0.3])),
+        channels=None if channel is None else np.tile(channel.row, (len(points_m), 1)),
     )
+
+
+def excess_over(family: Family, position_m: np.ndarray) -> np.ndarray:
+    """The excess gains of a family's points at positions, (..., points), from the models."""
+    to_points_m = family.points_m - position_m[..., None, :]
+    if family.channels is None:
+        return np.ones(to_points_m.shape[:-1])
+    kinds = ((BY_DISTANCE, distance_excess), (BY_ELEVATION, elevation_excess))
+    groups = tuple((model, np.flatnonzero(family.channels[:, 0] == kind)) for kind, model in kinds)
+    return excess_gain(PointChannels(np.ones(len(family.points_m)), family.channels, groups), to_points_m)
 
 
 def make_leaves(count: int, **columns: object) -> Leaves:
@@ -174,7 +194,7 @@ def dense_ratios(family: Family, position_m: np.ndarray, axis: np.ndarray) -> np
     """The ratios of a family at poses, (..., ratios), by plain matrices alone."""
     u = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
     links = link_matrix(family.points_m - position_m[..., None, :], family.leak)
-    gains = np.einsum("...i,...pij,...j->...p", u, links, u)
+    gains = np.einsum("...i,...pij,...j->...p", u, links, u) * excess_over(family, position_m)
     entries = family.denominator_weight * gains[..., family.denominator_point]
     sums = [entries[..., a:b].sum(axis=-1) for a, b in pairwise(family.denominator_start)]
     below = (family.denominator_isotropic + np.stack(sums, axis=-1))[..., family.denominator_of]

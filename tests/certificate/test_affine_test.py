@@ -5,12 +5,22 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
-from tests.certificate.plain import boxes_at, dense_ratios, make_leaves, one_box, random_family, seeds
+from tests.certificate.plain import (
+    boxes_at,
+    dense_ratios,
+    excess_over,
+    make_leaves,
+    one_box,
+    random_family,
+    seeds,
+)
 
 from nullpose.certificate.affine_test import _quadratic_negative, affine_holds, link_jet
 from nullpose.certificate.certificate import AFFINE
+from nullpose.certificate.channels import excess
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import Exact, exact, link
+from nullpose.channel import LinkChannel
 from nullpose.problem.axis_field import AxisField
 
 SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -68,6 +78,31 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.
         assert ends(ranged)[0] <= there <= ends(ranged)[1]
 
 
+@pytest.mark.parametrize("is_above", [True, False])
+@pytest.mark.parametrize("field", FIELDS[:3])
+@settings(max_examples=25)
+@given(seed=seeds)
+def test_expansions_bound_the_links_of_channels(
+    field: AxisField, is_above: bool, channel: LinkChannel | None, seed: int
+) -> None:
+    """A link with a channel, of any antennas, is at most what its jet says, or at least that."""
+    rng = np.random.default_rng(seed)
+    family, boxes, dipole = random_family(rng, 1, 1, channel=channel), one_box(rng), DIPOLES[seed % 3]
+    gain = excess(family, boxes, np.zeros(1, dtype=np.int64), is_above)
+    jet = link_jet(field, boxes, family.points_m[:1], family.leak, dipole, gain)
+    assume(np.all(np.isfinite(jet.bends.low) & np.isfinite(jet.bends.high)))
+    x = rng.uniform(-1.0, 1.0, (50, 3)) * boxes.half[0]
+    there = [
+        float(exact_link(field, family.points_m[0], exact(boxes.centre[0] + step), family.leak, dipole))
+        for step in x
+    ] * excess_over(family, boxes.centre[0] + x)[:, 0]
+    weights = np.array([x[:, i] * x[:, k] * (0.5 if i == k else 1.0) for i, k in SIX])
+    taylor = jet.value + (jet.slopes * x.T).total() + (jet.bends * weights).total()
+    slack = 1e-12 * np.abs(there)
+    for bound in (taylor, jet.over):
+        assert np.all(there <= bound.high + slack if is_above else there >= bound.low - slack)
+
+
 def quadratic(rng: np.random.Generator) -> tuple[float, np.ndarray, np.ndarray]:
     """Return a random quadratic on the unit cube whose largest value is near zero."""
     hessian = rng.normal(size=(3, 3)) * 10.0 ** rng.uniform(-2, 1)
@@ -107,14 +142,16 @@ def test_negative_quadratics_are_negative() -> None:
 
 @pytest.mark.parametrize("groups", [1, 3])
 @pytest.mark.parametrize("field", FIELDS[:3])
-@settings(max_examples=10)
+@settings(max_examples=3)
 @given(seed=seeds)
-def test_no_position_of_an_excluded_box_reaches_the_level(field: AxisField, groups: int, seed: int) -> None:
+def test_no_position_of_an_excluded_box_reaches_the_level(
+    field: AxisField, groups: int, channel: LinkChannel | None, seed: int
+) -> None:
     """Whatever mix or ball: allowed positions of excluded boxes stay below the level."""
     rng = np.random.default_rng(seed)
     count, ratios = 60, int(rng.integers(1, 4))
     keep_out_m = float(rng.choice([1.0, 20.0]))
-    family = random_family(rng, ratios, 2, keep_out_m=keep_out_m, groups=groups)
+    family = random_family(rng, ratios, 2, keep_out_m=keep_out_m, groups=groups, channel=channel)
 
     def axis(p: np.ndarray) -> np.ndarray:
         return field.offset + p @ field.matrix.T

@@ -5,9 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from nullpose.channel import ENVIRONMENTS, LinkChannel, PointChannels
-from nullpose.channel.elevation import elevation_channel
-from nullpose.channel.power_law import power_law
+from nullpose.channel import LinkChannel, PointChannels
 from nullpose.objectives import Ratios
 from nullpose.problem.family import Family
 
@@ -37,23 +35,6 @@ def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray
         return np.array(numerators), np.array(denominators)
 
     return forms
-
-
-CHANNELS: dict[str, LinkChannel | None] = {
-    "free space": None,
-    "power law 1.6": power_law(1.6, 2.0),
-    "power law 3": power_law(3.0, 1.0),
-    "power law 6": power_law(6.0, 1.0),
-    "suburban": elevation_channel(*ENVIRONMENTS["suburban"], average="power"),
-    "urban in dB": elevation_channel(*ENVIRONMENTS["urban"], average="db"),
-    "high-rise": elevation_channel(*ENVIRONMENTS["high-rise"], average="power"),
-}
-
-
-@pytest.fixture(params=CHANNELS.values(), ids=CHANNELS, scope="session")
-def channel(request: pytest.FixtureRequest) -> LinkChannel | None:
-    """A channel of each kind."""
-    return request.param  # type: ignore[no-any-return]
 
 
 @pytest.fixture(scope="session")

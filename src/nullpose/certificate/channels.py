@@ -91,7 +91,7 @@ def _by_distance(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above:
     s, near = r.squared().total(), boxes.nearest(points_m)
     value, most = power(s / unit, 0.5 * c), power(near.squared() / unit, 0.5 * c)
     slope = most * np.abs(c) / near
-    bend = slope * np.maximum(1.0, Interval(c - 1.0).magnitude()) / near
+    bend = slope * np.maximum(1.0, (Interval(c) - 1.0).magnitude()) / near
     far = power(Interval(boxes.farthest2(points_m)) / unit, 0.5 * c)
     most = where(c > 0.0, far, most)
     return Amplitude(value, r * (value * -c / s), most.most(), slope.most(), bend.most())
