@@ -47,7 +47,7 @@ def changed(value: Any, rng: np.random.Generator) -> Any:
 _LEAF = (*COLUMNS, "mixes")
 _CLAIM = ("value", "upper_bound", "position_m", "angle", "root_m", "axis", "scheme", "null_jammer")
 _FILE = ("format", "version", "scenario_sha256", "scenario", "scenario, digest redone")
-_REDONE = tuple(f"{part}, claim redone" for part in ("scenario", "airframe", "no_fly", "antenna"))
+_REDONE = tuple(f"{part}, claim redone" for part in ("scenario", "airframe", "no_fly", "antenna", "channel"))
 CLASSES = (*_LEAF, *_CLAIM, *_FILE, *_REDONE, "leaf dropped", "leaf moved", "tree dropped")
 
 
@@ -78,7 +78,7 @@ def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
     if kind.startswith("scenario") and kind != "scenario_sha256":
         return numbers(data["scenario"], ("scenario",))
     part = kind.partition(",")[0]
-    if part in ("airframe", "antenna"):
+    if part in ("airframe", "antenna", "channel"):
         return numbers(data["scenario"].get(part, {}), ("scenario", part))
     if part == "no_fly":
         zones = data["scenario"]["airspace"].get("no_fly", [])

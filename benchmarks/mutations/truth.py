@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from benchmarks.soundness.search import best_value
+from nullpose.channel import PointChannels, excess_gain
 from nullpose.physics import (
     Pose,
     eavesdropper_snr,
@@ -57,6 +58,12 @@ class Problem:
         self.axes = np.array([np.array(axis) / np.linalg.norm(axis) for axis in axes])
         self.is_dipole = np.array([one.antenna == "dipole" for one in antennas])
         self.leak = getattr(scenario.antenna_record, "leak", 0.0)  # forms are of dipoles
+        heard = (
+            scenario.eavesdropper_channels
+            if scenario.objective == "secrecy-rate"
+            else (scenario.jammer_channels)
+        )
+        self.channels = (scenario.node_channels, heard)
         nearest = np.clip(self.points, airspace.lower_m, airspace.upper_m)
         self.balls = self.points[np.linalg.norm(self.points - nearest, axis=1) < airspace.keep_out_m]
         self.zones = [
@@ -66,6 +73,22 @@ class Problem:
         ]
         if airspace.geofence_m is not None:
             self.zones.append(lambda p: -depth_m(p[..., :2], airspace.geofence_outline_m))
+
+    def gains(self, to_points_m: np.ndarray) -> np.ndarray:
+        """Return the links' power gains over free space, (..., points)."""
+        parts = np.split(to_points_m, [self.first, self.first + self.below.shape[1]], axis=-2)
+        channels: tuple[PointChannels | None, ...] = (*self.channels, None)
+        each = zip(channels, parts, strict=True)
+        return np.concatenate(
+            [np.ones(r.shape[:-1]) if c is None else excess_gain(c, r) for c, r in each], axis=-1
+        )
+
+    def best_received(self, distance_m: np.ndarray) -> np.ndarray:
+        """Return the largest numerators at distances, one for each ratio: no gain is larger than overhead."""
+        below = np.zeros((len(self.node), len(self.points), 3))
+        below[..., 2] = -distance_m[:, None]
+        gains = self.gains(below)[np.arange(len(self.node)), self.node]
+        return np.asarray(self.isotropic + self.above * gains / distance_m**2)
 
     def forms(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return numerators and denominators of all ratios at positions, (..., ratios, 3, 3) each."""
@@ -80,6 +103,7 @@ class Problem:
         of_dipole = np.sum(own**2, axis=-1)[..., None, None]
         whole = np.where(self.is_dipole[:, None, None], of_dipole, 1.0 / square)
         links = (1.0 - self.leak) * links + self.leak * whole * np.eye(3)
+        links = links * self.gains(r)[..., None, None]
         above = self.isotropic * np.eye(3) + self.above[:, None, None] * links[..., self.node, :, :]
         others = links[..., self.first : self.first + self.below.shape[1], :, :]
         return above, np.eye(3) + np.einsum("ke,...eij->...kij", self.below, others)

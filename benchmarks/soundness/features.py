@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from benchmarks.soundness.scenes import Scene
+from nullpose.channel import ENVIRONMENTS
 from nullpose.scenario import Scenario
 
 FloatArray = NDArray[np.float64]
@@ -294,6 +295,46 @@ def _gaps(rng: np.random.Generator) -> Table:
     return put_antennas(rng, makers[int(rng.integers(len(makers)))](rng))
 
 
+def _channel(rng: np.random.Generator) -> Table:
+    """A power law, an environment, or the numbers of one."""
+    kind = rng.integers(3)
+    if kind == 0:
+        closest = float(rng.uniform(0.5, 0.9))
+        return {
+            "model": "power-law",
+            "exponent": float(rng.uniform(1.6, 6.0)),
+            "reference_distance_m": closest,
+        }
+    average = str(rng.choice(["power", "power", "db", "guaranteed"]))
+    if kind == 1:
+        return {"model": "elevation", "environment": str(rng.choice(list(ENVIRONMENTS))), "average": average}
+    loss = float(rng.uniform(0.0, 5.0))
+    losses = {"los_loss_db": loss, "nlos_loss_db": loss + float(rng.uniform(0.0, 30.0))}
+    curve = {"a": float(rng.uniform(1.0, 40.0)), "b": float(10.0 ** rng.uniform(-1.5, 0.0))}
+    return {"model": "elevation", "average": average} | curve | losses
+
+
+def _channels(rng: np.random.Generator) -> Table:
+    """Channels of all points or of some, in the paper's cases and with other features."""
+    makers = (_plain, _plain, _plain, _airframe, _secrecy, _margins, _no_fly, _antennas)
+    choice = int(rng.integers(len(makers)))
+    table = makers[choice](rng) | {"channel": _channel(rng)}
+    exponent, closest = (
+        table["channel"].get(key, other) for key, other in (("exponent", 2.0), ("reference_distance_m", 1.0))
+    )
+    quieter = closest**exponent * 25.0 ** (2.0 - exponent)  # at 25 m the SNR of free space
+    for listener in [table["receiver"], *table.get("eavesdroppers", [])]:
+        listener["noise_w"] *= quieter
+    if rng.uniform() < 0.3:
+        for point in [*table["nodes"], *table["jammers"], *table.get("eavesdroppers", [])]:
+            if rng.uniform() < 0.4:
+                point["channel"] = _channel(rng) if rng.uniform() < 0.7 else "free-space"
+    if choice < 3 and rng.uniform() < 0.6:
+        some = ["vertical", "maximum-gain", *["zero-interference"] * (2 * len(table["jammers"]))]
+        table["scheme"] = str(rng.choice(some))
+    return table
+
+
 _SIDES = ("x_m", "y_m", "altitude_m")
 
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
@@ -315,6 +356,7 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "tilts": _tilts,
     "level": _level,
     "gaps": _gaps,
+    "channels": _channels,
 }
 
 _CELLS = 15_000  # of the proofs at given gaps: what is left then is promised too, and quickly verified
@@ -323,11 +365,12 @@ _CELLS = 15_000  # of the proofs at given gaps: what is left then is promised to
 def make_feature_scene(feature: str, number: int) -> Scene:
     """Return the scene of a number with something that scenarios can ask for."""
     rng = np.random.default_rng([20261, list(FEATURES).index(feature), number])
+    table, has_gap = FEATURES[feature](rng), feature in ("gaps", "channels")
     return Scene(
         number=number,
         kind=feature,
-        scheme="optimum",
-        scenario=Scenario.from_dict(FEATURES[feature](rng) | {"name": f"{feature} {number}"}),
-        gap=GAPS[number % len(GAPS)] if feature == "gaps" else None,
-        cells=_CELLS if feature == "gaps" else None,
+        scheme=table.pop("scheme", "optimum"),
+        scenario=Scenario.from_dict(table | {"name": f"{feature} {number}"}),
+        gap=GAPS[number % len(GAPS)] if has_gap else None,
+        cells=_CELLS if has_gap else None,
     )

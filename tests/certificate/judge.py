@@ -105,8 +105,6 @@ class Judge:
 
     def root(self, root_m: np.ndarray, problem: Problem, bound: float) -> str:
         """Return whether a face leaves out what distances do not exclude."""
-        lack = bound - problem.isotropic
-        reach = np.sqrt(problem.above / lack) * (1.0 - 1e-9) if lack > 0.0 else np.inf
         airspace = problem.scenario.airspace
         low, high = airspace.lower_m.copy(), airspace.upper_m.copy()
         if len(airspace.geofence_outline_m):
@@ -114,10 +112,13 @@ class Judge:
             high[:2] = np.minimum(high[:2], airspace.geofence_outline_m.max(axis=0))
         for i in range(3):
             at = problem.points[problem.node, i]
-            if root_m[0, i] > low[i] and np.all(at - root_m[0, i] < reach):
-                return "root"
-            if root_m[1, i] < high[i] and np.all(root_m[1, i] - at < reach):
-                return "root"
+            for beyond, away_m in (
+                (root_m[0, i] > low[i], at - root_m[0, i]),
+                (root_m[1, i] < high[i], root_m[1, i] - at),
+            ):
+                best = problem.best_received(np.maximum(away_m, 1e-9) * (1.0 + 1e-9))
+                if beyond and np.all(best > bound):
+                    return "root"
         return "root" if np.any(root_m[0] > root_m[1]) else ""
 
     def hole(self, before: dict[str, Any], leaves: dict[str, Any]) -> str:
@@ -171,14 +172,19 @@ class Judge:
         p = (low + half)[:, None] + np.concatenate(shifts, axis=1) * half[:, None]
         test, point, level, ball = (leaves[name] for name in ("test", "point", "level", "ball"))
         keep, balls = problem.scenario.airspace.keep_out_m, len(problem.balls)
-        square = np.sum((problem.points - p[:, :, None]) ** 2, axis=-1)
+        square, gains = (
+            np.sum((problem.points - p[:, :, None]) ** 2, axis=-1),
+            problem.gains(problem.points - p[:, :, None]),
+        )
         around = (
             np.sum((problem.balls - p[:, :, None]) ** 2, axis=-1) if balls else np.zeros((*p.shape[:2], 1))
         )
         depths = np.stack([zone(p) for zone in problem.zones], -1) if problem.zones else np.zeros_like(around)
         allowed = np.all(square >= (keep * (1 + 1e-9)) ** 2, axis=-1)
         ratio = np.where(test == 3, point, 0)
-        best = problem.isotropic + problem.above[ratio][:, None] / square[rows, :, problem.node[ratio]]
+        node = problem.node[ratio]
+        received = problem.above[ratio][:, None] * gains[rows, :, node] / square[rows, :, node]
+        best = problem.isotropic + received
         if np.any(allowed & (best > level[:, None] * (1.0 + 1e-9)) & (test == 3)[:, None]):
             return "distance"
         in_ball = around[rows, :, np.clip(point, 0, max(balls - 1, 0))] < keep**2 * (1.0 + 1e-9)

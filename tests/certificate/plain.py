@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import COLUMNS, TOWARDS, WORLD
+from nullpose.certificate.channels import excess_at
 from nullpose.certificate.forms import matrices
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
@@ -73,7 +74,7 @@ def certified(
 
 def put_together(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3) -> Certificate:
     """The certificate of a scenario's outcome family, its pose from axis and mount."""
-    family, fields = build_family(scenario), claimed_axes(scenario, scheme, None)
+    family, fields = build_family(scenario, any_channel=True), claimed_axes(scenario, scheme, None)
     assert fields is not None
     effort = SolveOptions(gap=gap, time_limit_s=_ENOUGH_S, node_limit=10**9)
     outcome = solve_and_prove(family, list(fields.values()), effort)
@@ -83,7 +84,8 @@ def put_together(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3)
     lean = float(np.arctan2(np.hypot(east, north), up)) - mount_rad
     attitude = (0.0, lean, float(np.arctan2(north, east)))
     position = exact(outcome.incumbent.position_m)
-    value = float(smallest_ratio(family, position, antenna_axis(attitude, mount_rad)))
+    axis, gains = antenna_axis(attitude, mount_rad), excess_at(family, position)
+    value = float(smallest_ratio(family, position, axis, gains=gains))
     trees = zip(fields, outcome.proofs, strict=True)
     return Certificate(
         scenario=scenario,

@@ -17,7 +17,8 @@ from tests.certificate.plain import certified, cut_into_cells, rejected, with_le
 from nullpose.certificate import Certificate, certificate_text, parse_certificate, verify
 from nullpose.certificate.certificate import KEPT_OUT
 from nullpose.errors import CertificateError, ScenarioError
-from nullpose.scenario import Airframe, Airspace, Eavesdropper, Scenario, Transmitter
+from nullpose.scenario import Airframe, Airspace, Eavesdropper, Receiver, Scenario, Transmitter
+from nullpose.scenario.channel import Channel
 
 WANTED = 600
 
@@ -70,6 +71,11 @@ def sound(paper: Callable, scene: Callable) -> dict[str, Certificate]:
     weights = tuple(
         node.model_copy(update={"weight": w}) for node, w in zip(paper().nodes, (0.5, 2.0), strict=True)
     )
+    city = Channel(model="elevation", average="power", a=4.88, b=0.43, los_loss_db=0.1, nlos_loss_db=21.0)
+    law = {
+        "channel": Channel(model="power-law", exponent=3.0),
+        "receiver": Receiver(noise_w=4e-5, reference_gain_db=0.0),
+    }
     level, belt = Airframe(preset="level", mount_deg=90.0), Airframe(tilt_max_deg=20.0, mount_deg=30.0)
     return {
         "optimum": certified(paper(10.0), gap=0.2),
@@ -83,6 +89,9 @@ def sound(paper: Callable, scene: Callable) -> dict[str, Certificate]:
         "zones": certified(renewed(paper(), airspace=zones), gap=0.02),
         "secret": certified(renewed(paper(), **heard), gap=0.05),
         "weights": certified(renewed(paper(**square), nodes=weights), gap=0.1),
+        "law": certified(renewed(paper(), **law), gap=0.2),
+        "city": certified(renewed(paper(**square), channel=city), gap=0.5),
+        "city, vertical": certified(renewed(paper(**square), channel=city), "vertical", gap=1.0),
     }
 
 
@@ -118,6 +127,7 @@ def test_false_certificates_are_rejected(sound: dict[str, Certificate]) -> None:
         "ball_multiplier": ("ball",),
         "airframe, claim redone": ("belt", "level"),
         "no_fly, claim redone": ("zones",),
+        "channel, claim redone": ("law", "city", "city, vertical"),
     }
     found: Counter[str] = Counter()
     struck: Counter[str] = Counter()
