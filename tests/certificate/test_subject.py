@@ -11,7 +11,8 @@ from hypothesis import given, strategies as st
 from tests.certificate.plain import overheard
 
 from nullpose.certificate import Certificate
-from nullpose.certificate.subject import sentence
+from nullpose.certificate.subject import differences, sentence
+from nullpose.scenario import Scenario
 
 numbers = st.floats(-6.0, 6.0).map(lambda x: 10.0**x)
 
@@ -60,3 +61,15 @@ def test_small_numbers_are_not_lost(claim: Certificate) -> None:
     words = sentence(replace(claim, value=1e-7, upper_bound=1.5e-7), 1)
     assert "above 1.5e-07 (" in words
     assert "within a relative 5.01e-01 of it" in words
+
+
+def test_antennas_with_a_pattern_are_compared(paper: Callable, claim: Certificate) -> None:
+    """A certificate of a half-wave dipole is about that, and not about a short one or another pattern."""
+
+    def with_antenna(**antenna: object) -> Scenario:
+        return Scenario.from_dict(paper().to_dict() | {"antenna": antenna})
+
+    certificate = replace(claim, scenario=with_antenna(kind="half-wave"))
+    assert differences(certificate, with_antenna(kind="half-wave")) == ()
+    for other in (paper(), with_antenna(kind="pattern", harmonics=[[1.0], [0.3, 0.0, 0.0]])):
+        assert any(words.startswith("antenna") for words in differences(certificate, other))

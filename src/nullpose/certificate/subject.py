@@ -54,7 +54,11 @@ def differences(certificate: Certificate, scenario: Scenario) -> tuple[str, ...]
 def _problem(scenario: Scenario) -> tuple[object, ...]:
     airframe = scenario.airframe
     reach = None if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
-    return build_family(scenario, any_channel=True).digest, scenario.objective, scenario.axis_band, reach
+    pattern = (
+        None if scenario.antenna_record.is_quadratic else scenario.antenna
+    )  # a dipole's is in the family
+    family = build_family(scenario, any_antenna=True, any_channel=True)
+    return family.digest, scenario.objective, scenario.axis_band, reach, pattern
 
 
 def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:
