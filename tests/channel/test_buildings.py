@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from nullpose.channel.buildings import Prisms, is_blocked, prisms_of
+from nullpose.channel.buildings import HAIR_M, Prisms, is_blocked, prisms_of, shadows_of
 from scenes import star
 
 SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
@@ -113,3 +113,33 @@ def test_a_passage_is_open() -> None:
     arch = prisms_of([SQUARE], [[]], [4.0], [[9.0, 9.0]])
     at = [[-10.0, 5.0, 3.0], [-10.0, 5.0, 5.0]]
     assert is_blocked(arch, at, [[30.0, 5.0, 3.0]], arch.most_height_m)[:, 0].tolist() == [False, True]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_shadow_is_where_a_line_is_blocked(seed: int) -> None:
+    """Inside of all sides of a prism's shadow, and nowhere else but a hair beside its border."""
+    rng = np.random.default_rng(seed)
+    outlines = [star(rng, int(rng.integers(3, 9)), 20.0) + rng.uniform(-60.0, 60.0, 2) for _ in range(5)]
+    base = rng.choice([0.0, 4.0], 5)
+    heights = base[:, None] + np.sort(rng.uniform(1.0, 30.0, (5, 2)), axis=1)
+    prisms = prisms_of(outlines, [[]] * 5, base, heights)
+    points = rng.uniform(-80.0, 80.0, (12, 3))
+    points[:, 2] = rng.choice([0.0, 1.5, 45.0], 12)
+    is_low = rng.random(12) < 0.5
+    shadows = shadows_of(prisms, points, is_low)
+    places = rng.uniform([-120.0, -120.0, 0.5], [120.0, 120.0, 70.0], (400, 3))
+    found = 0
+    for j, (point, low) in enumerate(zip(points, is_low, strict=True)):
+        roofs = prisms.least_height_m if low else prisms.most_height_m
+        blocked = is_blocked(prisms, places, point[None], roofs)[:, 0]
+        found += int(blocked.sum())
+        inside, near = np.zeros(len(places), bool), np.zeros(len(places), bool)
+        for s in range(shadows.of_point[j], shadows.of_point[j + 1]):
+            sides = shadows.sides[shadows.start[s] : shadows.start[s + 1]]
+            # without sides the point is inside, and everything is in the shadow
+            away = np.max(places @ sides[:, :3].T - sides[:, 3], axis=1, initial=-np.inf)
+            inside |= away < 0.0
+            near |= np.abs(away) < 1e-4
+            assert np.abs(sides[:, 4] - sides[:, 3]) == pytest.approx(HAIR_M)
+        assert np.all((inside == blocked) | near)
+    assert 100 < found < 4000

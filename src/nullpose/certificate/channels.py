@@ -133,7 +133,7 @@ def _by_elevation(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above
 
 def _relative(rows: FloatArray, tangent: Interval) -> tuple[Interval, Interval, Interval]:
     """Return bounds on excess gains g, on ``g' / g`` by the elevation and on ``k (1 - 2 P)``, (b,) each."""
-    _, c, k, n, average = rows
+    _, c, k, n, average = rows[:5]
     p = 1.0 / (exp(c - arctan(tangent) * k) + 1.0)
     p = Interval(np.maximum(p.low, 0.0), np.minimum(p.high, 1.0))
     in_db = average == DB_AVERAGE

@@ -51,6 +51,7 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
     value, bound = certificate.value, certificate.upper_bound
     faults = {
         "there are no certificates of robust poses": len(family.turn) > 0,
+        "there are no certificates of scenes with buildings yet": len(family.shadow_sides) > 0,
         f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
         "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),
         "the bound is below the value": bound < value,
@@ -88,7 +89,7 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
 
 
 def _place_fault(scenario: Scenario, position_m: FloatArray) -> str:
-    airspace = scenario.airspace
+    airspace = scenario.open_airspace
     outside = ~((airspace.lower_m <= position_m) & (position_m <= airspace.upper_m))
     for i in np.flatnonzero(outside):
         return f"{'xyz'[i]} = {float(position_m[i])!r} m is outside the airspace"

@@ -8,14 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.channel.convex import convex_parts, edges_of, joined
-from nullpose.channel.model import FloatArray
+from nullpose.channel.convex import FloatArray, convex_parts, edges_of, joined
 
 TOUCHING_M = 1e-9
 """What enters a prism by less than this touches it only [m]."""
 OVERLAP_M = 1e-6
 """How far the pieces of a building reach into each other, so that no line slips between them [m]."""
+HAIR_M = 1e-5
+"""How far off the edge of a shadow a pose is found, so that the line of sight is sure there [m]."""
 _BLOCK = 2_000_000  # numbers of an array
+_IN_LINE = 1e-9  # the sine of an angle between two walls that are one
 
 
 class Prisms(NamedTuple):
@@ -92,6 +94,78 @@ def _sides(part_m: FloatArray) -> FloatArray:
     along = np.roll(part_m, -1, axis=0) - part_m
     normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
     return np.column_stack([normal, np.sum(normal * part_m, axis=1)])
+
+
+class Shadows(NamedTuple):
+    """Where a building blocks the line of sight to each of several points: convex polyhedra.
+
+    Args:
+        of_point: (m + 1,) int64, where the shadows of each point begin in ``start``, and where the last end.
+        start: (n + 1,) int64, where the sides of each shadow begin in ``sides``.
+        sides: (s, 5) outward unit normal and offset [m] of each side: ``n . p <= c`` inside; and the offset
+            ``HAIR_M`` off, outwards for nodes and inwards for interferers, where a pose counts as blocked.
+    """
+
+    of_point: NDArray[np.int64]
+    start: NDArray[np.int64]
+    sides: FloatArray
+
+
+def shadows_of(prisms: Prisms, points_m: FloatArray, is_interferer: NDArray[np.bool_]) -> Shadows:
+    """Find where each prism blocks the line of sight to each point.
+
+    What a convex prism blocks from a point is convex: bounded by the sides that face the point, and by the
+    planes through the point along the edges between those and the others.
+
+    Args:
+        prisms: the buildings.
+        points_m: (m, 3), metres; in no prism.
+        is_interferer: (m,) which points the lower roofs count for.
+    """
+    shadows: list[FloatArray] = []
+    counts = [0]
+    for point_m, is_low in zip(points_m, is_interferer, strict=True):
+        roofs_m = prisms.least_height_m if is_low else prisms.most_height_m
+        solid = np.flatnonzero(roofs_m > prisms.base_m)
+        for index in solid:
+            sides = _shadow(prisms, int(index), roofs_m[index], point_m)
+            shadows.append(np.column_stack([sides, sides[:, 3] + (-HAIR_M if is_low else HAIR_M)]))
+        counts.append(len(shadows))
+    starts = np.cumsum([0, *(len(sides) for sides in shadows)])
+    sides = np.vstack([np.zeros((0, 5)), *shadows])
+    return Shadows(np.array(counts, dtype=np.int64), starts.astype(np.int64), sides)
+
+
+def _shadow(prisms: Prisms, index: int, roof_m: float, point_m: FloatArray) -> FloatArray:
+    """List the sides of the shadow of one prism, (s, 4)."""
+    base_m = prisms.base_m[index]
+    walls = prisms.sides[prisms.start[index] : prisms.start[index + 1]]
+    corners = _corners(walls)
+    ends = np.array([[0.0, 0.0, 1.0, roof_m], [0.0, 0.0, -1.0, -base_m]])
+    faces = np.vstack([np.insert(walls, 2, 0.0, axis=1), ends])
+    # what faces the point, or has it in its plane
+    kept = [faces[faces[:, :3] @ point_m >= faces[:, 3]]]
+    top, bottom = (np.column_stack([corners, np.full(len(corners), z)]) - point_m for z in (roof_m, base_m))
+    edges = [(top, np.roll(top, -1, axis=0)), (bottom, np.roll(bottom, -1, axis=0)), (top, bottom)]
+    normals = np.vstack([np.cross(*edge) for edge in edges])
+    normals = np.vstack([normals, -normals])
+    length = np.linalg.norm(normals, axis=1)
+    normals = normals[length > 0.0] / length[length > 0.0, None]
+    solid = np.vstack([top, bottom])
+    reach = np.abs(solid).max()
+    tangent = normals[np.all(normals @ solid.T <= 1e-12 * reach, axis=1)]
+    return np.vstack([*kept, np.column_stack([tangent, tangent @ point_m])])
+
+
+def _corners(walls: FloatArray) -> FloatArray:
+    """Return the vertices of a convex polygon from its sides in order: where neighbours meet."""
+    before = np.roll(walls, 1, axis=0)
+    walls = walls[np.abs(before[:, 0] * walls[:, 1] - before[:, 1] * walls[:, 0]) > _IN_LINE]
+    before = np.roll(walls, 1, axis=0)
+    det = before[:, 0] * walls[:, 1] - before[:, 1] * walls[:, 0]
+    east = (before[:, 2] * walls[:, 1] - walls[:, 2] * before[:, 1]) / det
+    north = (before[:, 0] * walls[:, 2] - walls[:, 0] * before[:, 2]) / det
+    return np.column_stack([east, north])
 
 
 def is_blocked(

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-
-from nullpose.channel.model import FloatArray
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
+FloatArray: TypeAlias = NDArray[np.float64]
 _Vertex: TypeAlias = tuple[float, ...]
 
 # shapely is imported where there is a polygon: most scenarios have none.

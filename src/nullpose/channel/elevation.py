@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nullpose.channel.convex import FloatArray
 from nullpose.channel.free_space import constant_channel
-from nullpose.channel.model import BY_ELEVATION, ChannelModel, FloatArray, LinkChannel
+from nullpose.channel.model import BY_ELEVATION, ChannelModel, LinkChannel
 
 
 class Environment(NamedTuple):
@@ -84,7 +85,7 @@ def elevation_channel(
     if average == "guaranteed":
         return constant_channel(seen if is_interferer else hidden)
     kept = DB_AVERAGE if average == "db" else POWER_AVERAGE
-    row = (BY_ELEVATION, math.log(a) + a * b, math.degrees(b), hidden / seen, kept)
+    row = (BY_ELEVATION, math.log(a) + a * b, math.degrees(b), hidden / seen, kept, 1.0)
     return LinkChannel(seen, row, elevation_excess)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from nullpose.channel.model import CONSTANT, ChannelModel, FloatArray, LinkChannel
+from nullpose.channel.convex import FloatArray
+from nullpose.channel.model import CONSTANT, ChannelModel, LinkChannel
 
 
 def constant_channel(strength: float) -> LinkChannel:
@@ -11,7 +12,7 @@ def constant_channel(strength: float) -> LinkChannel:
     Args:
         strength: the power over that of free space, a ratio.
     """
-    return LinkChannel(strength, (CONSTANT, 0.0, 0.0, 0.0, 0.0), _no_excess)
+    return LinkChannel(strength, (CONSTANT, 0.0, 0.0, 0.0, 0.0, 1.0), _no_excess)
 
 
 def _no_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray) -> FloatArray:

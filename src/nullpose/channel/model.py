@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple, TypeAlias
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray: TypeAlias = NDArray[np.float64]
+from nullpose.channel.buildings import Prisms, is_blocked
+from nullpose.channel.convex import FloatArray
 
-WIDTH = 5
-"""Numbers in the row of a link's channel: its kind, and up to four of its own."""
+WIDTH = 6
+"""Numbers in the row of a link's channel: its kind, up to four of its own, and ``BLOCKED``."""
+BLOCKED = 5
+"""The number that multiplies the gain where a building blocks the line of sight; 1 without buildings."""
 
 CONSTANT, BY_DISTANCE, BY_ELEVATION = 0, 1, 2
 """Kinds: an excess gain of 1, one of the distance alone, one of the elevation alone."""
@@ -29,8 +32,12 @@ class LinkChannel(NamedTuple):
     """
 
     strength: float
-    row: tuple[float, float, float, float, float]
+    row: tuple[float, ...]
     excess: Callable[..., FloatArray]
+
+    def behind_buildings(self, blocked: float) -> LinkChannel:
+        """Return the channel of which so much is left, a power ratio, where a building blocks it."""
+        return self._replace(row=(*self.row[:BLOCKED], blocked))
 
 
 class ChannelModel(NamedTuple):
@@ -54,14 +61,20 @@ class PointChannels(NamedTuple):
         strengths: (m,) the strength of each.
         rows: (m, WIDTH) the row of each.
         groups: the excess gain and the places of the points that it is for, one pair for each kind.
+        prisms: the buildings; None without any.
+        is_interferer: (m,) whether each is a jammer or an eavesdropper, which the lower roofs count for.
     """
 
     strengths: FloatArray
     rows: FloatArray
     groups: tuple[tuple[Callable[..., FloatArray], NDArray[np.int64]], ...]
+    prisms: Prisms | None = None
+    is_interferer: NDArray[np.bool_] = np.zeros(0, dtype=bool)
 
     @classmethod
-    def of(cls, channels: list[LinkChannel]) -> PointChannels:
+    def of(
+        cls, channels: list[LinkChannel], prisms: Prisms | None = None, is_interferer: Sequence[bool] = ()
+    ) -> PointChannels:
         """Collect the channels of points, in their order."""
         places: dict[Callable[..., FloatArray], list[int]] = {}
         for place, channel in enumerate(channels):
@@ -70,15 +83,35 @@ class PointChannels(NamedTuple):
             np.array([channel.strength for channel in channels]),
             np.array([channel.row for channel in channels]).reshape(-1, WIDTH),
             tuple((excess, np.array(group, dtype=np.int64)) for excess, group in places.items()),
+            prisms,
+            np.array(is_interferer, dtype=bool),
         )
 
+    def blocked_gain(self, positions_m: FloatArray, points_m: FloatArray) -> FloatArray:
+        """Evaluate what buildings leave of each link, 1 where its line of sight is clear, (..., m).
 
-def excess_gain(channels: PointChannels, to_points_m: FloatArray) -> FloatArray:
+        Args:
+            positions_m: of the drone, (..., 3), metres.
+            points_m: the ground points, (m, 3), metres.
+        """
+        gain = np.ones((*positions_m.shape[:-1], len(points_m)))
+        for is_low, roof in enumerate(("most_height_m", "least_height_m")):
+            places = np.flatnonzero(self.is_interferer == bool(is_low))
+            if self.prisms is not None and len(places):
+                blocked = is_blocked(self.prisms, positions_m, points_m[places], getattr(self.prisms, roof))
+                gain[..., places] = np.where(blocked, self.rows[places, BLOCKED], 1.0)
+        return gain
+
+
+def excess_gain(
+    channels: PointChannels, to_points_m: FloatArray, points_m: FloatArray | None = None
+) -> FloatArray:
     """Evaluate ``strength * excess`` of links: their power gain over that of free space.
 
     Args:
         channels: of the points.
         to_points_m: from the drone to each point, (..., m, 3), metres.
+        points_m: where the points are, (m, 3), metres: then buildings count.
 
     Returns:
         Array of shape (..., m), power ratios.
@@ -90,4 +123,6 @@ def excess_gain(channels: PointChannels, to_points_m: FloatArray) -> FloatArray:
     for excess, places in channels.groups:
         row = channels.rows[places].T
         gain[..., places] = excess(row, distance_m[..., places], elevation_rad[..., places])
+    if channels.prisms is not None and points_m is not None:
+        gain *= channels.blocked_gain(points_m[0] - to_points_m[..., 0, :], points_m)
     return np.asarray(channels.strengths * gain)

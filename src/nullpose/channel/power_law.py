@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from nullpose.channel.convex import FloatArray
 from nullpose.channel.free_space import constant_channel
-from nullpose.channel.model import BY_DISTANCE, ChannelModel, FloatArray, LinkChannel
+from nullpose.channel.model import BY_DISTANCE, ChannelModel, LinkChannel
 
 
 def distance_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray) -> FloatArray:
@@ -34,7 +35,7 @@ def power_law(exponent: float, reference_distance_m: float, is_interferer: bool 
     """
     if exponent == 2.0:
         return constant_channel(reference_distance_m**2)
-    row = (BY_DISTANCE, 2.0 - exponent, reference_distance_m, 0.0, 0.0)
+    row = (BY_DISTANCE, 2.0 - exponent, reference_distance_m, 0.0, 0.0, 1.0)
     return LinkChannel(reference_distance_m**2, row, distance_excess)
 
 

@@ -41,7 +41,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_weight=scale * scenario.jammer_powers_w * shares[n_nodes:],
         ground_axes=axes,
         ground_leaks=leaks,
-        channels=channels,
+        **channels,
     )
 
 

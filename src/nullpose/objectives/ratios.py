@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.channel.buildings import shadows_of
 from nullpose.channel.model import CONSTANT, WIDTH
 
 if TYPE_CHECKING:
@@ -42,8 +43,13 @@ class Ratios(NamedTuple):
             has one.
         ground_leaks: (m,) f, the gain of a point's dipole along its axis, 1 where it has none; None where no
             point has one.
-        channels: (m, 5) the row of each point's channel (:mod:`nullpose.channel`), whose excess gain
+        channels: (m, 6) the row of each point's channel (:mod:`nullpose.channel`), whose excess gain
             multiplies its ``M(r)``; None where all are in free space.
+        shadows_of_point: (m + 1,) where the shadows of each point begin in ``shadow_start``, and where the
+            last ones end; (1,) without buildings.
+        shadow_start: (n + 1,) where the sides of each shadow begin.
+        shadow_sides: (s, 5) outward unit normal and offset of each side, ``n . p <= c`` inside: there the
+            excess gain is multiplied by the channel's ``BLOCKED``; and the offset of searches, a hair off.
     """
 
     points_m: FloatArray
@@ -60,6 +66,9 @@ class Ratios(NamedTuple):
     ground_axes: FloatArray | None = None
     ground_leaks: FloatArray | None = None
     channels: FloatArray | None = None
+    shadows_of_point: IntArray = np.zeros(1, dtype=np.int64)
+    shadow_start: IntArray = np.zeros(1, dtype=np.int64)
+    shadow_sides: FloatArray = np.zeros((0, 5))
 
     @property
     def variant(self) -> tuple[bool, bool]:
@@ -80,10 +89,10 @@ def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, Float
     return (axes, leaks, shares) if np.any(axes) else (None, None, shares)
 
 
-def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[FloatArray | None, FloatArray]:
-    """Return the rows of the points' channels, (m + others, 5), and their strengths, (m,).
+def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[dict[str, Any], FloatArray]:
+    """Return the fields of ratios for the points' channels and buildings, and the strengths, (m,).
 
-    The rows are None where no link's gain over free space changes with the position.
+    There are no fields where no link's gain over free space changes with the position.
 
     Args:
         scenario: with its points.
@@ -93,6 +102,14 @@ def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[Float
     groups = [(getattr(scenario, f"{k}_channels"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
     parts = [(c.rows, c.strengths) if c else (np.zeros((n, WIDTH)), np.ones(n)) for c, n in groups]
     rows, strengths = (np.concatenate(part) for part in zip(*parts, strict=True))
-    if np.all(rows[:, 0] == CONSTANT):
-        return None, strengths
-    return np.vstack([rows, np.zeros((others, WIDTH))]), strengths
+    if np.all(rows[:, 0] == CONSTANT) and scenario.prisms is None:
+        return {}, strengths
+    rows = np.vstack([rows, np.zeros((others, WIDTH))])
+    if scenario.prisms is None:
+        return {"channels": rows}, strengths
+    points_m = np.vstack([getattr(scenario, f"{k}_positions_m").reshape(-1, 3) for k in kinds])
+    is_interferer = np.concatenate([c.is_interferer for c, _ in groups])
+    of_point, start, sides = shadows_of(scenario.prisms, points_m, is_interferer)
+    of_point = np.append(of_point, np.full(others, of_point[-1]))
+    shadows = {"shadows_of_point": of_point, "shadow_start": start, "shadow_sides": sides}
+    return {"channels": rows, **shadows}, strengths

@@ -47,7 +47,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_weight=sent * shares[n_nodes:] / scenario.eavesdropper_noise_w,
         ground_axes=axes,
         ground_leaks=leaks,
-        channels=channels,
+        **channels,
     )
 
 

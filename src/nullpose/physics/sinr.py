@@ -49,7 +49,9 @@ def received_power_w(
     received_w = (
         np.asarray(reference_gain, dtype=float) * gain * np.asarray(powers_w, dtype=float) / distance_sq
     )
-    return np.asarray(received_w if channels is None else received_w * excess_gain(channels, to_points))
+    if channels is not None:
+        received_w = received_w * excess_gain(channels, to_points, np.asarray(points_m))
+    return np.asarray(received_w)
 
 
 def received_from_sources_w(

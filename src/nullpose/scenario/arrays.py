@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas, unit_axis
 from nullpose.channel import LinkChannel, PointChannels
+from nullpose.channel.buildings import Prisms
 from nullpose.channel.model import CONSTANT
 from nullpose.errors import UsageError
 from nullpose.scenario.channel import Channel
@@ -56,11 +57,13 @@ def _channels(kinds: str) -> cached_property[PointChannels | None]:
     """Make the channels of the points of some kinds; None where all are in free space with line of sight."""
 
     def stack(table: PointArrays) -> PointChannels | None:
-        links = [table.channel_of(point) for point in _points_of(table, kinds)]
-        if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links):
+        points = _points_of(table, kinds)
+        links = [table.channel_of(point) for point in points]
+        if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links) and table.prisms is None:
             return None
-        strengths, rows, groups = PointChannels.of(links)
-        return PointChannels(read_only(strengths, strengths.shape), read_only(rows, rows.shape), groups)
+        kept = PointChannels.of(links, table.prisms, [point.is_interferer for point in points])
+        rows, strengths = read_only(kept.rows, kept.rows.shape), read_only(kept.strengths, (-1,))
+        return kept._replace(strengths=strengths, rows=rows)
 
     return cached_property(stack)
 
@@ -78,6 +81,10 @@ class PointArrays:
         eavesdroppers: tuple[Eavesdropper, ...]
         receiver: Receiver
         channel: Channel | None
+
+        @cached_property
+        def prisms(self) -> Prisms | None:
+            """The buildings in convex pieces."""
 
     node_positions_m = _stacked("nodes", "position_m", 3)
     """Positions of the nodes [m], (n_nodes, 3)."""
@@ -118,13 +125,18 @@ class PointArrays:
 
     def channel_of(self, point: GroundPoint) -> LinkChannel:
         """Return the channel of a point's link: its own, or the scenario's."""
-        return (point.channel or self.channel or Channel()).make(point.is_interferer)
+        whole = self.channel or Channel()
+        own = point.channel or whole
+        if self.prisms is None:
+            return own.make(point.is_interferer)
+        return own.in_sight(point.is_interferer, own.blocked_loss_db or whole.blocked_loss_db or 0.0)
 
     @property
     def has_channels(self) -> bool:
         """Whether any link's gain over free space changes with the position."""
         channels = (self.source_channels, self.eavesdropper_channels)
-        return any(np.any(each.rows[:, 0] != CONSTANT) for each in channels if each is not None)
+        changes = (np.any(each.rows[:, 0] != CONSTANT) for each in channels if each is not None)
+        return self.prisms is not None or any(changes)
 
     @property
     def node_names(self) -> tuple[str, ...]:

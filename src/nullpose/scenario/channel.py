@@ -15,7 +15,7 @@ from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place
 from nullpose.scenario.rules import Choice, Quantity, Rule
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.units import BlockedDecibels, LossDecibels, ReferenceMetres
+from nullpose.scenario.units import BlockedDecibels, LossDecibels, ReferenceMetres, ratio_from_db
 from nullpose.scenario.ways import Ways
 
 _Model = Annotated[str, Choice("a channel model", CHANNELS)]
@@ -130,6 +130,22 @@ class Channel(Section):
         values = _DEFAULTS | named | {key: value for key, value in self if value is not None}
         model = CHANNELS[self.model]
         return model.make(**{key: values[key] for key in model.keys}, is_interferer=is_interferer)
+
+    def in_sight(self, is_interferer: bool, blocked_loss_db: float) -> LinkChannel:
+        """Return the channel of a link among buildings, which decide on its line of sight.
+
+        By elevation it has the loss with line of sight, or where a building blocks it the one without; the
+        probability and the average are not used.
+
+        Args:
+            is_interferer: whether it is that of a jammer or an eavesdropper.
+            blocked_loss_db: of any other model, where a building blocks it.
+        """
+        if self.average is None:
+            return self.make(is_interferer).behind_buildings(ratio_from_db(-blocked_loss_db))
+        sure = self.model_copy(update={"average": "guaranteed"})
+        seen, hidden = sure.make(True), sure.make(False)
+        return seen.behind_buildings(hidden.strength / seen.strength)
 
 
 def _keys_of(model: str) -> tuple[str, ...]:

@@ -49,7 +49,7 @@ def solve_by_scheme(
     outcome, fields = solve_scheme(scenario, record, options, null_jammer)
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = evaluate(scenario, pose)
-    is_verifiable = outcome.proofs and fields is not None
+    is_verifiable = outcome.proofs and fields is not None and scenario.prisms is None
     return Answer(
         scheme=scheme,
         pose=pose,

@@ -146,6 +146,11 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     Raises:
         UsageError: the scheme has no certificate for this scenario.
     """
+    if scenario.prisms is not None:
+        raise UsageError(
+            "certificate: buildings have none yet: what they block is proved in floating point; leave out "
+            "--certificate and --verify"
+        )
     antenna = scenario.antenna_record
     if not antenna.is_axisymmetric:
         raise UsageError(

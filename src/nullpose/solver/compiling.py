@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from nullpose.channel.model import WIDTH
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.background_compiler import BackgroundCompiler
@@ -152,7 +153,7 @@ def _smallest_family(variant: tuple[bool, bool]) -> Family:
     return Family(
         ground_axes=np.zeros((1, 3)) if dipoles else None,
         ground_leaks=np.zeros(1) if dipoles else None,
-        channels=np.zeros((1, 5)) if channels else None,
+        channels=np.zeros((1, WIDTH)) if channels else None,
         points_m=np.zeros((1, 3)),
         numerator_isotropic=np.zeros(1),
         numerator_weight=np.ones(1),

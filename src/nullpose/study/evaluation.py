@@ -159,7 +159,7 @@ def pose_faults(scenario: Scenario, pose: Pose) -> Iterable[str]:
         raise UsageError(
             f"pose: given the position of {names[nearest]}; allowed: {keep_out_m:g} m or more from it"
         )
-    for words, clearance_m in scenario.airspace.clearances_m(pose.position_m):
+    for words, clearance_m in scenario.open_airspace.clearances_m(pose.position_m):
         if clearance_m < -BORDER_M:
             yield f"the position is {-clearance_m:.3g} m {words}"
     if distances_m[nearest] < keep_out_m - BORDER_M:

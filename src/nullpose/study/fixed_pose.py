@@ -66,7 +66,9 @@ def _over_centroid_m(scenario: Scenario) -> NDArray[np.float64]:
     across_m = scenario.node_positions_m[:, :2].mean(axis=0)
     squares_m2 = scenario.airspace.keep_out_m**2 - np.sum((points_m[:, :2] - across_m) ** 2, axis=1)
     heights_m = [scenario.airspace.altitude_m[0], *(points_m[:, 2] + np.sqrt(np.maximum(squares_m2, 0.0)))]
-    heights_m += [zone.ceiling_m for zone in scenario.airspace.inner.no_fly if math.isfinite(zone.ceiling_m)]
+    heights_m += [
+        zone.ceiling_m for zone in scenario.open_airspace.inner.no_fly if math.isfinite(zone.ceiling_m)
+    ]
     positions_m = [np.append(across_m, height_m) for height_m in sorted(heights_m)]
     allowed = (each for each in positions_m if not list(pose_faults(scenario, Pose(each, 0.0, 0.0))))
     return next(allowed, np.append(across_m, heights_m[0]))

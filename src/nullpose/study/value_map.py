@@ -87,7 +87,7 @@ def value_map(
     east, north = map_grid_m(scenario, place_m, cells)
     grid = np.stack(np.broadcast_arrays(*np.meshgrid(east, north), up), -1)
     nearest_m = np.linalg.norm(grid[..., None, :] - _points_m(scenario), axis=-1).min(axis=-1)
-    usable = scenario.airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m - BORDER_M)
+    usable = scenario.open_airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m - BORDER_M)
     values = np.full(usable.shape, np.nan)
     values[usable] = _best_values(result, grid[usable], go_on)
     quantity = result.objective.quantity
@@ -196,7 +196,7 @@ def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> Fl
     gain = link_gain(positions_m, axes, nodes, scenario.antenna_record, scenario.node_antennas)
     received = gain * scenario.node_powers_w / loss
     if scenario.node_channels is not None:
-        received *= excess_gain(scenario.node_channels, nodes - positions_m[..., None, :])
+        received *= excess_gain(scenario.node_channels, nodes - positions_m[..., None, :], nodes)
     return np.asarray(np.min(received / scenario.node_required_sinr, axis=-1))
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from nullpose.channel import LinkChannel
+from nullpose.channel.power_law import power_law
 from nullpose.objectives import Ratios
 from nullpose.solver.kernels.bounds import link_field
 from nullpose.solver.kernels.compiler.interpreted import python_of
@@ -42,13 +43,13 @@ def test_an_amplitude_encloses_a_million_samples(
     is_above: bool, channel: LinkChannel | None, ratios_over: Callable[..., Ratios]
 ) -> None:
     """Its value is that at the centre, or a valid end; slopes and second differences are within bounds."""
-    rng, rows = np.random.default_rng(11), ratios_over(POINT, 0.0, channel=channel).channels
+    rng, ratios = np.random.default_rng(11), ratios_over(POINT, 0.0, channel=channel)
     ends = 0
     for _ in range(BOXES):
         centre = POINT[0] + rng.normal(size=3) * 10.0 ** rng.uniform(0.5, 2.0)
         reach = np.linalg.norm(centre - POINT[0])
         half = reach * 10.0 ** rng.uniform(-4.0, -1.0, size=3)
-        field = amplitude(rows, POINT, 0, is_above, centre, half)
+        field = amplitude(ratios, ratios.channels, 0, is_above, centre, half)
         samples = centre + rng.uniform(-1.0, 1.0, (SAMPLES, 3)) * half
         h, at_centre = roots(channel, samples), float(roots(channel, centre))
         if field.slope == 0.0 and field.bend == 0.0 and channel is not None:
@@ -77,7 +78,7 @@ def test_an_amplitude_encloses_a_million_samples(
 def test_the_rules_give_the_lemmas_of_free_space() -> None:
     """At rest 6 and 4 over a^4; in a turning frame what lemma 2 adds; of the anchor 6 and 2."""
     a, rho = 20.0, 30.0
-    field = amplitude(None, POINT, 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
+    field = amplitude(None, None, 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
     reach = scaled_inverse(field, a)
     assert rise_of(reach, reach) == pytest.approx(6.0 / a**4)
     assert fall_of(reach) == pytest.approx(4.0 / a**4)
@@ -90,11 +91,11 @@ def test_the_rules_give_the_lemmas_of_free_space() -> None:
     assert seen.bend == pytest.approx(2.0 / a**3 + 2.0 / (a**2 * rho) + swing / (a * rho**2), rel=1e-4)
 
 
-def test_a_power_law_has_the_exact_rise() -> None:
+def test_a_power_law_has_the_exact_rise(ratios_over: Callable[..., Ratios]) -> None:
     """The second derivative of ``|r|^-alpha`` is at most ``alpha (alpha + 1) / a^(alpha + 2)``."""
     a = 20.0
     for alpha in (2.0, 2.5, 4.0, 6.0):
-        rows = np.array([[1.0, 2.0 - alpha, 1.0, 0.0, 0.0]])
-        field = amplitude(rows, POINT, 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
+        ratios = ratios_over(POINT, 0.0, channel=power_law(alpha, 1.0))
+        field = amplitude(ratios, ratios.channels, 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
         reach = scaled_inverse(field, a)
         assert rise_of(reach, reach) == pytest.approx(alpha * (alpha + 1.0) / a ** (alpha + 2.0))

@@ -41,6 +41,7 @@ from nullpose.solver.kernels.bounds.node import (
     split_position,
 )
 from nullpose.solver.kernels.bounds.records import Workspace
+from nullpose.solver.kernels.bounds.sight import in_sight
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import most_excess
@@ -61,7 +62,7 @@ _CLEAR = 2.0  # an affine axis must be this much longer than its change in the b
 _BEATS = 1e-9
 
 
-@inner_kernel
+@small_kernel
 def examine(family, domain, axis_field, goal, row, workspace, axis):
     """Return (what becomes of a node, the side to split, whether multipliers were sought).
 
@@ -102,10 +103,10 @@ def same_multipliers(row, other):
 
 
 @inner_kernel
-def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, axis):
+def examine_free(whole, domain, axis_field, goal, row, coarseness, workspace, axis):
     """Examine a box whose axis is free; return the verdict and how often multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    basis = scratch(3, 3)
+    basis, family = scratch(3, 3), in_sight(whole, row, workspace)
     is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
@@ -120,27 +121,32 @@ def examine_free(family, domain, axis_field, goal, row, coarseness, workspace, a
         rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
     below = (denominator, slopes, rests)
-    if excludes(family, domain, axis_field, frame, row, below, workspace):
-        return EXCLUDED, 0
-    if row[FACE] < 0.0 and not same_multipliers(row, goal.multipliers):
-        copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
+    primal, reached, followed = math.inf, 0.0, False
+    for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
+        if attempt == 1:
+            if row[FACE] >= 0.0 or same_multipliers(row, goal.multipliers):
+                continue
+            copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
+        if attempt == 2:
+            primal, reached, followed = free_multipliers(
+                family, axis_field, basis, row, denominator, coarseness, workspace, axis
+            )
+            if is_free and followed and contains(domain, centre):
+                value = reached * row[LEVEL]
+                # with several denominators it is not the ratio itself, among buildings not at the centre
+                is_other = family.denominator_isotropic.shape[0] > 1 or whole.shadow_sides.shape[0] > 0
+                if reached > 0.0 and is_other:
+                    logs = workspace.log_denominators, workspace.values
+                    value = math.exp(min_log_ratio(whole, centre, axis, logs[0], logs[1]))
+                if value > goal.best * (1.0 + _BEATS):
+                    return BETTER, 1
+            if primal == math.inf:  # no axis was met that is inside both cell and band
+                wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
+                return (BY_AXIS if is_free and wide else BY_POSITION), 1
+            if not primal < 1.0:
+                break
         if excludes(family, domain, axis_field, frame, row, below, workspace):
-            return EXCLUDED, 0
-    primal, reached, followed = free_multipliers(
-        family, axis_field, basis, row, denominator, coarseness, workspace, axis
-    )
-    if is_free and followed and contains(domain, centre):
-        value = reached * row[LEVEL]
-        if family.denominator_isotropic.shape[0] > 1 and reached > 0.0:  # then it is not the ratio itself
-            logs = workspace.log_denominators, workspace.values
-            value = math.exp(min_log_ratio(family, centre, axis, logs[0], logs[1]))
-        if value > goal.best * (1.0 + _BEATS):
-            return BETTER, 1
-    if primal == math.inf:  # no axis was met that is inside both cell and band
-        wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
-        return (BY_AXIS if is_free and wide else BY_POSITION), 1
-    if primal < 1.0 and excludes(family, domain, axis_field, frame, row, below, workspace):
-        return EXCLUDED, 1
+            return EXCLUDED, 1 if attempt == 2 else 0
     # Where multipliers exclude the centre, most often they exclude the halves of the box soon, and axes need
     # not be split. With several denominators that takes long, unless they do so by more than the box's size.
     spare = goal.spare if family.denominator_isotropic.shape[0] == 1 else max(1.0, goal.spare)
@@ -169,26 +175,28 @@ def lone_ratio(family, row, below):
     return False
 
 
-@small_kernel
-def examine_affine(family, domain, axis_field, goal, row, workspace, axis):
+@inner_kernel
+def examine_affine(whole, domain, axis_field, goal, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
-    half = row[HALF:LEVEL]
+    half, family = row[HALF:LEVEL], in_sight(whole, row, workspace)
     jet, below, total = scratch(JET), workspace.jets, scratch(JET)
     denominator_jet(family, axis_field, row, jet, below)
     row[KIND] = AFFINE
     if lone_ratio(family, row, below):
         return EXCLUDED, 0, 0
-    if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return EXCLUDED, 0, 0
-    copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
-    if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return EXCLUDED, 0, 0
-    reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
-    if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
-        fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
-        return BETTER, 0, 1
-    if excludes_curved(family, domain, axis_field, row, below, jet, total):
-        return EXCLUDED, 0, 1
+    for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
+        if attempt == 1:
+            copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
+        if attempt == 2:
+            reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
+            if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
+                fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+                logs = workspace.log_denominators, workspace.values
+                value = math.exp(min_log_ratio(whole, row[CENTRE:HALF], axis, logs[0], logs[1]))
+                if value > goal.best * (1.0 + _BEATS):
+                    return BETTER, 0, 1
+        if excludes_curved(family, domain, axis_field, row, below, jet, total):
+            return EXCLUDED, 0, 1 if attempt == 2 else 0
     return BY_POSITION, impact(total, half), 1
 
 
@@ -199,7 +207,8 @@ def workspace_of(family):
     return Workspace(
         np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
         np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
-        np.empty(6), np.empty((3, 6)), np.empty(6),
+        np.empty(6), np.empty((3, 6)), np.empty(6), np.empty(ratios),
+        np.empty(family.denominator_weight.shape[0]), np.empty((0, 5)),
     )  # fmt: skip
 
 

@@ -110,7 +110,7 @@ def expand_point(family, j, is_above, frame, centre, half, form, slopes):
     the form does.
     """
     a = min_distance(family.points_m, j, centre, half)
-    field = amplitude(family.channels, family.points_m, j, is_above, centre, half)
+    field = amplitude(family, family.channels, j, is_above, centre, half)
     reach = scaled_inverse(field, a)
     if frame.kind == TOWARDS_POINT and j == frame.anchor:
         fill_anchor(family.leak, frame, form, slopes)
@@ -170,7 +170,7 @@ def fill_form(family, j, frame, centre, form, slopes):
 @small_kernel
 def reach_of_link(family, j, is_above, centre, half):
     """Return the reach of point j's link vector over a box, in a frame at rest."""
-    field = amplitude(family.channels, family.points_m, j, is_above, centre, half)
+    field = amplitude(family, family.channels, j, is_above, centre, half)
     return scaled_inverse(field, min_distance(family.points_m, j, centre, half))
 
 
@@ -182,7 +182,7 @@ def strongest_point(family, centre):
     for e in range(family.denominator_weight.shape[0]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
         r = minus(row_of(family.points_m, j), centre)
-        received, square = weight * excess_at(family.channels, j, r), dot(r, r)
+        received, square = weight * excess_at(family, family.channels, j, centre), dot(r, r)
         if received > strongest * square:
             strongest, anchor = received / square, j
     return anchor

@@ -91,32 +91,32 @@ def anchor_fall(field, a):
 
 
 @small_kernel
-def amplitude(channels, points, j, is_above, centre, half):
+def amplitude(family, channels, j, is_above, centre, half):
     """Return the amplitude of point j's channel over a box that it is outside of.
 
     Args:
-        channels: their rows, or None.
-        points: (m, 3).
+        family: with the points.
+        channels: the points' rows, or None.
         j: which point.
         is_above: whether the form is to be bounded from above, else from below.
         centre: of the box.
         half: its half sides.
     """
     if channels is not None:
-        row, r = channels[j], minus(row_of(points, j), centre)
-        least, most = square_range(points[j], centre, half, 3)
+        row, r = channels[j], minus(row_of(family.points_m, j), centre)
+        least, most = square_range(family.points_m[j], centre, half, 3)
         if row[0] == BY_DISTANCE:
             return distance_amplitude(row, r, least, most)
         if row[0] == BY_ELEVATION:
-            return elevation_amplitude(row, r, least, is_above, points[j], centre, half)
+            return elevation_amplitude(row, r, least, is_above, family.points_m[j], centre, half)
     return Amplitude(1.0, (0.0, 0.0, 0.0), 1.0, 0.0, 0.0)
 
 
 @inner_kernel
-def excess_end(channels, points, j, is_above, centre, half):
+def excess_end(family, channels, j, is_above, centre, half):
     """Return the largest excess gain of point j in a box, or the least, as ``is_above`` says."""
     if channels is not None:
-        row = channels[j]
+        row, points = channels[j], family.points_m
         if row[0] == BY_DISTANCE:
             least, most = square_range(points[j], centre, half, 3)
             unit, power = row[2] * row[2], 0.5 * row[1]

@@ -58,6 +58,9 @@ class Workspace(NamedTuple):
         matrix: (6,) the last sum of forms at a box's centre.
         slopes: (3, 6) its slopes.
         rest: (6,) a form that is no less than what is left out of both over the box.
+        numerator_weight: (ratios,) as the box has them.
+        denominator_weight: (entries,) likewise.
+        no_sides: (0, 5).
     """
 
     weights: FloatArray
@@ -69,3 +72,6 @@ class Workspace(NamedTuple):
     matrix: FloatArray
     slopes: FloatArray
     rest: FloatArray
+    numerator_weight: FloatArray
+    denominator_weight: FloatArray
+    no_sides: FloatArray

@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 
 from nullpose.channel.elevation import DB_AVERAGE
-from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.channel.model import BLOCKED, BY_DISTANCE, BY_ELEVATION
 from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.vectors import dot
+from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of
 
 _ZENITH = 1e-12  # of the distance: directly above a point the elevation has no derivative
 
@@ -38,15 +38,41 @@ def steepness(row, gain):
     return -math.log(row[3]) if row[4] == DB_AVERAGE else (1.0 - row[3]) / gain
 
 
+@inner_kernel
+def blocked_gain(points, sides, start, row, p):
+    """Return what is left of a link at a position, by shadows from one to another of ``start``."""
+    for shadow in range(points[0], points[1]):
+        inside = True
+        for s in range(start[shadow], start[shadow + 1]):
+            if not sides[s, 0] * p[0] + sides[s, 1] * p[1] + sides[s, 2] * p[2] < sides[s, 4]:
+                inside = False
+                break
+        if inside:
+            return row[BLOCKED]
+    return 1.0
+
+
 @small_kernel
-def excess_at(channels, j, r):
-    """Return the excess gain of point j, r being the vector to it."""
+def sight_gain(family, channels, j, p):
+    """Return what buildings leave of point j's link at a position; 1 in the clear."""
+    if channels is not None and family.shadow_sides.shape[0] > 0:
+        shadows = family.shadows_of_point[j : j + 2]
+        return blocked_gain(shadows, family.shadow_sides, family.shadow_start, channels[j], p)
+    return 1.0
+
+
+@small_kernel
+def excess_at(family, channels, j, p):
+    """Return the excess gain of point j at a position."""
     if channels is not None:
-        row = channels[j]
+        row, r = channels[j], minus(row_of(family.points_m, j), p)
+        gain = sight_gain(family, channels, j, p)
         if row[0] == BY_DISTANCE:
-            return (dot(r, r) / (row[2] * row[2])) ** (0.5 * row[1])
+            return gain * (dot(r, r) / (row[2] * row[2])) ** (0.5 * row[1])
         if row[0] == BY_ELEVATION:
-            return elevation_gain(row, sight_probability(row, math.atan2(-r[2], math.hypot(r[0], r[1]))))
+            elevation_rad = math.atan2(-r[2], math.hypot(r[0], r[1]))
+            return gain * elevation_gain(row, sight_probability(row, elevation_rad))
+        return gain
     return 1.0
 
 

@@ -121,7 +121,7 @@ def add_dipole_form(family, axes, j, basis, r, weight, out):
 @small_kernel
 def add_point(family, j, p, basis, weight, isotropic, out):
     """Add ``weight * M`` of point j and ``isotropic * I``, in a frame, to a form of six numbers."""
-    weight *= excess_at(family.channels, j, minus(row(family.points_m, j), p))
+    weight *= excess_at(family, family.channels, j, p)
     x, y, z = seen_from(family.points_m, family.turn, j, p, basis)
     share = isotropic_share(family.ground_leaks, j)
     add_form(x, y, z, family.leak, share * weight, isotropic, out)

@@ -16,7 +16,7 @@ import math
 
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet
+from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet, sight_gain
 from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, minus, row, scaled, store
 
 
@@ -54,12 +54,13 @@ def link_form(family, j, p, u):
     """Return the link of point j, without cancellation beside the null."""
     r, seen = minus(row(family.points_m, j), p), seen_axis(family.turn, j, u)
     ahead, side, square = dot(seen, r), cross(seen, r), dot(r, r)
-    link = excess_at(family.channels, j, r) / (square * square)
+    excess = excess_at(family, family.channels, j, p)
+    link = excess / (square * square)
     link *= dot(side, side) + family.leak * ahead * ahead
     share = isotropic_share(family.ground_leaks, j)
     if share < 1.0:
         of_dipole = dipole_link(family.leak, family.ground_axes, j, r, seen)
-        of_dipole *= excess_at(family.channels, j, r)
+        of_dipole *= excess
         return share * link + (1.0 - share) * of_dipole
     return link
 
@@ -116,7 +117,8 @@ def add_excess(family, channels, j, weight, p, u, grad, hess, second):
     if channels is None:
         return add_turned_form(family, j, weight, p, u, grad, hess, second)
     slopes, bends, g, h = scratch(3), scratch(3, 3), zeroed(6), zeroed(6, 6)
-    gain = excess_jet(channels[j], minus(row(family.points_m, j), p), slopes, bends)
+    gain = sight_gain(family, channels, j, p)
+    gain *= excess_jet(channels[j], minus(row(family.points_m, j), p), slopes, bends)
     value = add_turned_form(family, j, gain * weight, p, u, g, h, second)
     for i in range(6):
         grad[i] += g[i] + (value * slopes[i] if i < 3 else 0.0)

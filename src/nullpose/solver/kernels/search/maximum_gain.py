@@ -18,7 +18,6 @@ from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.forms import bilinear, fill_forms
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, normalise, squared_distance, tangents
-from nullpose.solver.kernels.linear_algebra.vectors import minus
 
 _TIE = 1e-11
 
@@ -58,7 +57,7 @@ def maximum_gain_value(family, p, axis):
     worst = -1
     for k in range(ratios):
         point = family.points_m[family.numerator_point[k]]
-        excess = excess_at(family.channels, family.numerator_point[k], minus(point, p))
+        excess = excess_at(family, family.channels, family.numerator_point[k], p)
         if level >= excess * family.numerator_weight[k] / squared_distance(point, p) * (1.0 - _TIE):
             worst = k
     if worst >= 0:

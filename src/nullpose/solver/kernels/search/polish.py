@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from nullpose.objectives.ratios import Ratios
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS, Axes, Domain
-from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.barrier import (
     barrier_value,
@@ -39,6 +39,7 @@ from nullpose.solver.kernels.search.local_coordinates import (
     reduce_hessian,
     slack_count,
 )
+from nullpose.solver.kernels.search.shadows import domain_in_sight
 
 _MU_END = 1e-12
 _LONGEST = 0.7
@@ -243,6 +244,8 @@ def put_on_faces(problem, point, trial, model, logs, best, best_pose):
 def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     """Improve a pose in place to a local maximum; return its smallest log ratio and the steps taken.
 
+    Where buildings stand, every line of sight stays as good as at the start.
+
     Args:
         family: arrays of the family.
         domain: box, keep-out balls and forbidden pieces, as ``Family.domain`` has them.
@@ -253,6 +256,13 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         max_steps: limit on interior-point steps.
         multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one.
     """
+    sight = domain_in_sight(family, domain, p)
+    return polish_within(family, sight, axis_field, p, u, mu_start, max_steps, multipliers)
+
+
+@inner_heap_kernel
+def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
+    """Do what ``polish`` does in a domain."""
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
     problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_))

@@ -1,0 +1,84 @@
+"""Poses among buildings: known answers, brute force, and what physics says of them."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from nullpose import Scenario, min_sinr, solve
+from nullpose.errors import UsageError
+from nullpose.physics import objective_value
+from nullpose.solver.certificate_from_proof import certificate_of
+
+TOWER = {"polygon_m": [[8.0, 8.0], [12.0, 8.0], [12.0, 17.0], [8.0, 17.0]], "height_m": 12.0}
+
+
+def among(scenario: Scenario, *buildings: dict[str, object], **channel: object) -> Scenario:
+    """Put buildings into a scene."""
+    channel = {"blocked_loss_db": 20.0} | channel
+    return Scenario.from_dict(scenario.to_dict() | {"channel": channel, "buildings": list(buildings)})
+
+
+@pytest.mark.parametrize(
+    ("ratio", "value", "place_m", "boxes"),
+    [(1.0, 1.316530, (-7.864, 24.946, 8.0), 2000), (100.0, 1.238278, (-3.936, 23.374, 8.0), 20_000)],
+)
+def test_one_prism_has_its_known_optimum(
+    ratio: float, value: float, place_m: tuple[float, ...], boxes: int, paper: Callable[[float], Scenario]
+) -> None:
+    """On the edge of the shadow, in floating point; the physics agrees with the solver."""
+    scenario = among(paper(ratio), TOWER)
+    result = solve(scenario, gap=1e-3)
+    assert result.status == "certified"
+    assert result.rigour == "floating-point"
+    assert result.objective.value == pytest.approx(value, abs=1e-6)
+    assert result.pose.position_m == pytest.approx(place_m, abs=2e-3)
+    assert result.stats.boxes < boxes
+    assert min_sinr(scenario, result.pose) == pytest.approx(result.objective.value, rel=1e-9)
+    with pytest.raises(UsageError, match="buildings"):
+        certificate_of(result)
+
+
+def test_buildings_of_height_0_change_nothing(paper: Callable[[float], Scenario]) -> None:
+    """Neither value nor bound nor pose."""
+    flat = solve(among(paper(1.0), TOWER | {"height_m": 0.0}), gap=1e-4)
+    free = solve(paper(1.0), gap=1e-4)
+    assert flat.objective.to_dict() == free.objective.to_dict()
+    assert flat.pose == free.pose
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_pose_of_many_beats_a_bound(seed: int) -> None:
+    """Random fields with prisms, roofs in intervals, three channels: 20,000 poses stay below the bound."""
+    rng = np.random.default_rng(seed)
+    channel = [
+        {"model": "power-law", "exponent": 3.0},
+        {"model": "elevation", "environment": "urban", "average": "power"},
+        {"model": "free-space"},
+    ][seed % 3]
+    if seed % 3 == 1:
+        channel = channel | {"blocked_loss_db": 12.0}
+    nodes, jammers = rng.uniform(0.0, 100.0, (3, 3)), rng.uniform(0.0, 100.0, (1 + seed % 2, 3))
+    nodes[:, 2], jammers[:, 2] = 1.0, 2.0
+    blocks = []
+    while len(blocks) < 6:
+        west, south = rng.uniform(0.0, 90.0, 2)
+        east, north = west + rng.uniform(4.0, 14.0), south + rng.uniform(4.0, 14.0)
+        inside = [west - 1 <= x <= east + 1 and south - 1 <= y <= north + 1 for x, y, _ in (*nodes, *jammers)]
+        if not any(inside):
+            low = rng.uniform(6.0, 20.0)
+            corners = [[west, south], [east, south], [east, north], [west, north]]
+            blocks.append({"polygon_m": corners, "height_m": [low, low + 3.0]})
+    free = Scenario.from_arrays(nodes, jammers, noise_w=1e-4, altitude_m=(10.0, 50.0))
+    scenario = among(free, *blocks, **channel)
+    result = solve(scenario, gap=1e-2, time_limit_s=60.0)
+    assert result.status == "certified"
+    places = rng.uniform([-20.0, -20.0, 10.0], [120.0, 120.0, 50.0], (20_000, 3))
+    places[::2] = result.pose.position_m + rng.normal(0.0, 3.0, (10_000, 3))
+    places = places[scenario.open_airspace.allows(places)]
+    axes = rng.normal(size=(len(places), 3))
+    axes[::3] = result.pose.orientation(scenario.antenna_record) + rng.normal(0.0, 0.05, (len(axes[::3]), 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    values = objective_value(scenario, places, axes)
+    assert np.max(values) <= result.objective.upper_bound * (1.0 + 1e-9)
+    assert np.max(values) >= 0.9 * result.objective.value
