@@ -35,6 +35,11 @@ PAPER = load("examples/paper.toml")
             "nlos_loss_db",
             "losses that make line of sight the weaker",
         ),
+        (
+            URBAN | NUMBERS | {"environment": None, "nlos_loss_db": 0.0},
+            "nlos_loss_db",
+            "losses that make line of sight the weaker",
+        ),
         ({"blocked_loss_db": 0.0}, "blocked_loss_db", "must be a loss in dB"),
         ({"model": "free-space", "average": "db"}, "average", 'or write model = "elevation"'),
     ],

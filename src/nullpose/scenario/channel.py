@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from typing import Annotated, ClassVar
 
@@ -101,10 +100,11 @@ class Channel(Section):
         if "environment" in _keys_of(self.model) and given.isdisjoint(("environment", *_NUMBERS)):
             instead = f"{', '.join(_NUMBERS[:-1])} and {_NUMBERS[-1]}"
             yield ("environment",), f"missing, but {named} needs it, or {instead}; add either"
-        if self.los_loss_db is not None and (self.nlos_loss_db or math.inf) < self.los_loss_db:
+        seen, hidden = self.los_loss_db, self.nlos_loss_db
+        if seen is not None and hidden is not None and hidden < seen:
             yield (
                 ("nlos_loss_db",),
-                f"got {self.nlos_loss_db:g}, less than los_loss_db = {self.los_loss_db:g}: losses that make "
+                f"got {hidden:g}, less than los_loss_db = {seen:g}: losses that make "
                 "line of sight the weaker; exchange them",
             )
 
