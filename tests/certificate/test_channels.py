@@ -12,6 +12,7 @@ from nullpose.certificate.forms import COLUMN, ROW
 from nullpose.certificate.pose_value import exact, smallest_ratio
 from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel
+from nullpose.channel.free_space import constant_channel
 from nullpose.channel.model import BY_ELEVATION
 from nullpose.channel.power_law import power_law
 from nullpose.problem.family import Family
@@ -119,7 +120,7 @@ def test_points_have_channels_of_their_own() -> None:
     rows = [
         power_law(3.0, 1.0).row,
         elevation_channel(*ENVIRONMENTS["urban"], average="db").row,
-        (0.0, 0.0, 0.0, 0.0, 0.0),
+        constant_channel(1.0).row,
         elevation_channel(*ENVIRONMENTS["suburban"], average="power").row,
     ]
     family = random_family(rng, 2, 2).changed(channels=np.array(rows))
