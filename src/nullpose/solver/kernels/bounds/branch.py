@@ -48,7 +48,7 @@ from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.forms import add_denominator
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
-from nullpose.solver.kernels.linear_algebra.vectors import fill_affine, norm
+from nullpose.solver.kernels.linear_algebra.vectors import corner_of, fill_affine, norm, store
 from nullpose.solver.kernels.search.domain import contains
 
 DONE, LIMIT, FULL = 0, 1, 2  # why a run over a stack ended; or BETTER
@@ -102,6 +102,31 @@ def same_multipliers(row, other):
     return same
 
 
+@small_kernel
+def beats_from(whole, domain, row, value, best, workspace, axis):
+    """Check whether an axis that reaches a value at a box's centre beats the best there; fill the place.
+
+    With several denominators that value is not the ratio itself. Among buildings it is the one with the
+    lines of sight of the box, which may be had at one of its corners only.
+    """
+    centre, logs = row[CENTRE:HALF], (workspace.log_denominators, workspace.values)
+    copy_into(centre, workspace.place)
+    shadows = whole.shadow_sides.shape[0] > 0
+    best *= 1.0 + _BEATS
+    if not (whole.denominator_isotropic.shape[0] > 1 or shadows) or not value > 0.0:
+        return value > best
+    if shadows and not value > best:
+        return False
+    if math.exp(min_log_ratio(whole, centre, axis, logs[0], logs[1])) > best:
+        return True
+    for corner in range(8 if shadows else 0):
+        store(corner_of(centre, row[HALF:LEVEL], corner), workspace.place)
+        value = math.exp(min_log_ratio(whole, workspace.place, axis, logs[0], logs[1]))
+        if value > best and contains(domain, workspace.place):
+            return True
+    return False
+
+
 @inner_kernel
 def examine_free(whole, domain, axis_field, goal, row, coarseness, workspace, axis):
     """Examine a box whose axis is free; return the verdict and how often multipliers were sought."""
@@ -131,15 +156,9 @@ def examine_free(whole, domain, axis_field, goal, row, coarseness, workspace, ax
             primal, reached, followed = free_multipliers(
                 family, axis_field, basis, row, denominator, coarseness, workspace, axis
             )
-            if is_free and followed and contains(domain, centre):
-                value = reached * row[LEVEL]
-                # with several denominators it is not the ratio itself, among buildings not at the centre
-                is_other = family.denominator_isotropic.shape[0] > 1 or whole.shadow_sides.shape[0] > 0
-                if reached > 0.0 and is_other:
-                    logs = workspace.log_denominators, workspace.values
-                    value = math.exp(min_log_ratio(whole, centre, axis, logs[0], logs[1]))
-                if value > goal.best * (1.0 + _BEATS):
-                    return BETTER, 1
+            can_beat = is_free and followed and contains(domain, centre)
+            if can_beat and beats_from(whole, domain, row, reached * row[LEVEL], goal.best, workspace, axis):
+                return BETTER, 1
             if primal == math.inf:  # no axis was met that is inside both cell and band
                 wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
                 return (BY_AXIS if is_free and wide else BY_POSITION), 1
@@ -191,8 +210,9 @@ def examine_affine(whole, domain, axis_field, goal, row, workspace, axis):
             reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
             if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
                 fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+                copy_into(row[CENTRE:HALF], workspace.place)
                 logs = workspace.log_denominators, workspace.values
-                value = math.exp(min_log_ratio(whole, row[CENTRE:HALF], axis, logs[0], logs[1]))
+                value = math.exp(min_log_ratio(whole, workspace.place, axis, logs[0], logs[1]))
                 if value > goal.best * (1.0 + _BEATS):
                     return BETTER, 0, 1
         if excludes_curved(family, domain, axis_field, row, below, jet, total):
@@ -208,7 +228,7 @@ def workspace_of(family):
         np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
         np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
         np.empty(6), np.empty((3, 6)), np.empty(6), np.empty(ratios),
-        np.empty(family.denominator_weight.shape[0]), np.empty((0, 5)),
+        np.empty(family.denominator_weight.shape[0]), np.empty((0, 5)), np.empty(3),
     )  # fmt: skip
 
 
@@ -280,7 +300,7 @@ def branch(
             copy_into(row, leaves[filled])
             filled += 1
         elif verdict == BETTER:
-            copy_into(row[CENTRE:HALF], better_p)
+            copy_into(workspace.place, better_p)
             copy_into(axis, better_u)
             return BETTER, top + 1, filled, boxes, sought
         elif verdict == BY_AXIS:

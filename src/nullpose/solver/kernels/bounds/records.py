@@ -61,6 +61,7 @@ class Workspace(NamedTuple):
         numerator_weight: (ratios,) as the box has them.
         denominator_weight: (entries,) likewise.
         no_sides: (0, 5).
+        place: (3,) where a pose is that beats the best.
     """
 
     weights: FloatArray
@@ -75,3 +76,4 @@ class Workspace(NamedTuple):
     numerator_weight: FloatArray
     denominator_weight: FloatArray
     no_sides: FloatArray
+    place: FloatArray
