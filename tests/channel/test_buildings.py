@@ -108,6 +108,21 @@ def test_the_roof_is_the_one_that_is_asked_for() -> None:
     assert not is_blocked(none, at, to, none.most_height_m).any()
 
 
+def test_ground_points_may_differ_from_position_to_position() -> None:
+    """As errors move them: each line is that of its own points, on rows and columns of positions too."""
+    tower = towers((0.0, 12.0))
+    rng = np.random.default_rng(5)
+    at, to = rng.uniform(-30.0, 40.0, (7, 1, 3)), rng.uniform(-30.0, 40.0, (5, 9, 3))
+    blocked = is_blocked(tower, at, to, tower.most_height_m)
+    assert blocked.shape == (7, 5, 9)
+    assert 0 < blocked.sum() < blocked.size
+    for i, place in enumerate(at[:, 0]):
+        for j, points in enumerate(to):
+            np.testing.assert_array_equal(
+                blocked[i, j], is_blocked(tower, place, points, tower.most_height_m)
+            )
+
+
 def test_a_passage_is_open() -> None:
     """Below its base a building lets links through."""
     arch = prisms_of([SQUARE], [[]], [4.0], [[9.0, 9.0]])

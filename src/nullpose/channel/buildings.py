@@ -179,7 +179,7 @@ def is_blocked(
     Args:
         prisms: the buildings.
         positions_m: of the drone, (..., 3), metres.
-        points_m: on the ground, (m, 3), metres.
+        points_m: on the ground, (m, 3), or (..., m, 3) where they differ, metres.
         heights_m: (n,) the roof of each prism: ``prisms.most_height_m`` where a building makes the value
             worse (nodes), ``prisms.least_height_m`` where it makes it better (jammers).
 
@@ -193,15 +193,15 @@ def is_blocked(
         >>> is_blocked(tower, [-10.0, 5.0, 30.0], [[20.0, 5.0, 11.0], [20.0, 5.0, 20.0]], tower.most_height_m)
         array([ True, False])
     """
-    positions, points = np.asarray(positions_m, dtype=np.float64), np.asarray(points_m, dtype=np.float64)
-    flat = positions.reshape(-1, 3)
+    begins_m = np.asarray(positions_m, dtype=np.float64)[..., None, :]
+    begins_m, ends_m = np.broadcast_arrays(begins_m, np.asarray(points_m, dtype=np.float64))
+    blocked = np.zeros(begins_m.shape[:-1], dtype=np.bool_)
+    begins_m, ends_m, links = begins_m.reshape(-1, 3), ends_m.reshape(-1, 3), blocked.reshape(-1)
     rows = max(1, _BLOCK // max(1, len(prisms.sides)))  # links at a time
-    blocked = np.zeros((len(flat), len(points)), dtype=np.bool_)
-    links = np.indices(blocked.shape).reshape(2, -1) if len(prisms.base_m) else np.zeros((2, 0), np.int64)
-    for first in range(0, links.shape[1], rows):
-        position, point = links[:, first : first + rows]
-        blocked[position, point] = _meets(prisms, flat[position], points[point], heights_m)
-    return blocked.reshape(*positions.shape[:-1], len(points))
+    for first in range(0, len(links) if len(prisms.base_m) else 0, rows):
+        part = slice(first, first + rows)
+        links[part] = _meets(prisms, begins_m[part], ends_m[part], heights_m)
+    return blocked
 
 
 def _meets(

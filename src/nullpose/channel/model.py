@@ -92,13 +92,15 @@ class PointChannels(NamedTuple):
 
         Args:
             positions_m: of the drone, (..., 3), metres.
-            points_m: the ground points, (m, 3), metres.
+            points_m: the ground points, (m, 3), or (..., m, 3) where they differ, metres.
         """
-        gain = np.ones((*positions_m.shape[:-1], len(points_m)))
+        gain = np.ones(np.broadcast_shapes(positions_m[..., None, :].shape, points_m.shape)[:-1])
         for is_low, roof in enumerate(("most_height_m", "least_height_m")):
             places = np.flatnonzero(self.is_interferer == bool(is_low))
             if self.prisms is not None and len(places):
-                blocked = is_blocked(self.prisms, positions_m, points_m[places], getattr(self.prisms, roof))
+                blocked = is_blocked(
+                    self.prisms, positions_m, points_m[..., places, :], getattr(self.prisms, roof)
+                )
                 gain[..., places] = np.where(blocked, self.rows[places, BLOCKED], 1.0)
         return gain
 
@@ -111,7 +113,7 @@ def excess_gain(
     Args:
         channels: of the points.
         to_points_m: from the drone to each point, (..., m, 3), metres.
-        points_m: where the points are, (m, 3), metres: then buildings count.
+        points_m: where they are, (m, 3), or (..., m, 3) where that differs, metres: then buildings count.
 
     Returns:
         Array of shape (..., m), power ratios.
@@ -124,5 +126,5 @@ def excess_gain(
         row = channels.rows[places].T
         gain[..., places] = excess(row, distance_m[..., places], elevation_rad[..., places])
     if channels.prisms is not None and points_m is not None:
-        gain *= channels.blocked_gain(points_m[0] - to_points_m[..., 0, :], points_m)
+        gain *= channels.blocked_gain(points_m[..., 0, :] - to_points_m[..., 0, :], points_m)
     return np.asarray(channels.strengths * gain)
