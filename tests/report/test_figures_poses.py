@@ -6,17 +6,19 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from nullpose import Pose, load, solve
+from nullpose import Pose, Scenario, load, solve
 from nullpose.errors import UsageError
+from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose
 from nullpose.report.figures.stage import ALONE, Stage
 from nullpose.report.figures.style import prepare_figure_file, write_figure_file
 from nullpose.report.geometry import outline_m
+from nullpose.study.value_map import value_map
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-@pytest.mark.parametrize("name", ["airframe", "eavesdropper", "no-fly", "requirements", "geodetic"])
+@pytest.mark.parametrize("name", ["airframe", "eavesdropper", "no-fly", "requirements", "geodetic", "town"])
 def test_every_example_can_be_drawn(name: str, tmp_path: Path) -> None:
     """The file is written, is not blank, names every point, and tells the value in its unit."""
     solution = solve(load(EXAMPLES / f"{name}.toml"), certify=False)
@@ -37,6 +39,31 @@ def test_one_metre_is_as_long_along_every_axis() -> None:
     sides = np.array([np.diff(axes.get_xlim3d()), np.diff(axes.get_ylim3d()), np.diff(axes.get_zlim3d())])
     ratios = sides.ravel() / axes._box_aspect
     assert ratios == pytest.approx([ratios[0]] * 3)
+
+
+def test_buildings_are_drawn_with_their_shadows() -> None:
+    """From above and in 3-D, courtyards open; on a map, which has its own colours, as outlines only."""
+    scenario = load(EXAMPLES / "town.toml")
+    yard = {
+        "polygon_m": [[-4, 30], [4, 30], [4, 38], [-4, 38]],
+        "courtyards_m": [[[-2, 32], [2, 32], [0, 36]]],
+    }
+    data = scenario.to_dict()
+    scenario = Scenario.from_dict(data | {"buildings": [*data["buildings"], yard | {"height_m": 9.0}]})
+    solution = solve(scenario, certify=False)
+    scene, plan = draw_pose(solution).axes
+    labels = plan.get_legend_handles_labels()[1]
+    assert {"building", "node blocked", "jammer blocked"} <= set(labels)
+    assert "building" in scene.get_legend_handles_labels()[1]
+    (buildings,) = (patch for patch in plan.patches if patch.get_label() == "building")
+    rings = buildings.get_path().to_polygons(closed_only=True)
+    outlines_m = [building.outline_m for building in scenario.buildings]
+    yard_m = scenario.buildings[-1].courtyard_outlines_m[0]
+    for ring, corners_m in zip(rings, [*outlines_m, yard_m[::-1]], strict=True):  # clockwise: a hole
+        np.testing.assert_array_equal(ring[:-1], corners_m)
+    seen = draw_value_map(solution, value_map(solution, cells=12)).axes[0]
+    (outlines,) = (patch for patch in seen.patches if patch.get_label() == "building")
+    assert not outlines.get_fill()
 
 
 def test_zones_far_away_are_left_out() -> None:

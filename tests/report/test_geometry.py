@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, strategies as st
 
-from nullpose import Pose
-from nullpose.report.geometry import axis_angle_rad, azimuth_rad, tilt_rad
+from nullpose import Pose, load
+from nullpose.report.geometry import axis_angle_rad, azimuth_rad, shadow_outlines_m, tilt_rad
 
 UNIT = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: math.hypot(*v) > 0.1)
 
@@ -61,3 +62,28 @@ def test_the_axis_of_an_antenna_with_one_lobe_has_a_sign() -> None:
     above = pose.position_m + np.array([0.6, 0.0, 0.8])
     assert axis_angle_rad(pose, above, is_even=False) == pytest.approx(np.pi)
     assert axis_angle_rad(pose, above) == pytest.approx(0.0, abs=1e-7)
+
+
+@pytest.mark.parametrize("altitude_m", [0.5, 12.0, 29.1, 60.0])
+def test_shadows_are_where_the_line_of_sight_is_blocked(altitude_m: float) -> None:
+    """Of each point, within the frame, which cuts them; each polygon is convex."""
+    scenario, frame_m = load("examples/town.toml"), np.array([[-90.0, -70.0], [80.0, 95.0]])
+    points = (*scenario.nodes, *scenario.jammers)
+    places_m = np.random.default_rng(1).uniform(*frame_m, (500, 2))
+    at_m = np.insert(places_m, 2, altitude_m, axis=1)
+    left = scenario.source_channels.blocked_gain(at_m, scenario.source_positions_m)
+    for point, gain in zip(points, left.T, strict=True):
+        outlines = shadow_outlines_m(scenario, point, altitude_m, frame_m)
+        shapes = [shapely.Polygon(outline) for outline in outlines]
+        for shape in shapes:
+            assert shapely.box(*frame_m.ravel()).buffer(1e-9).contains(shape)
+            assert shape.convex_hull.area == pytest.approx(shape.area)
+        assert (gain < 1.0).any()
+        shadow = shapely.union_all(shapes)
+        np.testing.assert_array_equal(shapely.contains_xy(shadow, *places_m.T), gain < 1.0)
+
+
+def test_without_buildings_there_are_no_shadows() -> None:
+    """And nothing to draw."""
+    scenario = load("examples/urban.toml")
+    assert shadow_outlines_m(scenario, scenario.nodes[0], 30.0, np.array([[-9.0, -9.0], [9.0, 9.0]])) == []

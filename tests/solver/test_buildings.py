@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from nullpose import Scenario, min_sinr, solve
+from nullpose import Scenario, load, min_sinr, solve
 from nullpose.errors import UsageError
 from nullpose.physics import objective_value
 from nullpose.solver.certificate_from_proof import certificate_of
@@ -38,6 +38,17 @@ def test_one_prism_has_its_known_optimum(
     assert result.sensitivity  # errors move the ground points, which the lines of sight follow
     with pytest.raises(UsageError, match="buildings"):
         certificate_of(result)
+
+
+def test_the_example_is_certified_to_the_default_gap() -> None:
+    """In a town the best pose sees all nodes, at the border of a shadow."""
+    scenario = load("examples/town.toml")
+    result = solve(scenario)
+    assert result.status == "certified"
+    assert result.objective.value_db == pytest.approx(26.9136, abs=1e-3)
+    assert result.stats.boxes < 2000
+    position_m, points_m = result.pose.position_m, scenario.source_positions_m
+    assert (scenario.source_channels.blocked_gain(position_m, points_m) == 1.0).all()
 
 
 def test_buildings_of_height_0_change_nothing(paper: Callable[[float], Scenario]) -> None:

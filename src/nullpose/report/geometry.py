@@ -7,9 +7,10 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.channel.buildings import shadows_of
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
-from nullpose.scenario import NoFlyZone
+from nullpose.scenario import GroundPoint, NoFlyZone, Scenario
 
 _SIDES = 72  # of the polygon that stands for a cylinder; 0.1 % of the radius larger at most
 
@@ -53,3 +54,35 @@ def outline_m(zone: NoFlyZone) -> FloatArray:
     around = math.tau * np.arange(_SIDES) / _SIDES
     reach_m = zone.radius_m / math.cos(math.pi / _SIDES)
     return np.asarray(zone.centre_m + reach_m * np.stack([np.cos(around), np.sin(around)], axis=-1))
+
+
+def shadow_outlines_m(
+    scenario: Scenario, point: GroundPoint, altitude_m: float, frame_m: FloatArray
+) -> list[FloatArray]:
+    """List where buildings block the line of sight to a point, at one altitude: convex polygons, (n, 2).
+
+    Args:
+        scenario: whose buildings they are.
+        point: on the ground.
+        altitude_m: where the drone is, metres.
+        frame_m: low and high corner of what is cut out, (2, 2), metres.
+    """
+    if scenario.prisms is None:
+        return []
+    places_m, (low, high) = np.array([point.position_m]), frame_m
+    shadows = shadows_of(scenario.prisms, places_m, np.array([point.is_interferer]))
+    frame = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+    outlines = [_cut(frame, sides, altitude_m) for sides in np.split(shadows.sides, shadows.start[1:-1])]
+    return [outline for outline in outlines if len(outline)]
+
+
+def _cut(corners_m: FloatArray, sides: FloatArray, altitude_m: float) -> FloatArray:
+    """Cut a level convex polygon by half-spaces, one after the other."""
+    for *normal, up, offset, _ in sides:
+        away, onward = corners_m @ normal + up * altitude_m - offset, np.roll(corners_m, -1, axis=0)
+        is_inside, step = away <= 0.0, away - np.roll(away, -1)
+        is_crossed = is_inside != np.roll(is_inside, -1)
+        share = np.divide(away, step, out=np.zeros_like(away), where=is_crossed)
+        ends = np.stack([corners_m, corners_m + share[:, None] * (onward - corners_m)], axis=1)
+        corners_m = ends[np.stack([is_inside, is_crossed], axis=1)]
+    return corners_m

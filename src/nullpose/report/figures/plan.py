@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
+from nullpose.report.figures.buildings import draw_outlines, draw_shadows
 from nullpose.report.figures.scene import write_name
 from nullpose.report.figures.stage import ALONE, AXIS, DRONE, FORBIDDEN, KINDS, Stage, limits_m
 from nullpose.report.figures.style import GREY, Look, house_style, inches
@@ -37,6 +38,9 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
     low, high = np.stack(limits_m(stage))[:, :2] if box_m is None else box_m
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x (east)  m", ylabel="y (north)  m")
     axes.set_aspect("equal")
+    if box_m is None:  # a map has its own colours
+        draw_shadows(axes, stage, float(pose.position_m[2]), np.stack([low, high]))
+    draw_outlines(axes, stage.scenario, is_filled=box_m is None)
     names, zone_names = [], []
     for zone, corners_m in stage.zones:
         look: Look = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}

@@ -71,7 +71,8 @@ def draw_panels(
     if width == "column":
         across, down, shares = 1, len(shares), [1.0]
     with house_style(width):
-        layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.98, 1.0))  # the name of z is beyond its panel
+        # the name of z is beyond its panel, that of y too where another panel is below
+        layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.98, 1.0), hspace=0.08)
         figure = Figure(figsize=(wide, high * down), layout=layout)
         grid = figure.add_gridspec(down, across, width_ratios=shares)
         for index, pose in enumerate(stage.poses):

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
+from nullpose.report.figures.buildings import draw_bodies
 from nullpose.report.figures.stage import FORBIDDEN, KINDS, Stage, limits_m
 from nullpose.report.figures.style import GREY, Look
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone
@@ -86,6 +87,7 @@ def draw_panel(
             if stage.uncertain and point.uncertainty_reach_m > 0.0:
                 draw_set(axes, point, colour, f"where the {kind} may be")
         write_name(axes, point.name, place, colour, "above" if kind == "node" else "right")
+    draw_bodies(axes, stage.scenario)
     for zone, corners_m in stage.zones:
         _draw_zone(axes, zone, corners_m)
     draw_vehicle(axes, stage, pose)

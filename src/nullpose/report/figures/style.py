@@ -98,6 +98,7 @@ _RC: dict[Any, Any] = {
     "ytick.labelcolor": INK,
     "text.color": INK,
     "svg.hashsalt": "nullpose",  # the same figure gives the same file
+    "hatch.linewidth": 0.5,
     "pdf.fonttype": 42,  # fonts are embedded whole, as TrueType
 }
 
