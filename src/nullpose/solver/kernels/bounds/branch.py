@@ -60,6 +60,7 @@ _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axe
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
+_APART_M = 1e-3
 
 
 @small_kernel
@@ -119,8 +120,11 @@ def beats_from(whole, domain, row, value, best, workspace, axis):
         return False
     if math.exp(min_log_ratio(whole, centre, axis, logs[0], logs[1])) > best:
         return True
+    half = scratch(3)
+    for i in range(3):  # many times what is between a shadow and a pose that is sure to be out of it
+        half[i] = max(row[HALF + i], _APART_M)
     for corner in range(8 if shadows else 0):
-        store(corner_of(centre, row[HALF:LEVEL], corner), workspace.place)
+        store(corner_of(centre, half, corner), workspace.place)
         value = math.exp(min_log_ratio(whole, workspace.place, axis, logs[0], logs[1]))
         if value > best and contains(domain, workspace.place):
             return True
