@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
 from nullpose import Link, Pose, Result, evaluate, solve
 from nullpose.errors import UsageError
@@ -97,6 +98,27 @@ def test_outlines_are_rings(solution: Result) -> None:
             assert ring[0] == ring[-1]
             assert len(ring) >= 4
             assert sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(ring)) > 0.0
+
+
+def test_buildings_are_on_the_map(solution: Result) -> None:
+    """Outer ring counter-clockwise, courtyards clockwise, with their heights; the pose tells the channel."""
+    yard = {"polygon_m": [[0, 0], [0, 9], [9, 9], [9, 0]], "courtyards_m": [[[3, 3], [6, 3], [6, 6], [3, 6]]]}
+    plain = {"polygon_m": [[20, 0], [29, 0], [29, 9]], "height_m": [7.0, 9.0], "base_m": 3.0, "name": "arch"}
+    changes = {
+        "channel": {"model": "power-law", "exponent": 3.0},
+        "buildings": [yard | {"height_m": 7}, plain],
+    }
+    scenario = Scenario.from_dict(solution.scenario.to_dict() | changes)
+    inside = replace(solution, scenario=scenario)
+    hollow, arch = features(inside, "building")
+    outer, inner = (np.array(ring) for ring in hollow["geometry"]["coordinates"])
+    assert shapely.LinearRing(outer).is_ccw
+    assert not shapely.LinearRing(inner).is_ccw
+    assert local_m(inner[0].tolist(), 230.0)[:2] == pytest.approx([3.0, 6.0], abs=1e-3)
+    assert arch["properties"] == {"kind": "building", "name": "arch", "height_m": [7.0, 9.0], "base_m": 3.0}
+    (pose,) = features(inside, "pose")
+    assert pose["properties"]["channel"].startswith("power-law, exponent 3.0")
+    assert "channel" not in features(solution, "pose")[0]["properties"]
 
 
 def test_who_listens_in_is_on_the_map(solution: Result, paper: Scenario) -> None:

@@ -15,6 +15,7 @@ from nullpose.physics import Pose, pose_frames
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import azimuth_rad, outline_m, tilt_rad
 from nullpose.report.links import binding_nodes
+from nullpose.report.words import channel_words
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.solver import Result
@@ -43,8 +44,10 @@ def solution_geojson(solution: Result) -> PlainTable:
 
     Points for the pose, the nodes, the jammers and the eavesdroppers, with altitudes over the ellipsoid (or,
     where the origin tells only that, over the sea, as property ``alt_msl_m``);
-    polygons for the airspace, if it is bounded on all sides, the geofence and the no-fly zones. Property
-    ``kind`` tells them apart. Angles are in degrees; ``altitude_m`` of a polygon is z in the local frame.
+    polygons for the airspace, if it is bounded on all sides, the geofence, the no-fly zones and the
+    buildings. Property ``kind`` tells them apart; ``channel`` of the pose tells how power falls. Angles are
+    in degrees; ``altitude_m`` of a polygon is z in the local frame, as are a building's ``height_m`` and
+    ``base_m``.
 
     Raises:
         UsageError: the scenario has no origin.
@@ -80,6 +83,8 @@ def _points(solution: Result) -> Iterator[tuple[ArrayLike, _Feature]]:
         "value_db": objective.value_db,
         "upper_bound": objective.upper_bound,
     }
+    channel = channel_words(scenario)
+    properties |= {} if channel is None else {"channel": channel}
     yield solution.pose.position_m, properties | _angles(scenario, solution.pose)
     if isinstance(solution.details, RobustDetails):
         nominal = solution.details.nominal
@@ -112,20 +117,24 @@ def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
     }
 
 
-def _outlines(scenario: Scenario) -> Iterator[tuple[FloatArray, float, _Feature]]:
-    """Yield the airspace, the fence and the zones: corners and height in metres, and properties."""
+def _outlines(scenario: Scenario) -> Iterator[tuple[Sequence[FloatArray], float, _Feature]]:
+    """Yield airspace, fence, zones and buildings: rings, the first around it, height, and properties."""
     airspace = scenario.airspace
     height_m, altitude = airspace.altitude_m[0], {"altitude_m": airspace.altitude_m}
     if airspace.x_m is not None and airspace.y_m is not None:
         (west, east), (south, north) = airspace.x_m, airspace.y_m
         corners = np.array([(west, south), (east, south), (east, north), (west, north)])
-        yield corners, height_m, {"kind": "airspace", **altitude}
+        yield [corners], height_m, {"kind": "airspace", **altitude}
     if airspace.geofence_m is not None:
-        yield airspace.geofence_outline_m, height_m, {"kind": "geofence", **altitude}
+        yield [airspace.geofence_outline_m], height_m, {"kind": "geofence", **altitude}
     for zone in airspace.no_fly:
         properties: _Feature = {"kind": "no-fly", "name": zone.name, "altitude_m": zone.altitude_m}
         properties |= {} if zone.radius_m is None else {"radius_m": zone.radius_m}
-        yield outline_m(zone), max(zone.floor_m, height_m), properties
+        yield [outline_m(zone)], max(zone.floor_m, height_m), properties
+    for each in scenario.buildings:
+        rings = [each.outline_m, *(yard[::-1] for yard in each.courtyard_outlines_m)]
+        heights: _Feature = {"height_m": each.height_m, "base_m": each.base_m}
+        yield rings, each.base_m, {"kind": "building", "name": each.name, **heights}
 
 
 def _point(origin: Origin, place: FloatArray, properties: _Feature) -> _Feature:
@@ -137,12 +146,17 @@ def _point(origin: Origin, place: FloatArray, properties: _Feature) -> _Feature:
     return _feature("Point", coordinates, properties | sea | {"position_m": place.tolist()})
 
 
-def _polygon(origin: Origin, corners_m: FloatArray, height_m: float, properties: _Feature) -> _Feature:
-    """Build a polygon of an outline, at a height [m] over the local frame's zero."""
-    places_m = np.column_stack([corners_m, np.full(len(corners_m), height_m)])
-    places = geodetic_from_enu(places_m, origin.geodetic).tolist()
-    ring = [[round(lon_deg, 9), round(lat_deg, 9)] for lat_deg, lon_deg, _ in places]
-    return _feature("Polygon", [[*ring, ring[0]]], properties)
+def _polygon(
+    origin: Origin, rings_m: Sequence[FloatArray], height_m: float, properties: _Feature
+) -> _Feature:
+    """Build a polygon of its rings, at a height [m] over the local frame's zero."""
+    rings = []
+    for corners_m in rings_m:
+        places_m = np.column_stack([corners_m, np.full(len(corners_m), height_m)])
+        places = geodetic_from_enu(places_m, origin.geodetic).tolist()
+        ring = [[round(lon_deg, 9), round(lat_deg, 9)] for lat_deg, lon_deg, _ in places]
+        rings.append([*ring, ring[0]])
+    return _feature("Polygon", rings, properties)
 
 
 def _feature(kind: str, coordinates: Sequence[object], properties: _Feature) -> _Feature:

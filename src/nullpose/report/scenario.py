@@ -7,15 +7,27 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from nullpose.channel.model import BLOCKED
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
 from nullpose.report.document import Row, View, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import outline_m
-from nullpose.report.words import airframe_words, array_words, place_words, reach_words
-from nullpose.scenario import Antenna, Channel, Eavesdropper, Jammer, Node, NoFlyZone, Origin, Scenario
+from nullpose.report.words import airframe_words, array_words, channel_words, place_words, reach_words
+from nullpose.scenario import (
+    Antenna,
+    Building,
+    Channel,
+    Eavesdropper,
+    Jammer,
+    Node,
+    NoFlyZone,
+    Origin,
+    Scenario,
+)
 
+_MOST_ROWS = 12  # of buildings; more are told of as one
 _Point = Node | Jammer | Eavesdropper
 _EARTHLY = {
     "latitude (deg)": ("lat_deg", 6),
@@ -127,6 +139,7 @@ def scenario_view(scenario: Scenario) -> View:
         "",
         pairs("Airspace", _airspace_rows(scenario).items()),
         table("No-fly zones", zones, left=("shape", "where (m)", "altitude (m)")),
+        table("Buildings", _building_rows(scenario.buildings), left=("where (m)",)),
         pairs("Vehicle and receiver", _vehicle_rows(scenario).items()),
         table("Latitude and longitude", _place_rows(numbers.get("on_earth", ()))),
         _points_table("node", scenario.nodes, numbers["nodes"], "highest SNR (dB)"),
@@ -172,6 +185,32 @@ def _zone_row(zone: NoFlyZone) -> dict[str, str]:
     }
 
 
+def _building_rows(buildings: Sequence[Building]) -> list[Row]:
+    """Set a row for each building; of many, one for all of them."""
+    if not buildings:
+        return []
+    names = [building.name for building in buildings]
+    groups: list[Sequence[Building]] = [(building,) for building in buildings]
+    if len(buildings) > _MOST_ROWS:
+        names, groups = [f"all {len(buildings)}"], [buildings]
+    outlines_m = [np.vstack([building.outline_m for building in group]) for group in groups]
+    roofs_m = [[height_m for building in group for height_m in building.heights_m] for group in groups]
+    bases_m = [[building.base_m for building in group] for group in groups]
+    return rows(
+        {
+            "building": names,
+            "where (m)": [_extent_words(outline_m) for outline_m in outlines_m],
+            "height (m)": [_between(values) for values in roofs_m],
+            "base (m)": [_between(values) if any(values) else None for values in bases_m],
+        }
+    )
+
+
+def _between(values: Sequence[float]) -> str:
+    low, high = min(values), max(values)
+    return f"{low:g}" if low == high else _range((low, high), "")
+
+
 def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
     receiver, airframe, array = scenario.receiver, scenario.airframe, scenario.array
     attitude_deg, position_m = receiver.attitude_error_deg, receiver.position_error_m
@@ -186,16 +225,15 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
         "transmits": None if sender is None else _power_words(sender.transmit_power_w),
         "noise": _power_words(receiver.noise_power_w),
         f"path gain at {distance_m:g} m (dB)": f"{to_db(receiver.reference_gain):.2f}",
-        "channel": _channel_words(scenario),
+        "channel": channel_words(scenario),
+        "loss of a blocked link (dB)": _blocked_words(scenario),
     }
 
 
-def _channel_words(scenario: Scenario) -> str | None:
-    """Describe the channel, and those of points that have their own; None where none is stated."""
+def _blocked_words(scenario: Scenario) -> str | None:
     points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
-    own = {f"{point.name}: ": point.channel for point in points}
-    stated = {name: channel for name, channel in ({"": scenario.channel} | own).items() if channel}
-    return "; ".join(f"{name}{channel.words}" for name, channel in stated.items()) or None
+    left = np.array([scenario.channel_of(point).row[BLOCKED] for point in points])
+    return None if scenario.prisms is None else _between(np.round(-to_db(left), 6).tolist())
 
 
 def _power_words(power_w: float) -> str:

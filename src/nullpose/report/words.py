@@ -82,3 +82,11 @@ def requirement_words(result: Result) -> str:
 
 def _degrees(angle_rad: float) -> str:
     return f"{round(math.degrees(angle_rad), 6):g}"
+
+
+def channel_words(scenario: Scenario) -> str | None:
+    """Describe the channel, and those of points that have their own; None where none is stated."""
+    points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
+    own = {f"{point.name}: ": point.channel for point in points}
+    stated = {name: channel for name, channel in ({"": scenario.channel} | own).items() if channel}
+    return "; ".join(f"{name}{channel.words}" for name, channel in stated.items()) or None
