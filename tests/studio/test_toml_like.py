@@ -1,5 +1,6 @@
 """A scenario goes back into the file that it is from, and leaves the rest of it alone."""
 
+import json
 import re
 from collections.abc import Callable
 from contextlib import suppress
@@ -206,6 +207,32 @@ def test_a_new_point_stands_behind_the_others_of_its_kind() -> None:
     assert added == f"{head}\n{block}\n# Jammers follow.{tail}"
     late = f"{HAND_MADE}\n[[airspace.no_fly]]\ncentre_m = [5, 5]\nradius_m = 3\n"
     assert _saved(late, edit) == late.replace(HAND_MADE, added)
+
+
+def test_a_town_stays_with_its_channel(tmp_path: Path) -> None:
+    """Of a scene that is edited; what a file of buildings held is in the saved text, its comment too."""
+    text, scenario = EXAMPLES["town"]
+    state = State(scenario=scenario, text=text)
+    state = with_added(state.moved(("nodes", 0), (-71.0, -3.0, 2.0)), "jammer", (1.0, -50.0), 100.0)
+    saved = state.written.text
+    assert scenario_from_text(saved.encode(), "saved.toml") == state.scenario
+    town = text[text.index("# north-west of") :]
+    assert town in saved
+    shape = {
+        "type": "Polygon",
+        "coordinates": [[[14.501, 50.0], [14.502, 50.0], [14.502, 50.001], [14.501, 50.0]]],
+    }
+    feature = {"type": "Feature", "properties": {"height": 9.0}, "geometry": shape}
+    (tmp_path / "town.geojson").write_text(json.dumps(feature))
+    origin = "[origin]\nlat_deg = 50.0\nlon_deg = 14.5\nalt_m = 230.0\n\n"
+    named = f'{town.split("[[")[0]}[[buildings]]\nbuildings_from = "town.geojson"\nmissing_height_m = 4.0\n'
+    text = text.replace("[airspace]", f"{origin}[airspace]", 1).replace(town, named)
+    (tmp_path / "town.toml").write_text(text)
+    state = State(scenario=load(tmp_path / "town.toml"), text=text).moved(("nodes", 0), (-71.0, -3.0, 2.0))
+    saved = state.written.text
+    assert scenario_from_text(saved.encode(), "saved.toml") == state.scenario
+    assert [building.heights_m for building in state.scenario.buildings] == [(9.0, 9.0)]
+    assert [line for line in text.splitlines() if "#" in line and line not in saved.splitlines()] == []
 
 
 def test_powers_in_dbm_stay_in_dbm() -> None:

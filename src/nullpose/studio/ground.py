@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +11,11 @@ from numpy.typing import NDArray
 from nullpose.physics import to_db
 from nullpose.report.geometry import outline_m as zone_outline_m
 from nullpose.report.numbers import MINUS
-from nullpose.scenario import Eavesdropper, GroundPoint, Jammer, Scenario
+from nullpose.scenario import Building, Eavesdropper, GroundPoint, Jammer, Scenario
 from nullpose.studio.answer import signed
 from nullpose.studio.drawing import Shape, Shapes, frame, label, lines, mesh
-from nullpose.studio.look import Look, round_steps
-from nullpose.studio.meshes import MARKS, floor_mesh, prism_edges, sphere_mesh
+from nullpose.studio.look import Look, Rgb, round_steps
+from nullpose.studio.meshes import MARKS, building_mesh, floor_mesh, merged, prism_edges, sphere_mesh
 from nullpose.studio.state import POWER_DB, Key, State
 from nullpose.study.value_map import map_extent_m
 
@@ -46,7 +47,7 @@ def _extent_m(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
 
 
 def ground_shapes(state: State, size_m: float, look: Look, *, has_arrows: bool) -> Shapes:
-    """Draw a scene: grid, airspace and points, and a fence as far as it is drawn by now.
+    """Draw a scene: grid, airspace, buildings and points, and a fence as far as it is drawn by now.
 
     Args:
         state: of the page.
@@ -55,6 +56,7 @@ def ground_shapes(state: State, size_m: float, look: Look, *, has_arrows: bool) 
         has_arrows: whether the selected point can be dragged.
     """
     shapes = _grid(state.scenario, look) | _airspace(state.scenario, look)
+    shapes |= _buildings(state.scenario.buildings, look.building)
     for key, point in state.points():
         shapes |= _point(key, point, state, size_m, look, has_arrows=has_arrows)
     if state.corners_m:
@@ -153,6 +155,20 @@ def _airspace(scenario: Scenario, look: Look) -> Shapes:
         parts = {"floor": floor, "edges": edges, "label": top}
         shapes |= {f"/airspace/zone-{i}/{part}": shape for part, shape in parts.items()}
     return shapes
+
+
+@lru_cache(4)
+def _buildings(buildings: tuple[Building, ...], colour: Rgb) -> Shapes:
+    """Draw all buildings as one, at their highest."""
+    solids, edges = [], []
+    for each in buildings:
+        ends = max(0.0, each.floor_m), max(0.0, each.heights_m[1])
+        solids.append(building_mesh(each.outline_m, each.courtyard_outlines_m, *ends))
+        edges += [prism_edges(ring, *ends) for ring in (each.outline_m, *each.courtyard_outlines_m)]
+    if not solids:
+        return {}
+    bodies = mesh(merged(solids), colour, opacity=0.6, side="double", flat_shading=True)
+    return {"/buildings/bodies": bodies, "/buildings/edges": lines(np.concatenate(edges), colour, 1.4)}
 
 
 def _label(key: Key, point: GroundPoint, state: State) -> tuple[str, bool]:

@@ -30,6 +30,7 @@ class Look:
         hulls: of the same two drones' bodies.
         airspace: of its edges.
         zone: of no-fly zones.
+        building: of buildings.
         wire: of what surrounds a point.
         drop: of the line from the drone down to the ground.
         outline: of the links, whose colours are the scale's.
@@ -44,6 +45,7 @@ class Look:
     hulls: tuple[Rgb, Rgb]
     airspace: Rgb
     zone: Rgb
+    building: Rgb
     wire: Rgb
     drop: Rgb
     outline: Rgb
@@ -66,6 +68,7 @@ LIGHT = Look(
     hulls=((60, 64, 72), (120, 124, 130)),
     airspace=(74, 138, 178),
     zone=(160, 60, 60),
+    building=(128, 128, 128),
     wire=(140, 140, 140),
     drop=(120, 120, 120),
     outline=(20, 20, 20),
@@ -84,6 +87,7 @@ DARK = Look(
     hulls=((235, 235, 240), (150, 154, 162)),
     airspace=(70, 120, 155),
     zone=(235, 105, 105),
+    building=(136, 140, 148),
     wire=(120, 124, 130),
     drop=(150, 150, 150),
     outline=(245, 245, 245),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -148,16 +148,34 @@ def prism_mesh(outline_m: ArrayLike, low_m: float, high_m: float) -> Mesh:
     return lofted([_raised(*end) for end in ends])
 
 
-def floor_mesh(outline_m: ArrayLike, height_m: float) -> Mesh:
+def floor_mesh(outline_m: ArrayLike, height_m: float, holes_m: Sequence[ArrayLike] = ()) -> Mesh:
     """Return a level surface.
 
     Args:
         outline_m: (n, 2) vertices of any simple polygon, metres.
         height_m: where it is, metres.
+        holes_m: vertices of polygons inside that are left out, metres.
     """
-    triangles = shapely.constrained_delaunay_triangles(shapely.Polygon(np.asarray(outline_m)))
+    whole = shapely.Polygon(np.asarray(outline_m), list(map(np.asarray, holes_m)))
+    triangles = shapely.constrained_delaunay_triangles(whole)
     corners = [shapely.get_coordinates(triangle)[:3] for triangle in triangles.geoms]
     return Mesh(_raised(np.vstack(corners), height_m), np.arange(3 * len(corners)).reshape(-1, 3))
+
+
+def building_mesh(
+    outline_m: ArrayLike, courtyards_m: Sequence[ArrayLike], low_m: float, high_m: float
+) -> Mesh:
+    """Return the walls and the roof of an upright solid.
+
+    Args:
+        outline_m: (n, 2) vertices of any simple polygon, counter-clockwise, metres.
+        courtyards_m: vertices of what is open inside it, metres.
+        low_m: its lower end, metres.
+        high_m: its roof, metres.
+    """
+    rings = [np.asarray(ring, dtype=float) for ring in (outline_m, *courtyards_m)]
+    walls = [lofted([_raised(ring, z_m) for z_m in (low_m, high_m)]) for ring in rings]
+    return merged([*walls, floor_mesh(rings[0], high_m, courtyards_m)])
 
 
 def _raised(outline_m: NDArray[np.float64], height_m: float) -> NDArray[np.float64]:

@@ -13,12 +13,13 @@ from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.toml_file import tables_of
 
 _FILES = re.compile(r"^[ \t]*(?:airspace\.)?(?:nodes|geofence|no_fly)_from\b.*\n", re.MULTILINE)
+_BUILDINGS_FILE = re.compile(r"^[ \t]*buildings_from\b", re.MULTILINE)
 _HEADER = re.compile(r"^([ \t]*\[\[?[ \t]*[\"'A-Za-z].*\n)", re.MULTILINE)  # and no line of a list of numbers
 _PARTS = re.compile(  # keys with the comments directly below, what follows up to a blank line, the rest
     r"((?:(?s:.*)^[ \t]*[^#\s].*\n(?:(?:[ \t]*#.*\n)+(?=[ \t]*\n))?)?)((?:(?s:.*)^[ \t]*\n)?)((?s:.*))",
     re.MULTILINE,
 )
-_LISTS = ("no_fly", *POINT_LISTS)
+_LISTS = ("no_fly", "buildings", *POINT_LISTS)
 _PATHS = (  # in the order that is usual in a file
     "",
     *(path for key in Scenario.model_fields for path in (key, *["airspace.no_fly"] * (key == "airspace"))),
@@ -47,11 +48,26 @@ def toml_like(text: str, scenario: Scenario) -> str:
         scenario: what the result loads as.
     """
     with suppress(Exception):  # whatever the text is, the scenario can be saved
-        plain = _FILES.sub("", text.removeprefix("\ufeff").replace("\r\n", "\n"))
+        plain = _without_files(text.removeprefix("\ufeff").replace("\r\n", "\n"))
         found = _updated(plain, _stated_values(tables_of(plain), scenario.to_dict()), scenario.to_dict())
         if Scenario.from_dict(tables_of(found)) == scenario:
             return found.replace("\n", "\r\n") if "\r\n" in text else found
     return scenario.to_toml()
+
+
+def _without_files(text: str) -> str:
+    """Return the text without the keys that name files, and without the tables of files of buildings."""
+    if not _BUILDINGS_FILE.search(text):
+        return _FILES.sub("", text)
+    blocks = _blocks(f"{text}\n")
+    for block in blocks:
+        if block.path == "buildings" and _BUILDINGS_FILE.search(block.body):
+            block.header = block.body = ""
+    return _FILES.sub("", _joined(blocks))
+
+
+def _joined(blocks: list[_Block]) -> str:
+    return "".join(f"{block.gap}{block.lead}{block.header}{block.body}" for block in blocks)
 
 
 def _stated_values(raw: PlainTable, new: PlainTable) -> PlainTable:
@@ -70,8 +86,7 @@ def _updated(text: str, old: PlainTable, new: PlainTable) -> str:
     blocks = _blocks(f"{text}\n")
     for path in _PATHS:
         _update(blocks, path, _tables(old, path), _tables(new, path))
-    updated = "".join(f"{block.gap}{block.lead}{block.header}{block.body}" for block in blocks)
-    return updated.rstrip("\n") + text[len(text.rstrip("\n")) :]
+    return _joined(blocks).rstrip("\n") + text[len(text.rstrip("\n")) :]
 
 
 def _blocks(text: str) -> list[_Block]:
