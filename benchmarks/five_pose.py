@@ -51,6 +51,10 @@ def unpack(reals, counts):
         0.0,
         None,
         None,
+        None,
+        np.zeros(1, np.int64),
+        np.zeros(1, np.int64),
+        np.zeros((0, 5)),
     )
     bounds = reals[e : e + 6]
     return family, bounds, reals[e + 6 : e + 6 + groups], reals[e + 6 + groups : e + 6 + groups + ratios]

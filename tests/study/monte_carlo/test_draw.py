@@ -210,7 +210,7 @@ STATES: list[tuple[str, dict[str, Any]]] = [
     ("nodes", DOWNLINK),
     ("nodes", {"noise_w": 1e-5, "jamming_w": 1e-5}),
     ("jammers", {"power_w": 3.0, **WHIP, **BALL}),
-    ("jammers", {"power_dbm": 33.0}),
+    ("jammers", {"power_dbm": 33.0, "channel": {"model": "free-space"}}),
     ("eavesdroppers", {"noise_dbm": -90.0, **WHIP, **BALL}),
     ("eavesdroppers", {"noise_w": 1e-5}),
 ]

@@ -14,6 +14,8 @@ from nullpose.scenario import (
     Airspace,
     Antenna,
     Array,
+    Building,
+    Channel,
     Eavesdropper,
     GroundPoint,
     Jammer,
@@ -41,14 +43,15 @@ class SceneBase(Section):
         file: a scenario file.
         files: several, which are the scenes in turn.
         scenarios: what the files hold; read together with the spec.
-        objective, origin, airspace, airframe, antenna, array, receiver, transmitter: as in a scenario file.
+        objective, origin, airspace, airframe, antenna, array, channel, receiver, transmitter: as in a
+            scenario file, like buildings.
         nodes, jammers, eavesdroppers: points that are not drawn, as in a scenario file.
     """
 
     header: ClassVar[str] = "a table headed [scene]"
     ways: ClassVar[tuple[Ways, ...]] = (at_most_one("file", "files"),)
     unstated: ClassVar[frozenset[str]] = frozenset(
-        {"objective", "scenarios", "nodes", "jammers", "eavesdroppers"}
+        {"objective", "scenarios", "nodes", "jammers", "eavesdroppers", "buildings"}
     )
 
     file: Label | None = Field(
@@ -70,6 +73,7 @@ class SceneBase(Section):
     airframe: Airframe | None = Field(default=None, description="A table headed [scene.airframe].")
     antenna: Antenna | None = Field(default=None, description="A table headed [scene.antenna].")
     array: Array | None = Field(default=None, description="A table headed [scene.array].")
+    channel: Channel | None = Field(default=None, description="A table headed [scene.channel].")
     receiver: Receiver | None = Field(default=None, description="A table headed [scene.receiver].")
     transmitter: Transmitter | None = Field(default=None, description="A table headed [scene.transmitter].")
     nodes: Annotated[tuple[Node, ...], list_of_tables("scene.nodes")] = Field(
@@ -80,6 +84,9 @@ class SceneBase(Section):
     )
     eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("scene.eavesdroppers")] = Field(
         default=(), description="Tables headed [[scene.eavesdroppers]], where they are not drawn."
+    )
+    buildings: Annotated[tuple[Building, ...], list_of_tables("scene.buildings")] = Field(
+        default=(), description="Tables headed [[scene.buildings]]."
     )
 
     @classmethod
