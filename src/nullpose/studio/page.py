@@ -110,6 +110,8 @@ class Page:
                         self._send(part)
                     except RuntimeError:  # viser's own thread took messages up at that very moment
                         self._send(part)
+                except UserWarning:  # viser's, where warnings are errors: the page has gone meanwhile
+                    return
                 except Exception:
                     _log.exception("the page could not be refreshed")
 
