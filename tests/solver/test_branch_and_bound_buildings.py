@@ -94,3 +94,10 @@ def test_no_pose_of_many_beats_a_bound(seed: int) -> None:
     values = objective_value(scenario, places, axes)
     assert np.max(values) <= result.objective.upper_bound * (1.0 + 1e-9)
     assert np.max(values) >= 0.9 * result.objective.value
+
+
+def test_a_loss_that_is_not_stated_is_20_db(paper: Callable[[float], Scenario]) -> None:
+    """Buildings block links without a table of the channel too."""
+    data = paper(1.0).to_dict() | {"buildings": [TOWER]}
+    bare, whole = solve(Scenario.from_dict(data), gap=1e-3), solve(among(paper(1.0), TOWER), gap=1e-3)
+    assert bare.objective.value == whole.objective.value

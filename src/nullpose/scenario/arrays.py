@@ -14,7 +14,7 @@ from nullpose.channel import LinkChannel, PointChannels
 from nullpose.channel.buildings import Prisms
 from nullpose.channel.model import CONSTANT
 from nullpose.errors import UsageError
-from nullpose.scenario.channel import Channel
+from nullpose.scenario.channel import BLOCKED_DB, Channel
 from nullpose.scenario.units import power_w, ratio_from_db
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ class PointArrays:
         own = point.channel or whole
         if self.prisms is None:
             return own.make(point.is_interferer)
-        return own.in_sight(point.is_interferer, own.blocked_loss_db or whole.blocked_loss_db or 0.0)
+        return own.in_sight(point.is_interferer, own.blocked_loss_db or whole.blocked_loss_db or BLOCKED_DB)
 
     @property
     def has_channels(self) -> bool:

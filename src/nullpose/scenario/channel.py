@@ -30,6 +30,10 @@ _NUMBERS = ("a", "b", "los_loss_db", "nlos_loss_db")
 _DEFAULTS = {"reference_distance_m": 1.0}
 
 
+BLOCKED_DB = 20.0
+"""Loss of a link that a building blocks, where none is stated [dB]."""
+
+
 class Channel(Section):
     """How the power of a link falls with distance and elevation.
 
@@ -82,7 +86,9 @@ class Channel(Section):
         "power",
     )
     blocked_loss_db: BlockedDecibels | None = optional(
-        "Loss in dB where a building blocks the line of sight.", 20.0
+        f"Loss in dB where a building blocks the line of sight. Left out: {BLOCKED_DB:g}. By elevation the "
+        "losses with and without line of sight count.",
+        BLOCKED_DB,
     )
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:

@@ -26,12 +26,11 @@ def blocked_end(points, sides, start, row, is_above, centre, half):
     for shadow in range(points[0], points[1]):
         clear, inside = False, True
         for s in range(start[shadow], start[shadow + 1]):
-            away = sides[s, 0] * centre[0] + sides[s, 1] * centre[1] + sides[s, 2] * centre[2] - sides[s, 3]
-            reach = abs(sides[s, 0]) * half[0] + abs(sides[s, 1]) * half[1] + abs(sides[s, 2]) * half[2]
-            if away >= reach:
+            beyond = reach_beyond(sides[s], centre, half)
+            if beyond >= 2.0 * norm_along(sides[s], half):
                 clear = True
                 break
-            inside = inside and away < -reach
+            inside = inside and beyond < 0.0
         if not clear and (inside or not is_above):
             return row[BLOCKED]
     return 1.0
@@ -40,8 +39,7 @@ def blocked_end(points, sides, start, row, is_above, centre, half):
 @inner_kernel
 def reach_beyond(side, centre, half):
     """Return the largest distance of a box beyond a side."""
-    away = side[0] * centre[0] + side[1] * centre[1] + side[2] * centre[2] - side[3]
-    return away + abs(side[0]) * half[0] + abs(side[1]) * half[1] + abs(side[2]) * half[2]
+    return dot(side, centre) - side[3] + norm_along(side, half)
 
 
 @inner_kernel
