@@ -51,15 +51,17 @@ def test_the_claims() -> None:
     assert np.all(_column("saturation_db", "") <= _column("null_loss_db_100", ""))
 
 
-def test_the_example(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The example prints the text below it."""
-    found = re.search(r"```python\n(.*?)```.*?```text\n(.*?)```", PAGE, flags=re.DOTALL)
-    assert found is not None
+def test_the_examples(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The examples, one after the other, print the texts below them."""
+    examples = re.findall(r"```python\n(.*?)```\n+```text\n(.*?)```", PAGE, flags=re.DOTALL)
+    assert len(examples) == 3
     monkeypatch.chdir(ROOT)
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(compile(found[1], "channels.md", "exec"), {"__name__": "__main__"})
-    assert printed.getvalue() == found[2]
+    names = {"__name__": "__main__"}
+    for code, text in examples:
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(code, "channels.md", "exec"), names)
+        assert printed.getvalue() == text
 
 
 def test_the_scenario_with_buildings(tmp_path: Path) -> None:

@@ -6,12 +6,21 @@ Physics, solver and certificate ask the channel for these two.
 
 from __future__ import annotations
 
+from nullpose.channel.custom import Custom
 from nullpose.channel.elevation import ELEVATION, ENVIRONMENTS
 from nullpose.channel.free_space import FREE_SPACE
 from nullpose.channel.model import ChannelModel, LinkChannel, PointChannels, excess_gain
 from nullpose.channel.power_law import POWER_LAW
 
-__all__ = ["CHANNELS", "ENVIRONMENTS", "ChannelModel", "LinkChannel", "PointChannels", "excess_gain"]
+__all__ = [
+    "CHANNELS",
+    "ENVIRONMENTS",
+    "ChannelModel",
+    "Custom",
+    "LinkChannel",
+    "PointChannels",
+    "excess_gain",
+]
 
 CHANNELS: dict[str, ChannelModel] = {
     "free-space": FREE_SPACE,

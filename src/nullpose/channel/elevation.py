@@ -47,7 +47,9 @@ def sight_probability(row: FloatArray, elevation_rad: FloatArray) -> FloatArray:
     return np.asarray(1.0 / (1.0 + np.exp(row[1] - row[2] * elevation_rad)))
 
 
-def elevation_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray) -> FloatArray:
+def elevation_excess(
+    row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray, azimuth_rad: FloatArray
+) -> FloatArray:
     """Evaluate the mean gain over that with line of sight: ``P + (1 - P) n``, or ``n^(1 - P)``.
 
     Args:
@@ -55,6 +57,7 @@ def elevation_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: Flo
             sight over that with it.
         distance_m: of no effect.
         elevation_rad: of the drone, at the ground point.
+        azimuth_rad: of no effect.
     """
     hidden = 1.0 - sight_probability(row, elevation_rad)
     gain = np.where(row[4] == DB_AVERAGE, row[3] ** hidden, 1.0 - (1.0 - row[3]) * hidden)
@@ -77,7 +80,7 @@ def elevation_channel(
 
     Example:
         >>> urban = elevation_channel(*ENVIRONMENTS["urban"], average="power")
-        >>> gain = urban.strength * urban.excess(urban.row, 316.2, math.atan2(100.0, 300.0))
+        >>> gain = urban.strength * urban.excess(urban.row, 316.2, math.atan2(100.0, 300.0), 0.0)
         >>> round(-10.0 * math.log10(gain), 4)
         6.1133
     """

@@ -15,7 +15,9 @@ def constant_channel(strength: float) -> LinkChannel:
     return LinkChannel(strength, (CONSTANT, 0.0, 0.0, 0.0, 0.0, 1.0), _no_excess)
 
 
-def _no_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray) -> FloatArray:
+def _no_excess(
+    row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray, azimuth_rad: FloatArray
+) -> FloatArray:
     return distance_m * 0.0 + 1.0
 
 

@@ -16,8 +16,8 @@ WIDTH = 6
 BLOCKED = 5
 """The number that multiplies the gain where a building blocks the line of sight; 1 without buildings."""
 
-CONSTANT, BY_DISTANCE, BY_ELEVATION = 0, 1, 2
-"""Kinds: an excess gain of 1, one of the distance alone, one of the elevation alone."""
+CONSTANT, BY_DISTANCE, BY_ELEVATION, CUSTOM = 0, 1, 2, 3
+"""Kinds: an excess gain of 1, one of the distance alone, one of the elevation alone, and any function."""
 
 
 class LinkChannel(NamedTuple):
@@ -27,8 +27,8 @@ class LinkChannel(NamedTuple):
         strength: the largest excess over free space [a power ratio; for a power law that at its reference
             distance d0, times d0^2].
         row: (WIDTH,) its kind and the numbers of its excess gain.
-        excess: from the row, the distance [m] and the elevation angle [rad] of the drone at the ground point
-            to the excess gain, a power ratio; for arrays as for numbers.
+        excess: from the row, the distance [m], and the elevation and the azimuth [rad] of the drone at the
+            ground point to the excess gain, a power ratio; for arrays as for numbers.
     """
 
     strength: float
@@ -120,11 +120,13 @@ def excess_gain(
     """
     x, y, z = to_points_m[..., 0], to_points_m[..., 1], -to_points_m[..., 2]
     level_m = np.hypot(x, y)
-    distance_m, elevation_rad = np.hypot(level_m, z), np.arctan2(z, level_m)
+    distance_m, elevation_rad, azimuth_rad = np.hypot(level_m, z), np.arctan2(z, level_m), np.arctan2(-x, -y)
     gain = np.ones(distance_m.shape)
     for excess, places in channels.groups:
         row = channels.rows[places].T
-        gain[..., places] = excess(row, distance_m[..., places], elevation_rad[..., places])
+        gain[..., places] = excess(
+            row, distance_m[..., places], elevation_rad[..., places], azimuth_rad[..., places]
+        )
     if channels.prisms is not None and points_m is not None:
         gain *= channels.blocked_gain(points_m[..., 0, :] - to_points_m[..., 0, :], points_m)
     return np.asarray(channels.strengths * gain)

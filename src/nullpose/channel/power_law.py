@@ -9,13 +9,16 @@ from nullpose.channel.free_space import constant_channel
 from nullpose.channel.model import BY_DISTANCE, ChannelModel, LinkChannel
 
 
-def distance_excess(row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray) -> FloatArray:
+def distance_excess(
+    row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray, azimuth_rad: FloatArray
+) -> FloatArray:
     """Evaluate ``(d / d0)^(2 - alpha)``: a gain of ``(d / d0)^-alpha`` over that of free space.
 
     Args:
         row: the kind, ``2 - alpha`` and d0 [m].
         distance_m: d.
         elevation_rad: of no effect.
+        azimuth_rad: likewise.
     """
     return np.asarray((distance_m / row[2]) ** row[1])
 
@@ -30,7 +33,7 @@ def power_law(exponent: float, reference_distance_m: float, is_interferer: bool 
 
     Example:
         >>> channel = power_law(3.0, 1.0)
-        >>> float(channel.strength * channel.excess(channel.row, 100.0, 0.5) / 100.0**2)
+        >>> float(channel.strength * channel.excess(channel.row, 100.0, 0.5, 0.0) / 100.0**2)
         1e-06
     """
     if exponent == 2.0:

@@ -15,7 +15,9 @@ LOUDEST = 1e16
 """The largest ratio of an interferer's power to the noise, without a null, that is solved."""
 
 
-def build_family(scenario: Scenario, *, any_antenna: bool = False, any_channel: bool = False) -> Family:
+def build_family(
+    scenario: Scenario, *, any_antenna: bool = False, any_channel: bool = False, any_function: bool = False
+) -> Family:
     """Build the family whose smallest ratio is what the scenario maximises.
 
     The objective's record says which ratios these are (:mod:`nullpose.objectives`).
@@ -23,7 +25,8 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False, any_channel: 
     Args:
         scenario: its units and names end here.
         any_antenna: whether the caller brings the gain of an antenna that is no dipole.
-        any_channel: whether the caller knows every channel, of a dipole.
+        any_channel: whether the caller knows every channel model, of a dipole.
+        any_function: whether the caller brings the gain of channels that are functions in Python.
 
     Raises:
         UsageError: the antenna is no dipole, or a channel is not known to the caller.
@@ -36,6 +39,11 @@ def build_family(scenario: Scenario, *, any_antenna: bool = False, any_channel: 
         )
     if not (any_channel and scenario.antenna_record.is_quadratic):
         _refuse_channels(scenario)
+    if scenario.has_custom_channels and not any_function:
+        raise UsageError(
+            "channel: given a function in Python; allowed here: the channels that a file can state. There "
+            "are solve, compare and evaluate for functions"
+        )
     ratios = scenario.objective_record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))

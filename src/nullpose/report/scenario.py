@@ -94,7 +94,7 @@ def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray |
             sent_w, noise_w = transmitter.transmit_power_w, float(noises_w[i])
             noise = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
         channel = scenario.channel_of(point)  # the excess gain is largest right above the point
-        gain = channel.strength * float(channel.excess(channel.row, nearest_m, math.pi / 2.0))
+        gain = channel.strength * float(channel.excess(channel.row, nearest_m, math.pi / 2.0, 0.0))
         ratio = gain * point.largest_gain * scenario.reference_gain * sent_w / nearest_m**2 / noise_w
         rows.append(
             {

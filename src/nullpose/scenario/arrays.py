@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas, unit_axis
-from nullpose.channel import LinkChannel, PointChannels
+from nullpose.channel import Custom, LinkChannel, PointChannels
 from nullpose.channel.buildings import Prisms
 from nullpose.channel.model import CONSTANT
 from nullpose.errors import UsageError
-from nullpose.scenario.channel import BLOCKED_DB, Channel
+from nullpose.scenario.channel import BLOCKED_DB, Channel, CustomChannel
 from nullpose.scenario.units import power_w, ratio_from_db
 
 if TYPE_CHECKING:
@@ -137,6 +137,17 @@ class PointArrays:
         channels = (self.source_channels, self.eavesdropper_channels)
         changes = (np.any(each.rows[:, 0] != CONSTANT) for each in channels if each is not None)
         return self.prisms is not None or any(changes)
+
+    def custom_law(self, point: GroundPoint) -> Custom | None:
+        """Return the function in Python that the channel of a point is, if it is one."""
+        channel = point.channel or self.channel
+        return channel.law if isinstance(channel, CustomChannel) else None
+
+    @property
+    def has_custom_channels(self) -> bool:
+        """Whether any link's channel is a function in Python."""
+        points = _points_of(self, "nodes jammers eavesdroppers")
+        return any(self.custom_law(point) is not None for point in points)
 
     @property
     def node_names(self) -> tuple[str, ...]:

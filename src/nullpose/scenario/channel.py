@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, ClassVar
 
-from pydantic import Field
+from pydantic import Field, SkipValidation
 from pydantic.json_schema import JsonSchemaValue
 
-from nullpose.channel import CHANNELS, ENVIRONMENTS, LinkChannel
+from nullpose.channel import CHANNELS, ENVIRONMENTS, Custom, LinkChannel
 from nullpose.channel.elevation import AVERAGES
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place
@@ -160,11 +160,36 @@ def _keys_of(model: str) -> tuple[str, ...]:
     return ("environment", *keys) if "a" in keys else keys
 
 
+class CustomChannel(Channel):
+    """A channel from Python, which no file can hold.
+
+    Args:
+        law: what the user stated.
+    """
+
+    law: SkipValidation[Custom] = Field(exclude=True)
+
+    def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
+        """Return no faults: the law has judged itself."""
+        return ()
+
+    @property
+    def words(self) -> str:
+        """Its name."""
+        return self.law.name
+
+    def make(self, is_interferer: bool) -> LinkChannel:
+        """Return the channel of a link, an interferer's or not."""
+        return self.law.link()
+
+
 class _ByName(Rule):
-    """A table, in place of which the model's name may stand."""
+    """A table, in place of which the model's name may stand, or in Python a channel of one's own."""
 
     def read(self, value: object) -> object:
         """Return the table."""
+        if isinstance(value, Custom):
+            return CustomChannel.model_construct(model=value.name, law=value)
         return {"model": value} if isinstance(value, str) else value
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:

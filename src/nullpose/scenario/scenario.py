@@ -21,7 +21,7 @@ from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.arrays import PointArrays, rows_of_points
 from nullpose.scenario.buildings import MOST_BUILDINGS, Building
-from nullpose.scenario.channel import Channel
+from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
@@ -85,7 +85,7 @@ class Scenario(Section, PointArrays):
         description="A table headed [receiver]: noise power (W or dBm) and path gain at 1 m (dB, or from a "
         "frequency in Hz)."
     )
-    channel: Channel | None = optional(
+    channel: NamedChannel | None = optional(
         "A table headed [channel]: how the power of a link falls with distance and elevation. Left out: free "
         "space with line of sight."
     )

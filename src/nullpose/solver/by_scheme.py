@@ -87,12 +87,18 @@ def solve_scheme(
     names = scenario.jammer_names
     if null_jammer is not None and null_jammer not in names:
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
-    family = build_family(scenario, any_antenna=True, any_channel=True)
+    family = build_family(scenario, any_antenna=True, any_channel=True, any_function=True)
     if not scenario.antenna_record.is_quadratic:
         from nullpose.solver.pattern import solve_pattern  # and SciPy with it
 
         return solve_pattern(scenario, family, options), {}
     fields = record.fields(scenario, null_jammer)
+    if scenario.has_custom_channels:
+        from nullpose.solver.custom_channel import solve_custom  # and SciPy with it
+
+        if fields is None:
+            raise UsageError("channel: given a function in Python; maximum gain then needs two nodes")
+        return solve_custom(scenario, list(fields.values()), options), fields
     if fields is None:
         return _by_values(record, family, options), None
     return solve_and_prove(family, list(fields.values()), options), fields

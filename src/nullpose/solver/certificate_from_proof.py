@@ -146,10 +146,10 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     Raises:
         UsageError: the scheme has no certificate for this scenario.
     """
-    if scenario.prisms is not None:
+    if scenario.prisms is not None or scenario.has_custom_channels:
         raise UsageError(
-            "certificate: buildings have none yet: what they block is proved in floating point; leave out "
-            "--certificate and --verify"
+            "certificate: buildings and channels that are a function in Python have none: they are proved in "
+            "floating point; leave out --certificate and --verify"
         )
     antenna = scenario.antenna_record
     if not antenna.is_axisymmetric:

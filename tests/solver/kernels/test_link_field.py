@@ -35,7 +35,7 @@ def roots(channel: LinkChannel | None, positions_m: np.ndarray) -> np.ndarray:
     level = np.hypot(x, y)
     if channel is None:
         return np.ones(level.shape)
-    return np.sqrt(channel.excess(channel.row, np.hypot(level, z), np.arctan2(z, level)))
+    return np.sqrt(channel.excess(channel.row, np.hypot(level, z), np.arctan2(z, level), 0.0))
 
 
 @pytest.mark.parametrize("is_above", [True, False])
