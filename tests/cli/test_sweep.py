@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
+from nullpose import apply_overrides, load, solve
+
 Run = Callable[..., Result]
 
 
@@ -76,3 +78,36 @@ def test_a_time_limit_holds_for_each_row(run: Run, paper: str, tmp_path: Path) -
     rows = json.loads(run("sweep", field, *arguments).stdout)["rows"]
     assert [row["reason"] for row in rows] == ["the time limit of 1e-09 s"] * 2
     assert all(row["upper_bound"] >= row["min_sinr"] for row in rows)
+
+
+LAW = ["channel.model=power-law", "channel.exponent=2.5"]
+BY_HAND = ["channel.a=9.61", "channel.b=0.16", "channel.los_loss_db=1", "channel.nlos_loss_db=20"]
+
+
+@pytest.mark.parametrize(
+    ("file", "fixed", "path", "ends"),
+    [
+        ("paper.toml", LAW[:1], "channel.exponent", (2.0, 3.5)),
+        ("paper.toml", LAW, "channel.reference_distance_m", (0.5, 1.0)),
+        ("town.toml", ["channel={}", *LAW], "channel.blocked_loss_db", (10.0, 30.0)),
+        ("urban.toml", BY_HAND[1:], "channel.a", (5.0, 12.0)),
+        ("urban.toml", BY_HAND, "channel.b", (0.1, 0.4)),
+        ("urban.toml", BY_HAND, "channel.los_loss_db", (0.0, 3.0)),
+        ("urban.toml", BY_HAND[:3], "channel.nlos_loss_db", (10.0, 30.0)),
+        ("town.toml", [], "buildings[0].height_m", (20.0, 60.0)),
+        ("town.toml", [], "buildings.church.height_m", (20.0, 60.0)),
+    ],
+)
+def test_every_number_of_a_channel_or_a_building_can_be_varied(
+    run: Run, paper: str, tmp_path: Path, file: str, fixed: list[str], path: str, ends: tuple[float, float]
+) -> None:
+    """A row is what a solve with that number gives; the file need not state the number itself."""
+    file = paper.replace("paper.toml", file)
+    settings = [text for setting in [*fixed, path] for text in ("--set", setting)]
+    limits = ("--points", 2, "--scheme", "vertical", "--gap", 0.1, "--json", "--out", tmp_path)
+    result = run("sweep", file, *settings, "--from", ends[0], "--to", ends[1], *limits)
+    assert result.exit_code == 0, result.output
+    for row, value in zip(json.loads(result.stdout)["rows"], ends, strict=True):
+        alone = solve(apply_overrides(load(file), [*fixed, f"{path}={value}"]), "vertical", gap=0.1)
+        assert (row["value"], row["status"]) == (value, "certified")
+        assert row["min_sinr"] == pytest.approx(alone.objective.value, rel=1e-12)

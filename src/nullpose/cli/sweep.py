@@ -71,7 +71,8 @@ def sweep(
         raise UsageError(
             f"--set: exactly one path to vary is needed, without a value; given {', '.join(settings)}"
         )
-    fixed = [setting for setting in settings if "=" in setting]
+    # the varied key may be one without which the others make no scenario, as the exponent of a power law is
+    fixed = [setting if "=" in setting else f"{setting}={start!r}" for setting in settings]
     scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside)
     scenario = scene.read()
     options = proof.keywords(fast)
