@@ -18,7 +18,6 @@ from nullpose.scenario.units import BlockedDecibels, LossDecibels, ReferenceMetr
 from nullpose.scenario.ways import Ways
 
 _Model = Annotated[str, Choice("a channel model", CHANNELS)]
-_Environment = Annotated[str, Choice("an environment", tuple(ENVIRONMENTS))]
 _Average = Annotated[str, Choice("an average", AVERAGES)]
 _Exponent = Annotated[
     float,
@@ -26,6 +25,8 @@ _Exponent = Annotated[
 ]
 _Degrees = Annotated[float, Quantity("an angle in degrees", 0.1, 90.0, "4.88 is suburban, 27.23 high-rise")]
 _PerDegree = Annotated[float, Quantity("a number per degree", 1e-3, 5.0, "0.43 is suburban, 0.08 high-rise")]
+EnvironmentName = Annotated[str, Choice("an environment", tuple(ENVIRONMENTS))]
+"""The type of a key that names a built-up area."""
 _NUMBERS = ("a", "b", "los_loss_db", "nlos_loss_db")
 _DEFAULTS = {"reference_distance_m": 1.0}
 
@@ -66,7 +67,7 @@ class Channel(Section):
         "keep-out radius. Left out: 1.",
         1.0,
     )
-    environment: _Environment | None = optional(
+    environment: EnvironmentName | None = optional(
         "Where the ground points are, for elevation: the source's numbers at 2 GHz. Either this, or a, b, "
         "los_loss_db and nlos_loss_db.",
         "urban",

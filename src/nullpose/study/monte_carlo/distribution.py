@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,6 +100,16 @@ class Drawn(Rule):
     """
 
     quantity: Quantity
+
+    @classmethod
+    def of(cls, kind: object) -> Self:
+        """Make the rule from the type of a fixed quantity.
+
+        Args:
+            kind: an annotated float, or that or None.
+        """
+        inner = [*get_args(kind), *(each for part in get_args(kind) for each in get_args(part))]
+        return cls(next(each for each in inner if isinstance(each, Quantity)))
 
     def read(self, value: object) -> object:
         """Make the distribution of a number; leave the raw table of one."""

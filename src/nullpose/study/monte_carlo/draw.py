@@ -3,31 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.origin import POINT_LISTS
-from nullpose.study.monte_carlo.distribution import Distribution
+from nullpose.study.monte_carlo.blocks import Blocks, Town
+from nullpose.study.monte_carlo.distribution import Distribution, FloatArray
+from nullpose.study.monte_carlo.drawn_channel import DrawnChannel
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.spec import StudySpec, require_number
 
-FloatArray = NDArray[np.float64]
-_Swept = tuple[dict[str, Points], list[tuple[str, float]]]  # what is drawn, and what is set after that
+_Drawn = Mapping[str, Points | DrawnChannel | Blocks]
+_Swept = tuple[_Drawn, list[tuple[str, float]]]  # what is drawn, and what is set after that
 
-MOST_DRAWS = 100  # how often the points of one kind are drawn before their scene is given up
+MOST_DRAWS = 100  # how often one kind is drawn before its scene is given up
 
 _TRIED = 5  # scenes that tell what is maximised: one that cannot be drawn tells nothing
 
 # The streams of chance. Their numbers are part of what a seed means: never change one.
-_KINDS = {kind: number for number, kind in enumerate(POINT_LISTS)}
+_KINDS = {kind: number for number, kind in enumerate((*POINT_LISTS, "channel", "buildings"))}
 _STREAMS = {
     "count": 0,
     "parents": 1,
@@ -38,6 +40,14 @@ _STREAMS = {
     "weight": 5,
     "min_sinr_db": 5,
     "uncertainty_m": 6,
+    "exponent": 7,
+    "reference_distance_m": 8,
+    "environment": 9,
+    "a": 10,
+    "b": 11,
+    "los_loss_db": 12,
+    "nlos_loss_db": 13,
+    "blocked_loss_db": 14,
 }
 
 
@@ -98,7 +108,7 @@ class Draws:
     def __init__(self, spec: StudySpec) -> None:
         self._spec = spec
         self._swept: dict[int, _Swept] = {}
-        self._last: tuple[int, Mapping[str, Points], Scenario] | None = None
+        self._last: tuple[int, _Drawn, Scenario] | None = None
 
     def base(self, index: int, values: Mapping[str, float] = MappingProxyType({})) -> Scenario:
         """Return a scene before anything is swept, or with some values set.
@@ -130,11 +140,11 @@ class Draws:
 
 
 def _of_point(spec: StudySpec, values: Mapping[str, float]) -> _Swept:
-    """Split a combination of swept values into the keys of drawn points and settings of the scene.
+    """Split a combination of swept values into the keys of what is drawn and settings of the scene.
 
     A path may mean a key of what draws, as in ``nodes.count``, or one of a scene.
     """
-    drawn, settings = dict(spec.drawn), []
+    drawn, settings = spec.drawn, []
     for path, value in values.items():
         kind, _, key = path.partition(".")
         if kind in drawn and key in type(drawn[kind]).model_fields:
@@ -154,13 +164,13 @@ def _settings(scene: Scenario, path: str, value: float) -> list[Override]:
     return [Override(f"{kind}[{place}].{rest}", value) for place in range(len(getattr(scene, kind)))]
 
 
-def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario:
-    """Return a scene, drawing those points again that make it invalid."""
+def _scene(spec: StudySpec, index: int, drawn: _Drawn) -> Scenario:
+    """Return a scene, drawing again what makes it invalid."""
     kept, attempts = spec.scene.kept(index, drawn), dict.fromkeys(drawn, 0)
-    points = {kind: _draw(spec, index, kind, drawn[kind], 0) for kind in drawn}
+    values = {kind: _draw(spec, index, kind, drawn, 0) for kind in drawn}
     while True:
         try:
-            return Scenario.from_dict({**kept, "name": f"scene {index}", **points})
+            return _built({**kept, "name": f"scene {index}", **values})
         except ScenarioError as error:
             # The kind to draw again: the last that a fault is about, or else the least often drawn.
             blamed = [kind for kind in attempts if any(each.path.startswith(kind) for each in error.faults)]
@@ -172,21 +182,43 @@ def _scene(spec: StudySpec, index: int, drawn: Mapping[str, Points]) -> Scenario
                 message = f"{error.faults[0].message} (after {MOST_DRAWS} draws)"
                 raise ScenarioError([Fault(error.faults[0].path, message)]) from None
             attempts[again] += 1
-            points[again] = _draw(spec, index, again, drawn[again], attempts[again])
+            values[again] = _draw(spec, index, again, drawn, attempts[again])
 
 
-def _draw(spec: StudySpec, index: int, kind: str, points: Points, attempt: int) -> list[PlainTable]:
-    """Return the points of one kind as plain data, with what they keep of those that they replace."""
+def _built(values: PlainTable) -> Scenario:
+    """Validate a scene; a drawn block on which a ground point stands is left out."""
+    town = values.get("buildings")
+    if not isinstance(town, Town):
+        return Scenario.from_dict(values)
+    scene = Scenario.from_dict(values | {"buildings": ()})
+    points_m = np.vstack([scene.source_positions_m, scene.eavesdropper_positions_m])
+    return scene.model_copy(update={"buildings": town.around(points_m)})
+
+
+def _draw(spec: StudySpec, index: int, kind: str, drawn: _Drawn, attempt: int) -> object:
+    """Draw what a key of a scene holds, as plain data; blocks before any is left out."""
 
     def chance(stream: str) -> np.random.Generator:
         key = (index, _KINDS[kind], _STREAMS[stream], attempt)
         return np.random.Generator(np.random.PCG64(np.random.SeedSequence(spec.seed, spawn_key=key)))
 
+    what = drawn[kind]
+    if isinstance(what, DrawnChannel):
+        return what.draw(chance)
+    if isinstance(what, Blocks):
+        return what.draw(chance, [each.extent_m for each in drawn.values() if isinstance(each, Points)])
+    return _points(what, getattr(spec.scene.whole(index), kind), chance)
+
+
+def _points(
+    points: Points, replaced: Sequence[GroundPoint], chance: Callable[[str], np.random.Generator]
+) -> list[PlainTable]:
+    """Draw the points of one kind as plain data, with what they keep of those that they replace."""
     plane_m = _places(points, chance)
     count = len(plane_m)
     columns = {
         key: value.draw(chance(key), count).tolist() if isinstance(value, Distribution) else [value] * count
-        for key, (value, *_) in points.values(getattr(spec.scene.whole(index), kind)).items()
+        for key, (value, *_) in points.values(replaced).items()
     }
     columns["position_m"] = np.column_stack([plane_m, columns.pop("height_m")]).tolist()
     columns["name"] = points.names(count)
@@ -223,12 +255,7 @@ def _between(counting: np.random.Generator, ends: tuple[int, int] | None) -> int
 def _area_m2(points: Points) -> float:
     if points.radius_m is not None:
         return math.pi * points.radius_m**2
-    return float(np.prod(np.diff(_ends_m(points))))
-
-
-def _ends_m(points: Points) -> FloatArray:
-    """Return the ends of a rectangle, (2, 2): west and east, south and north."""
-    return np.array([points.x_m, points.y_m], dtype=np.float64)
+    return float(np.prod(np.diff(points.extent_m)))
 
 
 def _evenly(points: Points, placing: np.random.Generator, count: int) -> FloatArray:
@@ -238,5 +265,5 @@ def _evenly(points: Points, placing: np.random.Generator, count: int) -> FloatAr
         radii_m, angles = points.radius_m * np.sqrt(shares[:, 0]), 2.0 * np.pi * shares[:, 1]
         around_m = radii_m[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         return np.asarray(np.array(points.centre_m) + around_m)
-    low_m, high_m = _ends_m(points).T
+    low_m, high_m = points.extent_m.T
     return np.asarray(low_m + shares * (high_m - low_m))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, get_args
+from typing import Annotated, Any, ClassVar
 
+import numpy as np
 from pydantic import Field
 
 from nullpose.scenario.faults import Place
@@ -31,7 +32,7 @@ from nullpose.scenario.units import (
 )
 from nullpose.scenario.ways import Ways, at_most_one, exactly_one
 from nullpose.scenario.wording import plain
-from nullpose.study.monte_carlo.distribution import Distribution, Drawn
+from nullpose.study.monte_carlo.distribution import Distribution, Drawn, FloatArray
 
 MOST_POINTS = 10_000  # of one kind in a scene
 
@@ -47,11 +48,6 @@ class _CountRange(Ascending):
         ends = plain(value)
         ends = Ascending.read(self, ends) if isinstance(ends, list | tuple) else [ends, ends]
         return [count.read(end) for end in ends]
-
-
-def _drawn(kind: object) -> Drawn:
-    """Make the reader of a quantity that is fixed or drawn from the type of a fixed one."""
-    return Drawn(next(each for each in get_args(kind) if isinstance(each, Quantity)))
 
 
 _Density = Annotated[
@@ -133,7 +129,7 @@ class Points(Section):
         description="Of clusters: standard deviation of east and of north from the cluster's centre.",
         examples=[5.0],
     )
-    height_m: Annotated[Distribution, _drawn(Metres)] | None = Field(
+    height_m: Annotated[Distribution, Drawn.of(Metres)] | None = Field(
         default=None,
         description="Altitude in metres: a number or a distribution. Left out: that of the scene's points, "
         "or 0 if it has none.",
@@ -199,6 +195,13 @@ class Points(Section):
         } | drawn
 
     @property
+    def extent_m(self) -> FloatArray:
+        """Ends of the area in which they are drawn [m], (2, 2): west and east, south and north."""
+        if self.radius_m is not None:
+            return np.asarray(np.add.outer(np.array(self.centre_m), [-self.radius_m, self.radius_m]))
+        return np.array([self.x_m, self.y_m])
+
+    @property
     def may_be_several(self) -> bool:
         """Whether there may be more than one point."""
         return self.layout in _IN_A_REGION or (self.count or (0, 0))[1] > 1
@@ -230,18 +233,18 @@ class Nodes(Points):
         at_most_one("weight", "min_sinr_db"),
     )
 
-    power_w: Annotated[Distribution, _drawn(Watts)] | None = Field(
+    power_w: Annotated[Distribution, Drawn.of(Watts)] | None = Field(
         default=None, description="Transmit power in watts: a number or a distribution.", examples=[1.0]
     )
-    power_dbm: Annotated[Distribution, _drawn(DecibelMilliwatts)] | None = Field(
+    power_dbm: Annotated[Distribution, Drawn.of(DecibelMilliwatts)] | None = Field(
         default=None, description="The same in dBm. Either this or power_w.", examples=[{"normal": [20, 6]}]
     )
-    weight: Annotated[Distribution, _drawn(Weight)] | None = Field(
+    weight: Annotated[Distribution, Drawn.of(Weight)] | None = Field(
         default=None,
         description="What a node's SINR is divided by: a number or a distribution.",
         examples=[2],
     )
-    min_sinr_db: Annotated[Distribution, _drawn(RatioDecibels)] | None = Field(
+    min_sinr_db: Annotated[Distribution, Drawn.of(RatioDecibels)] | None = Field(
         default=None, description="The SINR that a node requires, in dB. Either this or weight.", examples=[3]
     )
 
@@ -258,15 +261,15 @@ class Jammers(Points):
     letter: ClassVar[str] = "M"
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
 
-    power_w: Annotated[Distribution, _drawn(Watts)] | None = Field(
+    power_w: Annotated[Distribution, Drawn.of(Watts)] | None = Field(
         default=None,
         description="Transmit power in watts: a number or a distribution.",
         examples=[{"log_uniform": [0.1, 100.0]}],
     )
-    power_dbm: Annotated[Distribution, _drawn(DecibelMilliwatts)] | None = Field(
+    power_dbm: Annotated[Distribution, Drawn.of(DecibelMilliwatts)] | None = Field(
         default=None, description="The same in dBm. Either this or power_w.", examples=[{"normal": [30, 6]}]
     )
-    uncertainty_m: Annotated[Distribution, _drawn(ErrorMetres)] | None = Field(
+    uncertainty_m: Annotated[Distribution, Drawn.of(ErrorMetres)] | None = Field(
         default=None,
         description="Radius of the ball that a jammer is known to be in: a number or a distribution.",
         examples=[2.0],
@@ -282,7 +285,7 @@ class Eavesdroppers(Points):
 
     letter: ClassVar[str] = "E"
 
-    uncertainty_m: Annotated[Distribution, _drawn(ErrorMetres)] | None = Field(
+    uncertainty_m: Annotated[Distribution, Drawn.of(ErrorMetres)] | None = Field(
         default=None,
         description="Radius of the ball that one is known to be in: a number or a distribution.",
         examples=[2.0],

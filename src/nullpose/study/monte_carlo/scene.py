@@ -31,13 +31,14 @@ from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
+from nullpose.study.monte_carlo.drawn_channel import DrawnChannel, FixedOrDrawn
 
 _Files = Annotated[tuple[Label, ...], ListOf("a list of names of scenario files", 1, MOST_MEMBERS)]
 _Objective = Annotated[str, Choice("an objective", RECORDS)]
 
 
 class SceneBase(Section):
-    """The part of every scene that is not drawn.
+    """The part of every scene that is not drawn, except for values of the channel that are.
 
     Args:
         file: a scenario file.
@@ -73,7 +74,9 @@ class SceneBase(Section):
     airframe: Airframe | None = Field(default=None, description="A table headed [scene.airframe].")
     antenna: Antenna | None = Field(default=None, description="A table headed [scene.antenna].")
     array: Array | None = Field(default=None, description="A table headed [scene.array].")
-    channel: Channel | None = Field(default=None, description="A table headed [scene.channel].")
+    channel: Annotated[Channel | DrawnChannel, FixedOrDrawn()] | None = Field(
+        default=None, description="A table headed [scene.channel], values of which may be drawn."
+    )
     receiver: Receiver | None = Field(default=None, description="A table headed [scene.receiver].")
     transmitter: Transmitter | None = Field(default=None, description="A table headed [scene.transmitter].")
     nodes: Annotated[tuple[Node, ...], list_of_tables("scene.nodes")] = Field(

@@ -21,6 +21,8 @@ from nullpose.scenario.rules import Count, list_of_tables
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Title
 from nullpose.study.case import Case, Gap, NodeLimit, Seconds
+from nullpose.study.monte_carlo.blocks import Blocks
+from nullpose.study.monte_carlo.drawn_channel import DrawnChannel
 from nullpose.study.monte_carlo.layout import Eavesdroppers, Jammers, Nodes, Points
 from nullpose.study.monte_carlo.scene import SceneBase
 from nullpose.study.monte_carlo.sweep_axes import SweepAxes
@@ -42,7 +44,7 @@ class StudySpec(Section):
         time_limit_s: seconds after which a proof stops.
         node_limit: boxes after which a proof stops; None for the solver's own.
         scene: what is the same in all scenes.
-        nodes, jammers, eavesdroppers: how they are drawn; None for those of the scene.
+        nodes, jammers, eavesdroppers, buildings: how they are drawn; None for those of the scene.
         cases: what is solved in every scene.
         sweep: paths and the values that they are set to.
 
@@ -87,6 +89,10 @@ class StudySpec(Section):
         default=None,
         description="A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene.",
     )
+    buildings: Blocks | None = Field(
+        default=None,
+        description="A table headed [buildings]: how they are drawn. Left out: those of the scene.",
+    )
     cases: Annotated[tuple[Case, ...], list_of_tables("cases", fewest=1)] = Field(
         default=(Case(name=Scheme.OPTIMUM.value),),
         description="Tables headed [[cases]], one for each thing that is solved in every scene. Left out: "
@@ -105,7 +111,11 @@ class StudySpec(Section):
             yield ("scenes",), "missing; it must be given: how many scenes"
         cases = [(("cases", index), case) for index, case in enumerate(self.cases or ()) if case is not None]
         yield from shared_names(dict(cases))
-        for index, (kind, points) in product(range(self.scene.size if self.scene else 0), self.drawn.items()):
+        for key in ("x_m", "y_m") if self.buildings and not any(map(raw.get, POINT_LISTS)) else ():
+            if getattr(self.buildings, key) is None:
+                yield ("buildings", key), "missing; no points are drawn around which they could stand; add it"
+        points_by_kind = [(kind, each) for kind, each in self.drawn.items() if isinstance(each, Points)]
+        for index, (kind, points) in product(range(self.scene.size if self.scene else 0), points_by_kind):
             replaced = filter(None, getattr(self.scene.whole(index), kind))
             for key, values in points.values(list(replaced)).items():
                 if len(values) > 1:
@@ -146,10 +156,13 @@ class StudySpec(Section):
         return tuple(case.name for case in self.cases)
 
     @property
-    def drawn(self) -> dict[str, Points]:
-        """What is drawn, by kind, in the order in which it is drawn."""
-        points_by_kind = ((kind, getattr(self, kind)) for kind in POINT_LISTS)
-        return {kind: points for kind, points in points_by_kind if points is not None}
+    def drawn(self) -> dict[str, Points | DrawnChannel | Blocks]:
+        """What is drawn, by the key of a scenario, in the order in which it is drawn."""
+        tables = {kind: getattr(self, kind) for kind in POINT_LISTS}
+        tables |= {"channel": self.scene and self.scene.channel, "buildings": self.buildings}
+        return {
+            kind: each for kind, each in tables.items() if isinstance(each, Points | DrawnChannel | Blocks)
+        }
 
     @cached_property
     def digest(self) -> str:
