@@ -68,7 +68,7 @@ if __name__ == "__main__":
     folders = {
         (size, scheme): into / f"{size[0]}x{size[1]}-{scheme}" for size, scheme in product(SIZES, SCHEMES)
     }
-    for name in sys.argv[2:] or [one for one in found if one != _NO_SCENE]:
+    for name in sys.argv[2:] or [one for one in found if not one.startswith(_NO_SCENE)]:
         with studio(load(ROOT / "examples" / f"{name}.toml", allow_outside=True), port=0) as one:
             for (size, scheme), folder in folders.items():
                 take(one, folder / f"{name}.png", size, scheme)

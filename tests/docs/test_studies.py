@@ -1,11 +1,13 @@
 """The page on studies describes every key of a spec and every column of a row, and nothing else."""
 
+import contextlib
+import io
 import re
 from pathlib import Path
 
 import pytest
 
-from nullpose.study.monte_carlo import load_spec
+from nullpose.study.monte_carlo import load_spec, run_study
 from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.rows import schema_of
 from reference import key_rows, keys_of
@@ -28,7 +30,7 @@ def _first_cells(text: str) -> list[set[str]]:
     return tables
 
 
-@pytest.mark.parametrize("path", ["study", "study.nodes", "study.cases"])
+@pytest.mark.parametrize("path", ["study", "study.nodes", "study.buildings", "study.cases"])
 def test_keys_are_on_the_page(path: str) -> None:
     """The page shows the keys of a spec, each with its meaning."""
     assert f"```{{keys}} {path}\n" in PAGE
@@ -49,3 +51,17 @@ def test_columns_of_a_row() -> None:
     assert columns == set(schema_of(load_spec(ROOT / "examples" / "study.toml")).names) - {
         "jammers.M.power_w"
     }
+
+
+def test_the_study_among_buildings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run as the page says, the program prints what the page shows."""
+    pytest.importorskip("pyarrow")
+    monkeypatch.chdir(tmp_path)
+    run_study(load_spec(ROOT / "examples" / "study-city.toml"), "out/city", workers=0)
+    section = PAGE.split("## A study among random buildings")[1]
+    program, shown = (
+        re.split(f"```{language}\n(.*?)```", section, flags=re.DOTALL)[1] for language in ("python", "text")
+    )
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        exec(compile(program, "studies.md", "exec"), {})
+    assert printed.getvalue() == shown

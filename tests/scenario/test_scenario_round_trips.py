@@ -12,7 +12,7 @@ from hypothesis import given, strategies as st
 from nullpose.scenario import Scenario, apply_overrides, load
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SCENARIOS = sorted(path for path in EXAMPLES.glob("*.toml") if path.name != "study.toml")  # which is a spec
+SCENARIOS = sorted(path for path in EXAMPLES.glob("*.toml") if not path.stem.startswith("study"))  # a spec
 
 watts = st.floats(1e-30, 1e30)
 titles = st.text(st.characters(exclude_categories=["C", "Z"]), max_size=12)

@@ -21,7 +21,7 @@ from nullpose.studio.toml_like import toml_like
 EXAMPLES = {
     path.stem: (path.read_text(), load(path))
     for path in sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
-    if path.stem != "study"
+    if not path.stem.startswith("study")
 }
 ALONE = [name for name in EXAMPLES if name not in ("geodetic", "frame")]  # those that name no other file
 
