@@ -83,6 +83,15 @@ def test_a_spec_and_back(spec: Spec) -> None:
         assert draw_scene(again, 2) == draw_scene(study, 2)
 
 
+def test_a_drawn_channel_takes_the_place_of_that_of_a_file(spec: Spec) -> None:
+    """As drawn points do; one that is not drawn is stated in the file."""
+    file = draw_scene(spec(scene__channel={"model": "power-law", "exponent": 5.0}), 0).to_dict()
+    study = spec(scene={"scenarios": [file], "channel": LAW})
+    assert draw_scene(study, 5).channel == draw_scene(spec(scene__channel=LAW), 5).channel
+    with pytest.raises(ScenarioError, match=r"scene\.channel: given together with a file"):
+        spec(scene={"scenarios": [file], "channel": {"model": "free-space"}})
+
+
 @pytest.mark.parametrize(
     ("channel", "path", "words"),
     [

@@ -52,11 +52,11 @@ class Town(NamedTuple):
             points_m: positions of the ground points, (m, 3) [m].
         """
         reach_m2 = np.sum(self.walls_m[0] ** 2) * (1.0 + 1e-9)  # a point at a wall counts as inside
-        free = np.ones(len(self.centres_m), dtype=np.bool_)
+        is_free = np.ones(len(self.centres_m), dtype=np.bool_)
         for point_m in points_m[:, :2]:
-            free &= np.any(np.abs((point_m - self.centres_m) @ self.walls_m.T) > reach_m2, axis=1)
-        corners_m = self.centres_m[free, None] + _CORNERS @ self.walls_m
-        pairs = zip(corners_m.tolist(), self.heights_m[free].tolist(), strict=True)
+            is_free &= np.any(np.abs((point_m - self.centres_m) @ self.walls_m.T) > reach_m2, axis=1)
+        corners_m = self.centres_m[is_free, None] + _CORNERS @ self.walls_m
+        pairs = zip(corners_m.tolist(), self.heights_m[is_free].tolist(), strict=True)
         return [{"polygon_m": corners, "height_m": height_m} for corners, height_m in pairs]
 
 
@@ -101,11 +101,11 @@ class Blocks(Section):
         Raises:
             ScenarioError: there would be too many.
         """
-        own = (self.alpha or 0.0, self.beta_per_km2 or 0.0, self.gamma_m or 0.0)
-        alpha, per_km2, gamma_m = own if self.environment is None else _BUILT_UP[self.environment]
+        numbers = (self.alpha or 0.0, self.beta_per_km2 or 0.0, self.gamma_m or 0.0)
+        alpha, per_km2, gamma_m = numbers if self.environment is None else _BUILT_UP[self.environment]
         pitch_m = 1e3 / math.sqrt(per_km2)
-        around_m = zip((self.x_m, self.y_m), np.hstack([np.empty((2, 0)), *areas_m]), strict=True)
-        ends_m = np.array([stated_m or (each_m.min(), each_m.max()) for stated_m, each_m in around_m])
+        pairs = zip((self.x_m, self.y_m), np.hstack([np.empty((2, 0)), *areas_m]), strict=True)
+        ends_m = np.array([range_m or (area_m.min(), area_m.max()) for range_m, area_m in pairs])
         sides = np.diff(ends_m, axis=1).ravel() / pitch_m
         count = np.prod(np.maximum(sides, 1.0))  # a strip narrower than the grid counts as a row of it
         require(

@@ -21,8 +21,8 @@ from nullpose.study.monte_carlo.drawn_channel import DrawnChannel
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.spec import StudySpec, require_number
 
-_Drawn = Mapping[str, Points | DrawnChannel | Blocks]
-_Swept = tuple[_Drawn, list[tuple[str, float]]]  # what is drawn, and what is set after that
+_Tables = Mapping[str, Points | DrawnChannel | Blocks]
+_Swept = tuple[_Tables, list[tuple[str, float]]]  # what is drawn, and what is set after that
 
 MOST_DRAWS = 100  # how often one kind is drawn before its scene is given up
 
@@ -108,7 +108,7 @@ class Draws:
     def __init__(self, spec: StudySpec) -> None:
         self._spec = spec
         self._swept: dict[int, _Swept] = {}
-        self._last: tuple[int, _Drawn, Scenario] | None = None
+        self._last: tuple[int, _Tables, Scenario] | None = None
 
     def base(self, index: int, values: Mapping[str, float] = MappingProxyType({})) -> Scenario:
         """Return a scene before anything is swept, or with some values set.
@@ -164,13 +164,13 @@ def _settings(scene: Scenario, path: str, value: float) -> list[Override]:
     return [Override(f"{kind}[{place}].{rest}", value) for place in range(len(getattr(scene, kind)))]
 
 
-def _scene(spec: StudySpec, index: int, drawn: _Drawn) -> Scenario:
+def _scene(spec: StudySpec, index: int, drawn: _Tables) -> Scenario:
     """Return a scene, drawing again what makes it invalid."""
     kept, attempts = spec.scene.kept(index, drawn), dict.fromkeys(drawn, 0)
     values = {kind: _draw(spec, index, kind, drawn, 0) for kind in drawn}
     while True:
         try:
-            return _built({**kept, "name": f"scene {index}", **values})
+            return _scene_of({**kept, "name": f"scene {index}", **values})
         except ScenarioError as error:
             # The kind to draw again: the last that a fault is about, or else the least often drawn.
             blamed = [kind for kind in attempts if any(each.path.startswith(kind) for each in error.faults)]
@@ -185,7 +185,7 @@ def _scene(spec: StudySpec, index: int, drawn: _Drawn) -> Scenario:
             values[again] = _draw(spec, index, again, drawn, attempts[again])
 
 
-def _built(values: PlainTable) -> Scenario:
+def _scene_of(values: PlainTable) -> Scenario:
     """Validate a scene; a drawn block on which a ground point stands is left out."""
     town = values.get("buildings")
     if not isinstance(town, Town):
@@ -195,7 +195,7 @@ def _built(values: PlainTable) -> Scenario:
     return scene.model_copy(update={"buildings": town.around(points_m)})
 
 
-def _draw(spec: StudySpec, index: int, kind: str, drawn: _Drawn, attempt: int) -> object:
+def _draw(spec: StudySpec, index: int, kind: str, drawn: _Tables, attempt: int) -> object:
     """Draw what a key of a scene holds, as plain data; blocks before any is left out."""
 
     def chance(stream: str) -> np.random.Generator:

@@ -73,7 +73,6 @@ class DrawnChannel(Section):
         blocked_loss_db: a number, or how it is drawn.
     """
 
-    header: ClassVar[str] = "a table headed [scene.channel]"
     ways: ClassVar[tuple[Ways, ...]] = Channel.ways
 
     model: str = _key("model")
@@ -91,7 +90,10 @@ class DrawnChannel(Section):
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield the faults of a channel with the first number and name of each key."""
-        firsts = {key: np.ravel(next(iter(each.to_dict().values()))).tolist()[0] for key, each in self._drawn}
+        firsts = {
+            key: np.ravel(next(iter(each.to_dict().values()))).tolist()[0]
+            for key, each in self._distributions
+        }
         try:
             Channel.from_dict({"model": self.model, "average": self.average} | firsts)
         except ScenarioError as error:  # keys that exclude each other are told already
@@ -103,11 +105,11 @@ class DrawnChannel(Section):
         Args:
             chance: gives the stream of each key.
         """
-        values = {key: each.draw(chance(key), 1).tolist()[0] for key, each in self._drawn}
+        values = {key: each.draw(chance(key), 1).tolist()[0] for key, each in self._distributions}
         return {"model": self.model, "average": self.average} | values
 
     @property
-    def _drawn(self) -> Iterable[tuple[str, Distribution | Environments]]:
+    def _distributions(self) -> Iterable[tuple[str, Distribution | Environments]]:
         return ((key, each) for key, each in self if isinstance(each, Distribution | Environments))
 
 

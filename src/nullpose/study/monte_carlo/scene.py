@@ -99,7 +99,8 @@ class SceneBase(Section):
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield tables that are missing, or stated twice."""
-        tables = [key for key in _TABLES if raw.get(key)]
+        keys = (key for key in _TABLES if not isinstance(getattr(self, key), DrawnChannel))
+        tables = [key for key in keys if raw.get(key)]
         if self.file or self.files or self.scenarios:
             message = "given together with a file, which states it; remove one, or state it in the file"
             yield from (((key,), message) for key in tables)
