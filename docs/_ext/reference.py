@@ -34,7 +34,8 @@ def schema_at(path: str) -> dict[str, Any]:
     first, _, rest = path.partition(".")
     schema, names = (STUDY, rest) if first == "study" else (SCENARIO, path)
     for name in names.split(".") if names else ():
-        schema = table_schema(schema["properties"][name])
+        entry = schema["properties"][name]
+        schema = table_schema(entry.get("anyOf", [entry])[-1])  # the last, where a name may stand for a table
     return schema
 
 
