@@ -1,11 +1,11 @@
-"""What an airframe reaches, and requirements met or missed, in words."""
+"""What an airframe reaches, requirements met or missed, and channels, in words."""
 
 from pathlib import Path
 
 import pytest
 
 from nullpose import Airframe, Scenario, load, solve
-from nullpose.report.words import reach_words, requirement_words
+from nullpose.report.words import channel_words, reach_words, requirement_words
 from nullpose.scenario import apply_overrides
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -61,3 +61,12 @@ def test_a_weight_proves_nothing_about_requirements(scenario: Scenario) -> None:
     assert "missed: node camera" in words
     assert "thermometer" not in words
     assert "proved" not in words
+
+
+def test_among_buildings_no_average_is_named() -> None:
+    """Buildings decide on line of sight there; by elevation a probability does, and the average is named."""
+    town, numbers = load(EXAMPLES / "town.toml"), "channel.average=db"
+    assert channel_words(town) == "elevation, environment urban, line of sight by buildings"
+    assert channel_words(apply_overrides(town, [numbers])) == channel_words(town)
+    open_ground = town.model_copy(update={"buildings": ()})
+    assert channel_words(open_ground) == "elevation, environment urban, average power"

@@ -89,4 +89,5 @@ def channel_words(scenario: Scenario) -> str | None:
     points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
     own = {f"{point.name}: ": point.channel for point in points}
     stated = {name: channel for name, channel in ({"": scenario.channel} | own).items() if channel}
-    return "; ".join(f"{name}{channel.words}" for name, channel in stated.items()) or None
+    words = "words" if scenario.prisms is None else "words_among_buildings"
+    return "; ".join(f"{name}{getattr(channel, words)}" for name, channel in stated.items()) or None

@@ -123,9 +123,18 @@ class Channel(Section):
     @property
     def words(self) -> str:
         """What it is, as in ``elevation, environment urban, average power``."""
-        keys = (key for key in _keys_of(self.model) if getattr(self, key) is not None)
-        values = (f"{key.replace('_', ' ')} {getattr(self, key)}" for key in keys)
-        return ", ".join([self.model, *values])
+        return self._words()
+
+    @property
+    def words_among_buildings(self) -> str:
+        """The same where buildings decide on line of sight: then there is neither probability nor average."""
+        if self.average is None:
+            return self.words
+        return f"{self._words(unused=('a', 'b', 'average'))}, line of sight by buildings"
+
+    def _words(self, unused: tuple[str, ...] = ()) -> str:
+        keys = [key for key in _keys_of(self.model) if getattr(self, key) is not None and key not in unused]
+        return ", ".join([self.model, *(f"{key.replace('_', ' ')} {getattr(self, key)}" for key in keys)])
 
     def make(self, is_interferer: bool) -> LinkChannel:
         """Return the channel of a link.
