@@ -32,6 +32,13 @@ def test_a_pose_on_a_null_is_called_one(run, paper):
     assert "stands on a null" not in still
 
 
+def test_no_way_out_is_named_that_is_refused(run):
+    """Among buildings --robust is refused, so that nothing advises it."""
+    said = run("solve", "examples/town.toml").stdout
+    assert "stands on a null (towards M)" in said
+    assert "--robust" not in said
+
+
 @pytest.mark.parametrize("text", ["", "attitude=1", "position_m=far", "jammers_m=-1", "jammers_m"])
 def test_sizes_that_are_none_are_refused_by_name(run, paper, text):
     """A size that cannot be read ends with exit code 2 and says what is allowed."""

@@ -8,6 +8,7 @@ from nullpose.physics import interferer_gains
 from nullpose.report.document import View, document, rows, table
 from nullpose.report.numbers import number, with_unit
 from nullpose.solver import ErrorSizes, Result
+from nullpose.solver.refusal import refusal
 from nullpose.solver.robust import RobustDetails
 
 NULL_LOSS_DB = 3.0
@@ -69,8 +70,7 @@ def sensitivity_words(result: Result) -> str | None:
     loss = quantity.in_unit(found.nominal) - quantity.in_unit(found.all)
     words = with_unit(loss, quantity) if math.isfinite(loss) else "all of its value"
     sentence = f"{pose}: under these errors it can lose {words} or more."
-    is_dipole = scenario.array is None and scenario.antenna_record.is_quadratic
-    if not is_dipole or isinstance(result.details, RobustDetails):
+    if isinstance(result.details, RobustDetails) or refusal(scenario, robust=True) is not None:
         return sentence
     errors = "such errors" if result.error_sizes == ErrorSizes() else "such errors, with the same --off"
     errors = "the errors that the scenario states" if scenario.is_uncertain else errors

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
+from nullpose.errors import ScenarioError
 from nullpose.scenario import Airspace, Node, Receiver, Scenario
 from nullpose.solver import Scheme
+from nullpose.solver.refusal import refusal
 from nullpose.study import AIRFRAME_CASES, Case as Vehicle
 
 
@@ -36,14 +39,17 @@ class Case:
         return scenario if scenario.array is None else scenario.model_copy(update={"array": None})
 
     def missing(self, scenario: Scenario) -> str | None:
-        """Name the reason for which the case has no meaning for a scenario, or None.
+        """Name the reason for which the solver refuses the case for a scenario, or None.
 
         Args:
             scenario: as stated.
         """
         if self.robust and not scenario.is_uncertain:
             return "the scenario states no errors to guard against"
-        return self.scheme.not_applicable(self.on(scenario))
+        one_antenna, refused = self.on(scenario), None
+        with suppress(ScenarioError):  # a fault of the scene, and of no case
+            refused = refusal(one_antenna, robust=self.robust)
+        return refused or self.scheme.not_applicable(one_antenna)
 
     def left_out(self, scenario: Scenario) -> str:
         """List in sentences the parts of a scenario that the case leaves out.
@@ -55,17 +61,24 @@ class Case:
         if scenario.array is not None:
             sentences.append("The array of the file is not shown: this is the pose of one antenna.")
         if scenario.is_uncertain and not self.robust:
-            sentences.append("The errors of the file are left out; the case Robust pose guards against them.")
+            refused = ROBUST.missing(scenario)
+            advice = "the case Robust pose guards against them"
+            if refused is not None:
+                advice = f"robust poses do not allow for its {refused.partition(':')[0]}"
+            sentences.append(f"The errors of the file are left out; {advice}.")
         return " ".join(sentences)
 
 
 OPTIMUM = Case(label="Optimum pose")
 """The case that the studio opens with."""
 
+ROBUST = Case(label="Robust pose", robust=True)
+"""The case that counts on the scenario's errors."""
+
 CASES = (
     OPTIMUM,
     *(Case(label=scheme.label, scheme=scheme) for scheme in Scheme if scheme is not Scheme.OPTIMUM),
-    Case(label="Robust pose", robust=True),
+    ROBUST,
     *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
 )
 """Every case, in the order in which they are offered."""
@@ -75,7 +88,7 @@ _offered: dict[tuple[object, ...], tuple[Case, ...]] = {}
 
 
 def cases_of(scenario: Scenario) -> tuple[Case, ...]:
-    """Return the cases that have a meaning for a scenario; never none.
+    """Return the cases that the solver takes for a scenario; the optimum, if it takes none.
 
     Args:
         scenario: as stated.
@@ -86,11 +99,14 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
         scenario.antenna,
         scenario.is_uncertain,
         scenario.has_margins,
+        scenario.has_channels,
+        scenario.has_custom_channels,
+        scenario.prisms is None,
         bool(scenario.jammers),
         len(scenario.nodes),
     )
     if traits not in _offered:  # asked at every step of a drag
-        _offered[traits] = tuple(case for case in CASES if case.missing(scenario) is None)
+        _offered[traits] = tuple(case for case in CASES if case.missing(scenario) is None) or (OPTIMUM,)
     return _offered[traits]
 
 
