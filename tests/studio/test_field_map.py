@@ -1,13 +1,15 @@
 """The maps agree with the physics, point by point."""
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 
 from nullpose import load
-from nullpose.physics import objective_value, to_db
-from nullpose.scenario import NoFlyZone, Scenario
+from nullpose.physics import evaluate, objective_value, to_db
+from nullpose.scenario import Node, NoFlyZone, Scenario
 from nullpose.solver import best_axis, solve
 from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM, Case, case_named, cases_of
@@ -57,6 +59,28 @@ def test_forbidden_places_have_no_value(paper: Scenario) -> None:
     assert inside.any()
     assert np.all(np.isnan(maps.best.values[inside]))
     assert np.all(np.isfinite(maps.best.values[np.hypot(east - 10.0, north - 25.0) > 6.1]))
+
+
+@pytest.mark.parametrize("name", ["town", "urban", "paper"])
+def test_both_maps_are_what_evaluate_says(name: str) -> None:
+    """In any channel and behind buildings: with the drone there, and from a node there on the ground."""
+    scenario = load(EXAMPLES / f"{name}.toml")
+    answer, maps = _map(scenario, OPTIMUM)
+    best, ground = maps.best, maps.footprint
+    roofs = shapely.union_all([shapely.Polygon(building.outline_m) for building in scenario.buildings])
+    nodes, drawn_db = [], []
+    for row, column in product(range(3, len(best.north_m), 7), range(2, len(best.east_m), 7)):
+        east_m, north_m = best.east_m[column], best.north_m[row]
+        if np.isfinite(best.values[row, column]):
+            links = evaluate(scenario, best_axis(scenario, [east_m, north_m, best.altitude_m]))
+            assert best.values[row, column] == pytest.approx(min(link.sinr_db for link in links))
+        if not roofs.intersects(shapely.Point(east_m, north_m)):
+            nodes.append(Node(name=f"{row} {column}", position_m=(east_m, north_m, 0.0), power_w=1.0))
+            drawn_db.append(ground.values[row, column])
+    heard = evaluate(scenario.model_copy(update={"nodes": tuple(nodes), "jammers": ()}), answer.result.pose)
+    off_db = np.subtract(drawn_db, [link.sinr_db for link in heard])  # noise and reference gain
+    assert len(nodes) > 15
+    assert np.ptp(off_db[np.array(drawn_db) > -59.0]) < 1e-9
 
 
 def test_the_footprint_is_dark_where_the_null_falls(paper: Scenario) -> None:

@@ -9,9 +9,12 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from nullpose.physics import antenna_gain
+from nullpose.channel import PointChannels, excess_gain
+from nullpose.physics import Pose, antenna_gain
 from nullpose.problem.build import build_family
+from nullpose.scenario import Scenario
 from nullpose.solver.background_compiler import BackgroundCompiler
 from nullpose.studio.answer import Answer
 from nullpose.studio.case import new_scenario
@@ -19,10 +22,13 @@ from nullpose.studio.look import scale_range
 from nullpose.study import Field, value_map
 from nullpose.study.value_map import in_decibels
 
+FloatArray = NDArray[np.float64]
+
 MAPS = ("best value at each place", "pattern's footprint")
 """What the two maps are called, the first being that of the best values."""
 
 
+_ANY_NODE = new_scenario().nodes[0]  # without a channel of its own
 _asking = threading.Lock()
 
 
@@ -47,7 +53,7 @@ class FieldMap:
     Args:
         version: the version of the scene.
         best: the objective at the best axis of each position, on a plane at the drone's altitude.
-        footprint: the drone's gain over the path loss, on the ground.
+        footprint: the drone's gain over the path loss of a node's link, on the ground.
     """
 
     version: int
@@ -76,13 +82,11 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     scenario, pose = answer.result.scenario, answer.result.pose
     best = value_map(answer.result, go_on=go_on)
     ground = np.stack(np.broadcast_arrays(*np.meshgrid(best.east_m, best.north_m), 0.0), -1)
-    loss = np.sum((ground - pose.position_m) ** 2, axis=-1) / max(1.0, float(pose.position_m[2]) ** 2)
-    at = (pose.position_m, pose.orientation(scenario.antenna_record), ground.reshape(-1, 3))
-    gain = antenna_gain(*at, scenario.antenna_record).reshape(loss.shape)
+    gain = _ground_gain(scenario, pose, ground.reshape(-1, 3)).reshape(best.values.shape)
     footprint = replace(
         best,
         altitude_m=0.0,
-        values=in_decibels(gain / np.maximum(loss, 1e-12)),
+        values=in_decibels(gain),
         unit="dB",
         title="gain over path loss on the ground, 0 straight below at full gain",
         name="footprint_db",
@@ -90,6 +94,20 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     unlike = " without errors" if answer.case.robust else ""
     best = replace(best, title=f"{best.title}{unlike}")
     return FieldMap(version=answer.version, best=best, footprint=footprint)
+
+
+def _ground_gain(scenario: Scenario, pose: Pose, places_m: FloatArray) -> FloatArray:
+    """Evaluate what the drone receives from nodes at places on the ground, (n,).
+
+    It is a share of what it would receive at full gain from one straight below and in sight.
+    """
+    above_m, node = max(1.0, float(pose.position_m[2])), scenario.channel_of(_ANY_NODE)
+    channels = PointChannels.of([node] * len(places_m), scenario.prisms, [False] * len(places_m))
+    to_places_m = places_m - pose.position_m
+    below = excess_gain(PointChannels.of([node]), np.array([[0.0, 0.0, -above_m]])) / above_m**2
+    at = (pose.position_m, pose.orientation(scenario.antenna_record), places_m, scenario.antenna_record)
+    gain = antenna_gain(*at) * excess_gain(channels, to_places_m, places_m)
+    return np.asarray(gain / np.maximum(np.sum(to_places_m**2, axis=-1), 1e-12) / below)
 
 
 def map_kernel_is_ready() -> bool:
