@@ -79,6 +79,8 @@ def shadow_outlines_m(
 def _cut(corners_m: FloatArray, sides: FloatArray, altitude_m: float) -> FloatArray:
     """Cut a level convex polygon by half-spaces, one after the other."""
     for *normal, up, offset, _ in sides:
+        if not len(corners_m):
+            break
         away, onward = corners_m @ normal + up * altitude_m - offset, np.roll(corners_m, -1, axis=0)
         is_inside, step = away <= 0.0, away - np.roll(away, -1)
         is_crossed = is_inside != np.roll(is_inside, -1)

@@ -69,6 +69,12 @@ TABS: dict[str, dict[str, tuple[str, str, str, dict[str, object]]]] = {
             "Show the antenna's radiation pattern.",
             {"initial_value": True},
         ),
+        "has_shadows": (
+            "checkbox",
+            "Shadows of buildings",
+            "At the drone's altitude: where buildings hide nodes (filled) and jammers (hatched).",
+            {"initial_value": True},
+        ),
         "lifts_points": (
             "checkbox",
             "Points leave the ground",

@@ -20,7 +20,7 @@ from nullpose.studio.answer import Answer
 from nullpose.studio.case import new_scenario
 from nullpose.studio.look import scale_range
 from nullpose.study import Field, value_map
-from nullpose.study.value_map import in_decibels
+from nullpose.study.value_map import CELLS, in_decibels, map_grid_m
 
 FloatArray = NDArray[np.float64]
 
@@ -28,6 +28,7 @@ MAPS = ("best value at each place", "pattern's footprint")
 """What the two maps are called, the first being that of the best values."""
 
 
+_FINER_CELLS = 121  # along the longer side, among buildings, whose shadows on the ground have edges
 _ANY_NODE = new_scenario().nodes[0]  # without a channel of its own
 _asking = threading.Lock()
 
@@ -81,14 +82,21 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     """
     scenario, pose = answer.result.scenario, answer.result.pose
     best = value_map(answer.result, go_on=go_on)
-    ground = np.stack(np.broadcast_arrays(*np.meshgrid(best.east_m, best.north_m), 0.0), -1)
-    gain = _ground_gain(scenario, pose, ground.reshape(-1, 3)).reshape(best.values.shape)
+    cells = CELLS if scenario.prisms is None else _FINER_CELLS
+    east_m, north_m = map_grid_m(scenario, pose.position_m, cells)
+    ground = np.stack(np.broadcast_arrays(*np.meshgrid(east_m, north_m), 0.0), -1)
+    gain = np.empty(ground.shape[:2])
+    for places_m, row in zip(ground, gain, strict=True):
+        go_on()
+        row[:] = _ground_gain(scenario, pose, places_m)
     footprint = replace(
         best,
+        east_m=east_m,
+        north_m=north_m,
         altitude_m=0.0,
         values=in_decibels(gain),
         unit="dB",
-        title="gain over path loss on the ground, 0 straight below at full gain",
+        title="gain over path loss, 0 straight below at full gain",
         name="footprint_db",
     )
     unlike = " without errors" if answer.case.robust else ""

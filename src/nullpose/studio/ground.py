@@ -42,6 +42,12 @@ def grid_m(scenario: Scenario) -> tuple[FloatArray, FloatArray, float]:
     return step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m), step_m
 
 
+def flight_box_m(scenario: Scenario) -> FloatArray:
+    """Return the low and the high corner, (2, 2), of the airspace that is drawn, metres."""
+    (low, high, _), airspace = grid_m(scenario), scenario.airspace
+    return np.stack([np.maximum(low, airspace.lower_m[:2]), np.minimum(high, airspace.upper_m[:2])])
+
+
 def _extent_m(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
     return map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
 
@@ -138,9 +144,7 @@ def _grid(scenario: Scenario, look: Look) -> Shapes:
 
 
 def _airspace(scenario: Scenario, look: Look) -> Shapes:
-    airspace, (low, high, _) = scenario.airspace, grid_m(scenario)
-    west, south = np.maximum(low, airspace.lower_m[:2])
-    east, north = np.minimum(high, airspace.upper_m[:2])
+    airspace, ((west, south), (east, north)) = scenario.airspace, flight_box_m(scenario)
     outline = np.array([[west, south], [east, south], [east, north], [west, north]])
     if airspace.geofence_m is not None:
         outline = airspace.geofence_outline_m
@@ -167,7 +171,7 @@ def _buildings(buildings: tuple[Building, ...], colour: Rgb) -> Shapes:
         edges += [prism_edges(ring, *ends) for ring in (each.outline_m, *each.courtyard_outlines_m)]
     if not solids:
         return {}
-    bodies = mesh(merged(solids), colour, opacity=0.6, side="double", flat_shading=True)
+    bodies = mesh(merged(solids), colour, opacity=0.45, side="double", flat_shading=True)
     return {"/buildings/bodies": bodies, "/buildings/edges": lines(np.concatenate(edges), colour, 1.4)}
 
 

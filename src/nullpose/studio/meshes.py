@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
+from shapely.geometry.base import BaseGeometry
 
 from nullpose.antenna import Antenna
 
@@ -156,8 +157,17 @@ def floor_mesh(outline_m: ArrayLike, height_m: float, holes_m: Sequence[ArrayLik
         height_m: where it is, metres.
         holes_m: vertices of polygons inside that are left out, metres.
     """
-    whole = shapely.Polygon(np.asarray(outline_m), list(map(np.asarray, holes_m)))
-    triangles = shapely.constrained_delaunay_triangles(whole)
+    return level_mesh(shapely.Polygon(np.asarray(outline_m), list(map(np.asarray, holes_m))), height_m)
+
+
+def level_mesh(area_m: BaseGeometry, height_m: float = 0.0) -> Mesh:
+    """Return a level surface, whole or in parts.
+
+    Args:
+        area_m: shapely's polygon, or several, metres.
+        height_m: where it is, metres.
+    """
+    triangles = shapely.constrained_delaunay_triangles(area_m)
     corners = [shapely.get_coordinates(triangle)[:3] for triangle in triangles.geoms]
     return Mesh(_raised(np.vstack(corners), height_m), np.arange(3 * len(corners)).reshape(-1, 3))
 

@@ -153,7 +153,7 @@ class Page:
 
     def _listen(self) -> None:
         panel, session, client = self.panel, self.session, self._client
-        switches = ("map_name", "has_pattern", "lifts_points")
+        switches = ("map_name", "has_pattern", "has_shadows", "lifts_points")
         controls: dict[str, Callable[[Any], object]] = {
             name: partial(self._switch, name) for name in switches
         }

@@ -81,8 +81,9 @@ class Panel(SimpleNamespace):
         put(self.power_text, disabled=power_db is None, value=state.power_text)
         if power_db is not None:
             put(self.power, value=(round(min(max(power_db, POWER_DB[0]), POWER_DB[1]), 6),))
-        for name in ("map_name", "has_pattern", "lifts_points"):
+        for name in ("map_name", "has_pattern", "has_shadows", "lifts_points"):
             put(getattr(self, name), value=getattr(state, name))
+        put(self.has_shadows, visible=state.scenario.prisms is not None)
         put(self.undo, disabled=not history.past)
         put(self.redo, disabled=not history.future)
         entries: tuple[Entry, ...] = () if state.selected is None else entries_of(state, state.selected)

@@ -166,4 +166,7 @@ def macros(template: str = "page.html.jinja") -> TemplateModule:
     filters = (signed, tone, letter, node_rows, attitude_words, null_words)
     environment.filters |= {function.__name__: function for function in filters}
     environment.globals["slot_colours"] = [either(css(LIGHT.slots[i]), css(DARK.slots[i])) for i in (0, 1)]
+    environment.globals["kind_colours"] = {
+        kind: either(css(LIGHT.kinds[kind]), css(DARK.kinds[kind])) for kind in LIGHT.kinds
+    }
     return environment.get_template(template).module

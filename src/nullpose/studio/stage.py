@@ -15,6 +15,7 @@ from nullpose.studio.drone import drone_shapes
 from nullpose.studio.field_map import Scale
 from nullpose.studio.ground import ground_shapes, scene_size_m
 from nullpose.studio.look import LIGHT, Look, Rgb, round_steps, scale_colours
+from nullpose.studio.shadows import shadow_shapes
 from nullpose.studio.state import Key, State
 from nullpose.study import Field
 
@@ -23,7 +24,7 @@ OnDrag = Callable[[Key, NDArray[np.float64], str], None]
 
 _OTHER_SIZE = (0.6, 1.7)  # marks keep their size until the scene is that much smaller or larger
 _LIFT_M = 0.05  # of the map off the grid on the ground
-_FINER = 6  # pixels for each step of the map's grid
+_PIXELS = 270  # along the longer side of a map
 _FADE = 4.0  # how steeply the map fades in at its edges
 _MOST_LABELS = 4
 _CHANGEABLE = {"position", "wxyz", "scale", "text", "font_screen_scale", "points", "colors", "vertices"}
@@ -60,10 +61,12 @@ class Stage:
         if not _OTHER_SIZE[0] < size_m / self.size_m < _OTHER_SIZE[1]:
             self.size_m = size_m
         shapes = ground_shapes(state, self.size_m, self._look, has_arrows=self._on_drag is not None)
+        shapes |= shadow_shapes(state, self.size_m, self._look)
         for slot in range(len(state.cases)):
             shapes |= drone_shapes(state, slot, self.size_m, self.eye_m, self._look)
         if state.scale is not None:
-            shapes |= _map_shapes(state.scale, self._look.map_alpha, self._look.contour)
+            contour = self._look.contour if state.scenario.prisms is None else None
+            shapes |= _map_shapes(state.scale, self._look.map_alpha, contour)
         self._show(shapes)
 
     def _show(self, shapes: Shapes) -> None:
@@ -99,8 +102,11 @@ def _same(before: object, value: object) -> bool:
 
 
 @lru_cache(8)
-def _map_shapes(scale: Scale, map_alpha: int, contour: Rgb) -> Shapes:
-    """Draw a map as a coloured plane with contours, a little above its altitude."""
+def _map_shapes(scale: Scale, map_alpha: int, contour: Rgb | None) -> Shapes:
+    """Draw a map as a coloured plane with contours, a little above its altitude.
+
+    There are none without a colour for them: at the edge of a shadow all would run as one.
+    """
     field, (low, high) = scale.field, scale.ends
     east, north, altitude_m = field.east_m, field.north_m, field.altitude_m + _LIFT_M
     width = float(east[-1] + east[1] - 2.0 * east[0])
@@ -113,6 +119,8 @@ def _map_shapes(scale: Scale, map_alpha: int, contour: Rgb) -> Shapes:
         "position": np.array([0.5 * (east[0] + east[-1]), 0.5 * (north[0] + north[-1]), altitude_m]),
     }
     shapes = {"/map/colours": Shape("image", plane | FLAT)}
+    if contour is None:
+        return shapes
     contours = _contours(field, low, high)
     if contours:
         segments = [np.stack([line[:-1], line[1:]], axis=1) for level in contours.values() for line in level]
@@ -132,8 +140,9 @@ def _image(field: Field, low: float, high: float, map_alpha: int) -> NDArray[np.
 
     has_value = np.isfinite(field.values)
     filled = np.where(has_value, np.clip(np.nan_to_num(field.values, nan=low), low, high), low)
-    fine = zoom(filled, _FINER, order=1, mode="nearest", grid_mode=True)
-    solid = zoom(has_value.astype(float), _FINER, order=0, mode="nearest", grid_mode=True) > 0.5
+    finer = max(1, _PIXELS // max(filled.shape))
+    fine = zoom(filled, finer, order=1, mode="nearest", grid_mode=True)
+    solid = zoom(has_value.astype(float), finer, order=0, mode="nearest", grid_mode=True) > 0.5
     across, along = (np.sin(np.linspace(0.0, np.pi, n)) for n in fine.shape)
     fade = np.minimum(1.0, _FADE * np.minimum(across[:, None], along))  # no hard edge in a dark page
     alpha = np.where(solid, map_alpha * fade, 0).astype(np.uint8)

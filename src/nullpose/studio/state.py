@@ -57,6 +57,7 @@ class State:
         corners_m: (n, 2) of a fence that is being drawn, metres.
         map_name: the map that is shown, one of ``MAPS``, or any other text for none.
         has_pattern: whether the radiation patterns are shown.
+        has_shadows: whether it is shown where buildings hide points from the drone.
         lifts_points: whether points can be dragged off their altitude.
         is_presented: whether the panel is folded.
         faults: what of the last change was refused, as HTML.
@@ -75,6 +76,7 @@ class State:
     corners_m: tuple[tuple[float, float], ...] = ()
     map_name: str = MAPS[1]
     has_pattern: bool = True
+    has_shadows: bool = True
     lifts_points: bool = False
     is_presented: bool = False
     faults: str = ""
@@ -137,6 +139,13 @@ class State:
         """The map that is shown with its colours, or None."""
         maps = self.field_map
         return None if maps is None else maps.scale(self.map_name)
+
+    @property
+    def shadowing(self) -> Answer | None:
+        """The answer at whose altitude shadows are drawn, or None; the best values have them in their map."""
+        has_own_map = self.scale is not None and self.scale.of_value
+        is_shown = self.has_shadows and self.scenario.prisms is not None and not has_own_map
+        return self.answer(self.case) if is_shown else None
 
     @property
     def link_range_db(self) -> tuple[float, float]:

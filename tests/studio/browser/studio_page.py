@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 from playwright.sync_api import Browser
-from tests.studio.browser.hand import PAPER, Hand, drawn_share, opened
+from tests.studio.browser.hand import EXAMPLES, PAPER, Hand, drawn_share, opened
 from zstandard import ZstdDecompressor
 
 from nullpose import load, solve
@@ -168,6 +168,20 @@ def test_the_pattern_opens_towards_the_camera(hand: Hand) -> None:
     for eye_m in ([60.0, 40.0, 30.0], [-50.0, -40.0, 60.0]):
         hand.camera.position, hand.camera.look_at = eye_m, middle_m
         hand.until(lambda eye_m=eye_m: off_rad(eye_m) < 0.1)
+
+
+def test_shadows_of_buildings_are_a_layer(hand: Hand) -> None:
+    """Drawn, and named on the card; the switch takes both away."""
+    hand.session.change(lambda state: state.with_scenario(load(EXAMPLES / "town.toml"), ""))
+    hand.certified()
+    legend = hand.page.locator("[data-np=overlay-shadows]")
+    legend.wait_for()
+    hand.page.wait_for_timeout(1000)
+    shown = hand.picture()
+    hand.tab("Map and view")
+    hand.page.get_by_role("checkbox", name="Shadows of buildings").click()
+    legend.wait_for(state="detached")
+    hand.until(lambda: np.mean(np.abs(hand.picture() - shown).max(axis=-1) > 0.05) > 0.05)
 
 
 def test_presenting_folds_the_panel(hand: Hand) -> None:
