@@ -1,4 +1,4 @@
-"""Scenes and poses that the ray tracer is asked about."""
+"""Scenes in the open and poses that the ray tracer is asked about."""
 
 from __future__ import annotations
 
@@ -18,15 +18,20 @@ _POSES = 4
 _SOLVED = 2  # of each kind
 
 
-def _points(
-    rng: np.random.Generator, count: int, antenna: Callable[[], dict[str, Any]]
+def table_of(
+    rng: np.random.Generator, places_m: np.ndarray, antenna: Callable[[], dict[str, Any]]
 ) -> list[dict[str, Any]]:
-    places = rng.uniform([-40.0, -40.0, 0.0], [40.0, 40.0, 3.0], (count, 3))
-    powers = 10.0 ** rng.uniform(-1.0, 1.0, count)
+    """Draw the powers and antennas of ground points."""
+    powers_w = 10.0 ** rng.uniform(-1.0, 1.0, len(places_m))
     return [
-        {"position_m": place.tolist(), "power_w": float(power)} | antenna()
-        for place, power in zip(places, powers, strict=True)
+        {"position_m": place_m.tolist(), "power_w": float(power_w)} | antenna()
+        for place_m, power_w in zip(places_m, powers_w, strict=True)
     ]
+
+
+def _places_m(rng: np.random.Generator, fewest: int, most: int) -> np.ndarray:
+    count = int(rng.integers(fewest, most + 1))
+    return rng.uniform([-40.0, -40.0, 0.0], [40.0, 40.0, 3.0], (count, 3))
 
 
 def kinds(rng: np.random.Generator) -> dict[str, tuple[dict[str, Any] | None, Any, Any]]:
@@ -47,14 +52,14 @@ def kinds(rng: np.random.Generator) -> dict[str, tuple[dict[str, Any] | None, An
     }
 
 
-def asked(seed: int = 1) -> Iterator[tuple[str, Scenario, list[Pose]]]:
+def cases(seed: int = 1) -> Iterator[tuple[str, Scenario, list[Pose]]]:
     """Yield what is compared, a scene and poses in it: random ones, and certified optima."""
     rng = np.random.default_rng(seed)
     for name, (antenna, node, jammer) in kinds(rng).items():
         for scene in range(_SCENES):
             data: dict[str, Any] = {
-                "nodes": _points(rng, int(rng.integers(2, 7)), node),
-                "jammers": _points(rng, int(rng.integers(1, 4)), jammer),
+                "nodes": table_of(rng, _places_m(rng, 2, 6), node),
+                "jammers": table_of(rng, _places_m(rng, 1, 3), jammer),
                 "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
                 "airspace": {"altitude_m": [8.0, 30.0]},
             }

@@ -1,145 +1,73 @@
-"""Sionna RT as a judge: every link by its own antennas, in an empty scene."""
+"""Sionna RT as a judge: SINRs in the open, and lines of sight and SINRs among buildings."""
 
 from __future__ import annotations
 
-import glob
-import os
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
-from benchmarks.judges.cases import asked
+from benchmarks.judges.cases import cases
+from benchmarks.judges.engine import Engine
+from benchmarks.judges.towns import towns
 from benchmarks.judges.verdict import Verdict
 from nullpose import Pose, Scenario, evaluate
-from nullpose.antenna import PatternAntenna
-from nullpose.physics import attitude_from_axis
 
-_SPEED_OF_LIGHT = 299_792_458.0
-_DIPOLE, _HALF_WAVE = 1.5, 1.643  # largest gains of Sionna's dipoles over an isotropic antenna
 _ALLOWED = 1e-4
 _DEEP = 1e-4  # of an un-nulled link: beyond single precision
-_TABLE_STEPS = 3600  # from pole to pole
+_NEAR_M = 1e-3  # likewise
 
 
 def verdicts() -> Iterator[Verdict]:
-    """Yield what Sionna RT says of every kind of antennas."""
+    """Yield what Sionna RT says of every kind of antennas, and of buildings."""
     try:
-        engine = _Engine()
+        engine = Engine()
     except Exception as error:  # it cannot be installed everywhere: LLVM, the processor, the platform
         yield Verdict("Sionna RT", "SINR", 0, None, _ALLOWED, reason=str(error).splitlines()[0][:200])
         return
     found: dict[str, list[float]] = {}
-    for name, scenario, poses in asked():
-        theirs = engine.sinr(scenario, poses)
-        for pose, row in zip(poses, theirs, strict=True):
-            ours = np.array([link.sinr for link in evaluate(scenario, pose)])
-            away = np.sum((scenario.node_positions_m - pose.position_m) ** 2, axis=1)
-            unnulled = scenario.node_powers_w / away / scenario.receiver.noise_power_w
-            deviation = np.abs(ours - row) / np.maximum(ours, _DEEP * unnulled)
-            found.setdefault(name, []).extend(deviation.tolist())
-    for name, deviations in found.items():
-        yield Verdict(engine.name, name, len(deviations), max(deviations), _ALLOWED)
+    for name, scenario, poses in cases():
+        found.setdefault(name, []).extend(deviations(scenario, poses, engine.gains(scenario, poses)))
+    for name, values in found.items():
+        yield Verdict(engine.name, name, len(values), max(values), _ALLOWED)
+    for name, scenario, poses in towns():
+        yield from _among_buildings(engine, name, scenario, poses)
 
 
-def library() -> str | None:
-    """Return the newest LLVM on this machine, or None."""
-    every = glob.glob("/usr/lib/*/libLLVM*.so*") + glob.glob("/usr/lib/llvm-*/lib/libLLVM*.so*")
-    return max(every, key=_version, default=None)
+def _among_buildings(engine: Engine, name: str, scenario: Scenario, poses: list[Pose]) -> Iterator[Verdict]:
+    """Yield how many lines of sight differ, and how much the SINR does."""
+    gains = engine.gains(scenario, poses)
+    is_clear, is_near = lines_of_sight(scenario, np.array([pose.position_m for pose in poses]))
+    differ = (is_clear != (gains > 0.0)) & ~is_near
+    what = f"line of sight in {name}, {is_clear.mean():.0%} clear; {is_near.sum()} near an edge left out"
+    yield Verdict(engine.name, what, int(np.sum(~is_near)), float(differ.sum()), 0.0, "links")
+    kept = np.flatnonzero(~is_near.any(axis=1))
+    values = deviations(scenario, [poses[place] for place in kept], gains[kept])
+    yield Verdict(engine.name, f"SINR in {name}", len(values), max(values), _ALLOWED)
 
 
-def _version(path: str) -> int:
-    digits = "".join(c if c.isdigit() else " " for c in os.path.basename(path)).split()
-    return int(digits[0]) if digits else 0
+def deviations(scenario: Scenario, poses: list[Pose], gains: np.ndarray) -> list[float]:
+    """Return how every node's SINR at every pose differs from that of the gains of its links."""
+    received_w, count = gains * scenario.source_powers_w, len(scenario.nodes)
+    noise_w = np.sum(received_w[:, count:], axis=1, keepdims=True) + scenario.receiver.noise_power_w
+    theirs = received_w[:, :count] / noise_w
+    ours = np.array([[link.sinr for link in evaluate(scenario, pose)] for pose in poses])
+    to_nodes_m = scenario.node_positions_m - np.array([pose.position_m for pose in poses])[:, None]
+    unnulled = scenario.node_powers_w / np.sum(to_nodes_m**2, axis=-1) / scenario.receiver.noise_power_w
+    return list(np.ravel(np.abs(ours - theirs) / np.maximum(ours, _DEEP * unnulled)))
 
 
-class _Engine:
-    """Scenes of Sionna RT in which path gains are one over the squared distance."""
-
-    def __init__(self) -> None:
-        found = library()
-        if found is None:
-            raise RuntimeError("no LLVM; on Debian: apt install libllvm19")
-        if _version(found) < 18:  # older ones end the process on some processors
-            raise RuntimeError(f"LLVM {_version(found)} is too old; on Debian: apt install libllvm19")
-        os.environ.setdefault("DRJIT_LIBLLVM_PATH", found)
-        import drjit
-        import mitsuba
-        import sionna.rt
-
-        self.dr, self.mi, self.rt = drjit, mitsuba, sionna.rt
-        self.name = f"Sionna RT {sionna.rt.__version__}"
-        self.tables = 0
-
-    def sinr(self, scenario: Scenario, poses: list[Pose]) -> list[np.ndarray]:
-        """Return every node's SINR at every pose."""
-        points = [*scenario.nodes, *scenario.jammers]
-        pattern, peak = self._drone(scenario)
-        gains = np.empty((len(poses), len(points)))
-        for wired in (False, True):
-            some = [i for i, point in enumerate(points) if (point.antenna == "dipole") is wired]
-            if some:
-                gains[:, some] = self._gains([points[i] for i in some], poses, pattern, wired) / peak
-        shares = np.array([0.5 if point.antenna == "circular" else 1.0 for point in points])
-        powers = np.concatenate([scenario.node_powers_w, scenario.jammer_powers_w])
-        received = gains * shares * powers
-        count = len(scenario.nodes)
-        noise = np.sum(received[:, count:], axis=1, keepdims=True) + scenario.receiver.noise_power_w
-        return list(received[:, :count] / noise)
-
-    def _gains(self, points: list[Any], poses: list[Pose], pattern: str, wired: bool) -> np.ndarray:
-        """Return path gains, (poses, points): of both ports together, or of dipoles."""
-        rt = self.rt
-        one = {"num_rows": 1, "num_cols": 1}
-        scene = rt.load_scene()
-        scene.frequency = _SPEED_OF_LIGHT / (4.0 * np.pi)
-        ports = (
-            {"pattern": "dipole", "polarization": "V"} if wired else {"pattern": "iso", "polarization": "VH"}
+def lines_of_sight(scenario: Scenario, positions_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which links are clear, and which are not if buildings grow or shrink by a millimetre."""
+    channels, prisms = scenario.source_channels, scenario.prisms
+    clear = []
+    for by_m in (-_NEAR_M, 0.0, _NEAR_M):
+        grown = prisms._replace(
+            sides=prisms.sides + np.array([0.0, 0.0, by_m]),
+            base_m=prisms.base_m - by_m,
+            least_height_m=prisms.least_height_m + by_m,
+            most_height_m=prisms.most_height_m + by_m,
         )
-        scene.tx_array = rt.PlanarArray(**one, **ports)
-        scene.rx_array = rt.PlanarArray(**one, pattern=pattern, polarization="V")
-        for i, point in enumerate(points):
-            turned = [0.0, 0.0, 0.0]
-            if wired and point.antenna_axis is not None:
-                roll, pitch = attitude_from_axis(point.antenna_axis)
-                turned = [0.0, float(pitch), float(roll)]
-            scene.add(rt.Transmitter(f"t{i}", [float(x) for x in point.position_m], orientation=turned))
-        for k, pose in enumerate(poses):
-            angles = [float(pose.yaw_rad), float(pose.pitch_rad), float(pose.roll_rad)]
-            scene.add(rt.Receiver(f"r{k}", [float(x) for x in pose.position_m], orientation=angles))
-        sight = {"los": True, "specular_reflection": False, "diffuse_reflection": False, "refraction": False}
-        real, imaginary = (np.array(part) for part in rt.PathSolver()(scene, max_depth=0, **sight).a)
-        power = np.sum(real**2 + imaginary**2, axis=(1, 3, 4))
-        return np.asarray(power / (_DIPOLE if wired else 1.0))
-
-    def _drone(self, scenario: Scenario) -> tuple[str, float]:
-        """Return the name of the drone's pattern with Sionna, and the gain that counts as 1."""
-        antenna = scenario.antenna_record
-        if antenna.is_quadratic:
-            return "dipole", _DIPOLE
-        if antenna.name == "half-wave":
-            return "hw_dipole", _HALF_WAVE
-        return self._registered(antenna), 1.0
-
-    def _registered(self, antenna: PatternAntenna) -> str:
-        """Return the name under which a pattern is registered, as a table of its amplitude."""
-        mi, steps = self.mi, _TABLE_STEPS
-        theta, phi = (np.arange(steps) + 0.5) * 180.0 / steps, (np.arange(2 * steps) + 0.5) * 180.0 / steps
-        gain = antenna.harmonics.on_grid(np.radians(theta), np.radians(phi))
-        amplitude = np.sqrt(np.maximum(0.0, gain)).astype(np.float32)[..., None]
-        texture = mi.Texture2f(mi.TensorXf(amplitude))
-
-        def pattern(theta_rad: Any, phi_rad: Any) -> Any:
-            turn = phi_rad / (2.0 * np.pi)
-            where = mi.Point2f(turn - self.dr.floor(turn), theta_rad / np.pi)
-            return mi.Complex2f(texture.eval(where)[0], 0.0), mi.Complex2f(0.0, 0.0)
-
-        class Table(self.rt.AntennaPattern):  # type: ignore[misc, name-defined]
-            def __init__(self) -> None:
-                super().__init__()
-                self.patterns = [pattern]
-
-        self.tables += 1
-        name = f"table{self.tables}"
-        self.rt.register_antenna_pattern(name, lambda **_: Table())
-        return name
+        gain = channels._replace(prisms=grown).blocked_gain(positions_m, scenario.source_positions_m)
+        clear.append(gain == 1.0)
+    smaller, same, larger = clear
+    return same, smaller != larger

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
-from benchmarks.judges import __main__ as judges, ray_tracer, wires
+from benchmarks.judges import __main__ as judges, engine, ray_tracer, towns, wires
 from benchmarks.judges.verdict import Verdict
+
+from nullpose import Scenario
+from nullpose.physics import Reception
 
 GOOD = Verdict("engine 1.0", "a link", 12, 1e-6, 1e-4)
 BAD = Verdict("engine 1.0", "a link", 12, 1e-3, 1e-4)
@@ -51,6 +54,34 @@ def test_without_the_engine_there_is_a_reason(monkeypatch: pytest.MonkeyPatch) -
     """Without nec2c or LLVM each judge says what to install."""
     monkeypatch.setattr(wires.shutil, "which", lambda _: None)
     assert {verdict.deviation for verdict in wires.verdicts()} == {None}
-    monkeypatch.setattr(ray_tracer, "library", lambda: None)
+    monkeypatch.setattr(engine, "library", lambda: None)
     (verdict,) = ray_tracer.verdicts()
     assert "libllvm19" in verdict.reason
+
+
+def test_towns_have_what_the_judge_is_for() -> None:
+    """A thousand links of each scene; our gains deviate by nothing, those of a scene without buildings do."""
+    for _, scenario, poses in towns.towns():
+        positions_m = np.array([pose.position_m for pose in poses])
+        is_clear, is_near = ray_tracer.lines_of_sight(scenario, positions_m)
+        assert is_clear.size == 1000
+        assert 0.2 < is_clear.mean() < 0.8
+        assert is_near.sum() < 5
+        axes = [pose.antenna_axis for pose in poses]
+        received_w = Reception(scenario, positions_m, np.array(axes)).received_w
+        ours = received_w / scenario.source_powers_w
+        assert max(ray_tracer.deviations(scenario, poses, ours)) < 1e-12
+        assert max(ray_tracer.deviations(scenario, poses, ours / np.where(is_clear, 1.0, 1e-20))) > 1.0
+
+
+@pytest.mark.parametrize(
+    ("beside_m", "is_near"), [(-2e-3, False), (-5e-4, True), (5e-4, True), (2e-3, False)]
+)
+def test_a_link_near_an_edge_is_left_out(beside_m: float, is_near: bool) -> None:
+    """Within a millimetre of a corner it may be clear for one and blocked for the other."""
+    corner = {"polygon_m": [[0.0, 0.0], [5.0, 5.0], [-5.0, 5.0]], "height_m": 20.0}
+    scene = Scenario.from_arrays(
+        [[-50.0, beside_m, 1.0]], noise_w=1e-3, altitude_m=(1, 30), buildings=[corner]
+    )
+    found = ray_tracer.lines_of_sight(scene, np.array([[50.0, beside_m, 1.0]]))
+    assert [answer.item() for answer in found] == [beside_m < 0.0, is_near]
