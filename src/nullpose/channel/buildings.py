@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -124,11 +125,14 @@ def shadows_of(prisms: Prisms, points_m: FloatArray, is_interferer: NDArray[np.b
     """
     shadows: list[FloatArray] = []
     counts = [0]
+    walls = [prisms.sides[begin:end] for begin, end in pairwise(prisms.start)]
+    corners = list(map(_corners, walls))
     for point_m, is_low in zip(points_m, is_interferer, strict=True):
         roofs_m = prisms.least_height_m if is_low else prisms.most_height_m
         solid = np.flatnonzero(roofs_m > prisms.base_m)
         for index in solid:
-            sides = _shadow(prisms, int(index), roofs_m[index], point_m)
+            ends_m = (prisms.base_m[index], roofs_m[index])
+            sides = _shadow(walls[index], corners[index], ends_m, point_m)
             shadows.append(np.column_stack([sides, sides[:, 3] + (-HAIR_M if is_low else HAIR_M)]))
         counts.append(len(shadows))
     starts = np.cumsum([0, *(len(sides) for sides in shadows)])
@@ -136,18 +140,18 @@ def shadows_of(prisms: Prisms, points_m: FloatArray, is_interferer: NDArray[np.b
     return Shadows(np.array(counts, dtype=np.int64), starts.astype(np.int64), sides)
 
 
-def _shadow(prisms: Prisms, index: int, roof_m: float, point_m: FloatArray) -> FloatArray:
+def _shadow(
+    walls: FloatArray, corners: FloatArray, ends_m: tuple[float, float], point_m: FloatArray
+) -> FloatArray:
     """List the sides of the shadow of one prism, (s, 4)."""
-    base_m = prisms.base_m[index]
-    walls = prisms.sides[prisms.start[index] : prisms.start[index + 1]]
-    corners = _corners(walls)
+    base_m, roof_m = ends_m
     ends = np.array([[0.0, 0.0, 1.0, roof_m], [0.0, 0.0, -1.0, -base_m]])
     faces = np.vstack([np.insert(walls, 2, 0.0, axis=1), ends])
     # what faces the point, or has it in its plane
     kept = [faces[faces[:, :3] @ point_m >= faces[:, 3]]]
     top, bottom = (np.column_stack([corners, np.full(len(corners), z)]) - point_m for z in (roof_m, base_m))
-    edges = [(top, np.roll(top, -1, axis=0)), (bottom, np.roll(bottom, -1, axis=0)), (top, bottom)]
-    normals = np.vstack([np.cross(*edge) for edge in edges])
+    after = [np.roll(end, -1, axis=0) for end in (top, bottom)]
+    normals = np.cross(np.vstack([top, bottom, top]), np.vstack([*after, bottom]))
     normals = np.vstack([normals, -normals])
     length = np.linalg.norm(normals, axis=1)
     normals = normals[length > 0.0] / length[length > 0.0, None]
