@@ -126,6 +126,21 @@ def test_no_machine_shows() -> None:
     assert _hits(MACHINE) == []
 
 
+def test_pages_name_code_that_exists() -> None:
+    """Every Python file that a page names by its folder is there."""
+    texts = {path: text for path, text in _tracked_text().items() if path.suffix == ".md"}
+    named = {
+        (path, name) for path, text in texts.items() for name in re.findall(r"`((?:\w+/)+\w+\.py)`", text)
+    }
+    missing = [
+        (path.name, name)
+        for path, name in named
+        if not any((folder / name).is_file() for folder in (ROOT, SOURCE, path.parent))
+    ]
+    assert named
+    assert missing == []
+
+
 def test_licence_is_the_one_stated() -> None:
     """The licence in the metadata, in CITATION.cff and in LICENSE is the same."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
