@@ -95,6 +95,20 @@ def test_no_line_slips_between_the_pieces_of_a_building() -> None:
             assert not is_inner or is_blocked(prisms, at, [to], prisms.most_height_m).all()
 
 
+@pytest.mark.parametrize("apart_m", [(10.0, 0.0), (10.0, 5.0), (10.0, 10.0)])
+def test_no_line_slips_between_houses_that_touch(apart_m: tuple[float, float]) -> None:
+    """Whether they have a wall in common, a part of one or only a corner; a gap of 1 mm lets it through."""
+    east_m, north_m = apart_m
+    house = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+    walls = [[house, np.add(house, (east_m + gap_m, north_m))] for gap_m in (0.0, 1e-3)]
+    closed, open_ = (prisms_of(pair, [[], []], [0.0, 0.0], [[9.0, 9.0]] * 2) for pair in walls)
+    lines = [([10.0, -30.0, 1.0], [10.0, 50.0, 5.0]), ([10.0005, -30.0, 1.0], [10.0005, 50.0, 5.0])]
+    at, to = lines[0]
+    assert is_blocked(closed, at, [to], closed.most_height_m).all()
+    at, to = lines[1]
+    assert not is_blocked(open_, at, [to], open_.most_height_m).any()
+
+
 def test_the_roof_is_the_one_that_is_asked_for() -> None:
     """Of an interval of heights the upper end blocks more; a building of height 0 blocks nothing."""
     tower = towers((0.0, 0.0), (8.0, 12.0))

@@ -51,6 +51,54 @@ def test_the_example_is_certified_to_the_default_gap() -> None:
     assert (scenario.source_channels.blocked_gain(position_m, points_m) == 1.0).all()
 
 
+@pytest.mark.parametrize("seed", [66, 81, 160])
+def test_streets_of_houses_that_touch_are_certified(seed: int) -> None:
+    """Where shadows meet in a point, at a corner or along a common wall, no smaller box tells them apart.
+
+    These scenes were left open before points in them were looked at together.
+    """
+    result = solve(street(seed), gap=1e-2, node_limit=50_000)
+    assert result.status == "certified"
+
+
+def street(seed: int) -> Scenario:
+    """Return a scene of low flight in a street of houses that share walls or corners."""
+    rng = np.random.default_rng(50_000 + seed)
+    nodes, jammers = int(rng.integers(2, 5)), int(rng.integers(1, 4))
+    cells = [(i, j) for i in range(4) for j in range(4)]
+    rng.shuffle(cells)
+    side_m = rng.choice([10.0, 12.0], 1)[0]
+    pitch_m = rng.choice([side_m, side_m + 3.0, side_m + 6.0])
+    square_m = side_m * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    houses = []
+    for cell in cells[: int(rng.integers(4, 10))]:
+        low_m = rng.uniform(5, 18)
+        high_m = low_m + rng.choice([0.0, 3.0])
+        corners_m = pitch_m * np.array(cell) + square_m
+        houses.append(
+            {"polygon_m": corners_m.tolist(), "height_m": [low_m, high_m] if high_m > low_m else low_m}
+        )
+    points_m: list[list[float]] = []
+    while len(points_m) < nodes + jammers:
+        place_m = rng.uniform(-10, 4 * pitch_m + 10, 2)
+        corners = [np.array(house["polygon_m"]) for house in houses]
+        if all(np.any((place_m < c[0] - 0.5) | (place_m > c[2] + 0.5)) for c in corners):
+            points_m.append([*place_m, 1.0])
+    channels = [
+        {"model": "power-law", "exponent": 3.0},
+        {"model": "elevation", "environment": "suburban", "average": "power"},
+        {"model": "free-space"},
+    ]
+    return Scenario.from_arrays(
+        points_m[:nodes],
+        points_m[nodes:],
+        noise_w=1e-4,
+        altitude_m=(3, 30),
+        channel={"blocked_loss_db": float(rng.choice([10.0, 20.0, 30.0]))} | channels[seed % 3],
+        buildings=houses,
+    )
+
+
 def test_buildings_of_height_0_change_nothing(paper: Callable[[float], Scenario]) -> None:
     """Neither value nor bound nor pose."""
     flat = solve(among(paper(1.0), TOWER | {"height_m": 0.0}), gap=1e-4)

@@ -14,7 +14,7 @@ from nullpose.channel.convex import FloatArray, convex_parts, edges_of, joined
 TOUCHING_M = 1e-9
 """What enters a prism by less than this touches it only [m]."""
 OVERLAP_M = 1e-6
-"""How far the pieces of a building reach into each other, so that no line slips between them [m]."""
+"""How far walls that touch reach into each other, so that no line slips between them [m]."""
 HAIR_M = 1e-5
 """How far off the edge of a shadow a pose is found, so that the line of sight is sure there [m]."""
 _BLOCK = 2_000_000  # numbers of an array
@@ -64,16 +64,13 @@ def prisms_of(
                [ 0.,  1., 10.],
                [-1.,  0.,  0.]])
     """
-    pieces = [
-        (index, sides)
-        for index, (outline_m, courtyards) in enumerate(zip(outlines_m, courtyards_m, strict=True))
-        for sides in _overlapping(joined(convex_parts(outline_m, courtyards)))
-    ]
-    building = np.array([index for index, _ in pieces], dtype=np.int64)
+    parts = [joined(convex_parts(*plan)) for plan in zip(outlines_m, courtyards_m, strict=True)]
+    building = np.repeat(np.arange(len(parts)), [len(pieces) for pieces in parts])
+    pieces = _overlapping(parts, building) if parts else []
     least_m, most_m = np.asarray(heights_m, dtype=np.float64).reshape(-1, 2)[building].T
     return Prisms(
-        np.cumsum([0, *(len(sides) for _, sides in pieces)]).astype(np.int64),
-        np.vstack([np.zeros((0, 3)), *(sides for _, sides in pieces)]),
+        np.cumsum([0, *map(len, pieces)]).astype(np.int64),
+        np.vstack([np.zeros((0, 3)), *pieces]),
         np.asarray(bases_m, dtype=np.float64).reshape(-1)[building],
         least_m,
         most_m,
@@ -81,13 +78,29 @@ def prisms_of(
     )
 
 
-def _overlapping(parts: Sequence[FloatArray]) -> list[FloatArray]:
-    """List the sides of each convex part of a polygon, those between two parts moved outwards."""
-    edges = [edges_of([tuple(vertex) for vertex in part.tolist()]) for part in parts]
-    known = {edge for part_edges in edges for edge in part_edges}
+def _overlapping(parts: Sequence[Sequence[FloatArray]], building: NDArray[np.int64]) -> list[FloatArray]:
+    """List the sides of the convex parts of all buildings, those moved outwards where parts touch.
+
+    Of one building these are the sides that two parts have in common, and of several all sides that touch
+    another building.
+    """
+    import shapely
+
+    pieces = [piece for part in parts for piece in part]
+    edges = [
+        [(int(index), edge) for edge in edges_of([tuple(vertex) for vertex in piece.tolist()])]
+        for index, piece in zip(building, pieces, strict=True)
+    ]
+    walls = [wall for piece in edges for wall in piece]
+    known = set(walls)
+    touches = np.array([(index, edge[::-1]) in known for index, edge in walls])
+    tree = shapely.STRtree([shapely.Polygon(piece) for piece in pieces])
+    lines = shapely.linestrings(np.reshape([edge for _, edge in walls], (-1, 2, 2)))
+    wall, piece = tree.query(lines, predicate="dwithin", distance=OVERLAP_M)
+    touches[wall[np.array([index for index, _ in walls])[wall] != building[piece]]] = True
+    moved_m = np.split(OVERLAP_M * touches, np.cumsum([len(piece) for piece in pieces])[:-1])
     return [
-        _sides(part) + [[0.0, 0.0, OVERLAP_M * ((end, begin) in known)] for begin, end in part_edges]
-        for part, part_edges in zip(parts, edges, strict=True)
+        _sides(piece) + np.outer(by_m, [0.0, 0.0, 1.0]) for piece, by_m in zip(pieces, moved_m, strict=True)
     ]
 
 

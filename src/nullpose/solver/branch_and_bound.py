@@ -82,6 +82,8 @@ class BranchAndBound(ABC):
                     return f"the time limit of {self.limits.time_limit_s:g} s"
                 if self.nodes >= until:
                     return f"the node limit of {self.limits.node_limit}"
+                if workers.stuck:
+                    return "shadows of buildings that meet in one point"
                 budget = min(self.chunk, until - self.nodes)
                 self.nodes += workers.work(self.exclusion_kernel(gap), budget, pool)
                 for position_m, orientation in workers.better():

@@ -41,7 +41,7 @@ class _Worker:
         self.stack, self.leaves = np.empty((rows + _DEPTH, columns)), np.empty((_FIRST, columns))
         self.top = self.filled = 0
         self.position_m, self.orientation = np.empty(3), np.empty(orientation)
-        self.better = False
+        self.better = self.stuck = False
         self.take(nodes)
 
     def take(self, nodes: FloatArray) -> None:
@@ -59,10 +59,10 @@ class _Worker:
 
     def work(self, kernel: Kernel, budget: int) -> int:
         """Work off a budget of nodes, or less if one beats the incumbent; return how many it was."""
-        from nullpose.solver.kernels.bounds.branch import BETTER
+        from nullpose.solver.kernels.bounds.branch import BETTER, STUCK
 
-        self.better, total = False, 0
-        while self.top and total < budget and not self.better:
+        self.better, self.stuck, total = False, False, 0
+        while self.top and total < budget and not (self.better or self.stuck):
             if self.top + _SPARE > len(self.stack):
                 _make_room(self.stack, self.top + self.top // 2 + _SPARE)
             if self.filled == len(self.leaves):
@@ -72,7 +72,7 @@ class _Worker:
                 *stacks, budget - total, self.position_m, self.orientation
             )
             total += done
-            self.better = code == BETTER
+            self.better, self.stuck = code == BETTER, code == STUCK
         return total
 
 
@@ -100,6 +100,11 @@ class WorkerPool:
     def done(self) -> bool:
         """Whether no node is left."""
         return not any(worker.top for worker in self._workers)
+
+    @property
+    def stuck(self) -> bool:
+        """Whether all nodes that are left are too small to tell more."""
+        return not self.done and all(worker.stuck or not worker.top for worker in self._workers)
 
     @property
     def filled(self) -> int:

@@ -46,7 +46,7 @@ JUST_BELOW = 1.0 - 1e-9
 def examined(family, domain, axis_field, favourite, row, axis):
     """Returns what becomes of a node: the kernel itself has no Python name."""
     goal = Goal(np.inf, favourite, 0.0)
-    return examine(family, domain, axis_field, goal, row, workspace_of(family), axis)[0]
+    return examine(family, domain, axis_field, goal, -1, row, workspace_of(family), axis)[0]
 
 
 @dataclass(frozen=True, kw_only=True)

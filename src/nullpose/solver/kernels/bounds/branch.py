@@ -41,7 +41,7 @@ from nullpose.solver.kernels.bounds.node import (
     split_position,
 )
 from nullpose.solver.kernels.bounds.records import Workspace
-from nullpose.solver.kernels.bounds.sight import in_sight
+from nullpose.solver.kernels.bounds.sight import hidden_nowhere, in_sight
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import most_excess
@@ -51,7 +51,7 @@ from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import corner_of, fill_affine, norm, store
 from nullpose.solver.kernels.search.domain import contains
 
-DONE, LIMIT, FULL = 0, 1, 2  # why a run over a stack ended; or BETTER
+DONE, LIMIT, FULL, STUCK = 0, 1, 2, 5  # why a run over a stack ended; or BETTER
 EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes of a node
 
 _HALVINGS = 3
@@ -61,10 +61,11 @@ _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split un
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
 _APART_M = 1e-3
+_POINT_M = 1e-7  # half diagonal of boxes where shadows meet in a point: smaller ones tell no more
 
 
 @small_kernel
-def examine(family, domain, axis_field, goal, row, workspace, axis):
+def examine(family, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, whether multipliers were sought).
 
     Fills the node's kind, its multipliers, and an axis if it beats the best.
@@ -85,12 +86,12 @@ def examine(family, domain, axis_field, goal, row, workspace, axis):
     if axis_field.kind == AFFINE_AXIS:
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
-            return examine_affine(family, domain, axis_field, goal, row, workspace, axis)
+            return examine_affine(family, domain, axis_field, goal, seen, row, workspace, axis)
     if axis_field.kind >= BAND_AXIS and off_band(axis_field.offset, row):
         row[KIND] = OFF_BAND
         return EXCLUDED, side, 0
     coarseness = _COARSENESS * radius / nearest
-    verdict, sought = examine_free(family, domain, axis_field, goal, row, coarseness, workspace, axis)
+    verdict, sought = examine_free(family, domain, axis_field, goal, seen, row, coarseness, workspace, axis)
     return verdict, side, sought
 
 
@@ -132,10 +133,10 @@ def beats_from(whole, domain, row, value, best, workspace, axis):
 
 
 @inner_kernel
-def examine_free(whole, domain, axis_field, goal, row, coarseness, workspace, axis):
+def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspace, axis):
     """Examine a box whose axis is free; return the verdict and how often multipliers were sought."""
     centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    basis, family = scratch(3, 3), in_sight(whole, row, workspace)
+    basis, family = scratch(3, 3), in_sight(whole, domain, seen, row, workspace)
     is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
@@ -199,9 +200,9 @@ def lone_ratio(family, row, below):
 
 
 @inner_kernel
-def examine_affine(whole, domain, axis_field, goal, row, workspace, axis):
+def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
-    half, family = row[HALF:LEVEL], in_sight(whole, row, workspace)
+    half, family = row[HALF:LEVEL], in_sight(whole, domain, seen, row, workspace)
     jet, below, total = scratch(JET), workspace.jets, scratch(JET)
     denominator_jet(family, axis_field, row, jet, below)
     row[KIND] = AFFINE
@@ -285,8 +286,9 @@ def branch(
         (code, top, filled, boxes worked off, boxes in which new multipliers were sought).
     """
     workspace, row, axis = workspace_of(family), scratch(COLUMNS), zeroed(3)
-    boxes = sought = 0
-    while top > 0:
+    boxes = sought = aside = 0
+    has_shadows = family.shadow_sides.shape[0] > 0
+    while top > aside:
         if boxes >= most:
             copy_into(row[CENTRE:HALF], better_p)
             for m in range(3):
@@ -298,8 +300,23 @@ def branch(
         top -= 1
         copy_into(stack[top], row)
         row[LEVEL] = level
-        verdict, side, new = examine(family, domain, axis_field, goal, row, workspace, axis)
-        sought += new
+        seen, hidden, verdict = -1, 0, EXCLUDED
+        while True:  # as it is; then, where some interferers are never hidden together, with each in sight
+            found, side, new = examine(family, domain, axis_field, goal, seen, row, workspace, axis)
+            sought += new
+            if seen < 0:
+                verdict = found
+                if has_shadows and found != EXCLUDED and found != BETTER:
+                    hidden = hidden_nowhere(family, family.channels, domain, row)
+            if hidden == 0 or (seen >= 0 and found != EXCLUDED):
+                if seen >= 0 and found == EXCLUDED:
+                    verdict = EXCLUDED
+                break
+            entry = 0
+            while not hidden >> entry & 1:
+                entry += 1
+            hidden &= hidden - 1
+            seen = family.denominator_point[entry]
         if verdict == EXCLUDED:
             copy_into(row, leaves[filled])
             filled += 1
@@ -309,8 +326,12 @@ def branch(
             return BETTER, top + 1, filled, boxes, sought
         elif verdict == BY_AXIS:
             top = split_axis(row, has_horizontal_axes(axis_field), stack, top)
+        elif has_shadows and norm(row[HALF:LEVEL]) < _POINT_M:
+            copy_into(stack[aside], stack[top])
+            copy_into(row, stack[aside])
+            aside, top = aside + 1, top + 1
         elif verdict == FORESEEN:
             top = split_foreseen(row, side, workspace, has_horizontal_axes(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)
-    return DONE, top, filled, boxes, sought
+    return (STUCK if aside > 0 else DONE), top, filled, boxes, sought
