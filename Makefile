@@ -55,6 +55,7 @@ figures: .venv/.with-core ## the pictures and the claims that README and pages s
 	$(BIN)/python docs/figures/airframes_data.py
 	$(BIN)/python docs/figures/airframes.py
 	$(BIN)/python docs/figures/channels.py
+	$(BIN)/python docs/figures/least_tilt.py
 
 clean: ## take away .venv, out and docs/_build
 	rm -rf .venv out docs/_build

@@ -58,6 +58,7 @@ from .study import (
     ResultTable as ResultTable,
     compare_airframes as compare_airframes,
     evaluate_against as evaluate_against,
+    least_tilt as least_tilt,
     poses_from_csv as poses_from_csv,
     sweep as sweep,
     value_map as value_map,

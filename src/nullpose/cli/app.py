@@ -21,6 +21,7 @@ from nullpose.cli.studio import studio
 from nullpose.cli.study import study
 from nullpose.cli.study_report import report
 from nullpose.cli.sweep import sweep
+from nullpose.cli.vehicle import vehicle
 from nullpose.cli.verify import verify
 
 app = typer.Typer(
@@ -58,7 +59,7 @@ def nullpose(
     """
 
 
-for _verb in (solve, compare, sweep, evaluate, verify, reproduce, studio, check, schema):
+for _verb in (solve, compare, vehicle, sweep, evaluate, verify, reproduce, studio, check, schema):
     app.command()(_verb)
 app.command("map")(best_map)
 study.command()(report)

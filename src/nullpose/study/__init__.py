@@ -4,6 +4,7 @@ from nullpose.study.antenna_comparison import compare_antennas
 from nullpose.study.case import AIRFRAME_CASES, Case
 from nullpose.study.evaluation import Evaluation, GivenDetails, evaluate_against
 from nullpose.study.field import Field
+from nullpose.study.least_tilt import LeastTilt, MountTilt, least_tilt
 from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.sweep import spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
@@ -25,6 +26,8 @@ __all__ = [
     "Field",
     "GivenDetails",
     "Guaranteed",
+    "LeastTilt",
+    "MountTilt",
     "ResultRow",
     "ResultTable",
     "cases_of",
@@ -34,6 +37,7 @@ __all__ = [
     "difference",
     "evaluate_against",
     "least_sufficient",
+    "least_tilt",
     "poses_from_csv",
     "share",
     "spaced",

@@ -1,0 +1,75 @@
+"""The verb ``vehicle``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from nullpose.cli.options import FigureFile, JsonOutput, SceneOptions, Seed, TimeLimit, Width, expanded
+from nullpose.cli.output import compiling_announced, prepare_outputs, tell
+from nullpose.cli.progress import Ticker
+
+
+@expanded
+def vehicle(
+    *,
+    scene: SceneOptions,
+    reach: Annotated[
+        float | None,
+        typer.Option(
+            "--reach",
+            metavar="SHARE",
+            help="The share of the omnidirectional value that suffices, at most 1.",
+            show_default="0.99",
+        ),
+    ] = None,
+    loss_db: Annotated[
+        float | None,
+        typer.Option(
+            "--loss-db", metavar="DB", help="Or the loss that is allowed, in dB.", show_default=False
+        ),
+    ] = None,
+    mount: Annotated[
+        str,
+        typer.Option(
+            "--mount",
+            metavar="DEG,DEG",
+            help="Mounts of the antenna: angles from the body's vertical, 0 upright, 90 flat; or best, for "
+            "the mount that needs least tilt alone.",
+        ),
+    ] = "0,45,90",
+    figure: FigureFile = None,
+    width: Width = None,
+    time_limit: TimeLimit = 60.0,
+    seed: Seed = 0,
+    json_output: JsonOutput = False,
+) -> None:
+    """Find the least tilt that a vehicle needs.
+
+    For each mount of the antenna: a tilt with which a pose reaches the target, and one .1 degree below with
+    which none does.
+    """
+    from nullpose.report.vehicle import vehicle_view
+    from nullpose.study.least_tilt import least_tilt, mounts_of, share_of, values_by_angle
+
+    share, mounts_deg = share_of(reach, loss_db), mounts_of(mount)
+    scenario = scene.read()
+    prepare_outputs(scene, figure=figure, width=width)
+    with compiling_announced(), Ticker("least tilt") as ticker:
+        found = least_tilt(
+            scenario,
+            share=share,
+            mounts_deg=mounts_deg,
+            on_progress=ticker,
+            time_limit_s=time_limit,
+            seed=seed,
+        )
+    if figure is not None:
+        from nullpose.report.figures.style import write_figure_file
+        from nullpose.report.figures.vehicle import draw_least_tilt
+
+        with compiling_announced(), Ticker("values by axis angle") as ticker:
+            values = values_by_angle(found, on_progress=ticker, time_limit_s=time_limit, seed=seed)
+        write_figure_file(draw_least_tilt(found, values, width), figure)
+    tell(found, vehicle_view, json_output, files=[] if figure is None else [figure])

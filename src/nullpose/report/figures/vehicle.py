@@ -1,0 +1,88 @@
+"""The figure of the least tilt: what each mount reaches by its tilt, and the loss by tilt and mount."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from nullpose.objectives import FloatArray
+from nullpose.report.figures.style import GREY, INK, house_style, inches
+from nullpose.study.least_tilt import LeastTilt
+
+_TILTS_DEG, _MOUNTS_DEG = np.linspace(0.0, 90.0, 181), np.linspace(0.0, 90.0, 91)
+_FINE_DEG, _HALF_STEP_DEG = np.linspace(0.0, 90.0, 361), 0.126  # every quarter of a degree
+_LOSSES_DB = (0.05, 0.5, 1.0, 3.0)
+_LINES = (INK, INK, INK, "white")  # the last is on dark ground
+_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+_LEAST = 1e-3  # share that is drawn
+
+
+def draw_least_tilt(
+    found: LeastTilt, values: tuple[FloatArray, FloatArray], width: str | None = None
+) -> Figure:
+    """Draw the share that each mount reaches against the tilt, and the loss by tilt and mount.
+
+    Args:
+        found: the least tilt of several mounts.
+        values: angles from the vertical [deg] and the best values there.
+        width: a key of ``WIDTHS_MM``; None for screens.
+    """
+    angles_deg, shares = values[0], values[1] / found.omnidirectional.objective.value
+    with house_style(width):
+        is_column = width == "column"
+        size = inches((9.0, 4.0), width, 1.6 if is_column else 0.45)
+        figure = Figure(figsize=size, layout="constrained")
+        first, second = figure.subplots(2, 1) if is_column else figure.subplots(1, 2)
+        _draw_shares(first, found, angles_deg, shares)
+        _draw_losses(second, angles_deg, shares)
+        if width is None:
+            figure.suptitle(found.omnidirectional.scenario.name, fontweight="bold", parse_math=False)
+    return figure
+
+
+def reached(
+    angles_deg: FloatArray, shares: FloatArray, tilts_deg: FloatArray, mount_deg: float
+) -> FloatArray:
+    """Find the best share within each tilt of a mount, (t,): at the angles from m - t to m + t.
+
+    Between the angles the share is interpolated.
+    """
+    order = np.argsort(angles_deg)
+    between = np.interp(_FINE_DEG, angles_deg[order], shares[order])
+    within = np.abs(_FINE_DEG - mount_deg)[None] <= tilts_deg[:, None] + _HALF_STEP_DEG
+    return np.asarray(np.where(within, between, 0.0).max(axis=1))
+
+
+def _draw_shares(axes: Axes, found: LeastTilt, angles_deg: FloatArray, shares: FloatArray) -> None:
+    best = [] if found.best is None or found.mounts else [found.best]
+    for mount, colour in zip((*found.mounts, *best), np.resize(_COLOURS, 99), strict=False):
+        curve = reached(angles_deg, shares, _TILTS_DEG, mount.mount_deg)
+        axes.plot(_TILTS_DEG, curve, color=colour, label=f"mount {mount.mount_deg:.4g}°")
+        if mount.suffices_deg is not None:
+            axes.plot(mount.suffices_deg, found.share, "o", color=colour, markersize=5.0, zorder=4.0)
+        if mount.fails_deg is not None:
+            axes.plot(mount.fails_deg, found.share, "|", color=colour, markersize=11.0, zorder=4.0)
+    axes.axhline(found.share, color=GREY, linewidth=0.9, linestyle="--")
+    axes.set_xlim(0.0, 90.0)
+    axes.set_ylim(None, 1.02)
+    axes.set_xlabel("largest tilt (deg)")
+    axes.set_ylabel("share of the omnidirectional value")
+    axes.legend(frameon=False, loc="lower right")
+    axes.set_title(f"dot: suffices for {found.share:.4g}; bar: proved too little", fontsize="small")
+
+
+def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None:
+    table = np.array([reached(angles_deg, shares, _TILTS_DEG, mount) for mount in _MOUNTS_DEG])
+    loss_db = -10.0 * np.log10(np.maximum(table, _LEAST))
+    shown = axes.pcolormesh(
+        _TILTS_DEG, _MOUNTS_DEG, loss_db, cmap="viridis_r", vmin=0.0, vmax=3.0, rasterized=True
+    )
+    lines = axes.contour(_TILTS_DEG, _MOUNTS_DEG, loss_db, levels=_LOSSES_DB, colors=_LINES, linewidths=0.9)
+    middles = [max(parts, key=len) for parts in lines.allsegs if parts]
+    places = [tuple(part[len(part) // 2]) for part in middles]
+    axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=places)
+    axes.set_xlabel("largest tilt (deg)")
+    axes.set_ylabel("mount of the antenna (deg)")
+    axes.set_title("loss against an omnidirectional vehicle", fontsize="small")
+    axes.figure.colorbar(shown, ax=axes, label="dB", extend="max")

@@ -1,0 +1,73 @@
+"""The least tilt that a scene needs: both sides for each mount, and the answer in words."""
+
+from __future__ import annotations
+
+from nullpose.objectives import Quantity
+from nullpose.report.certainty import rigour_lines
+from nullpose.report.document import View, document, head, rows, table
+from nullpose.study.least_tilt import LeastTilt, MountTilt
+
+
+def vehicle_view(found: LeastTilt) -> View:
+    """Set a row for each mount, and what it takes in words."""
+    quantity = found.omnidirectional.objective.quantity
+    mounts = [*found.mounts, *([] if found.best is None else [found.best])]
+    cells = rows(
+        {
+            "mount (deg)": [
+                f"{each.mount_deg:.4g}{' best' if each is found.best else ''}" for each in mounts
+            ],
+            "least tilt (deg)": [_number(each.suffices_deg, ".1f") for each in mounts],
+            f"value ({quantity.unit})": [_value(quantity, each.value) for each in mounts],
+            "too little (deg)": [_number(each.fails_deg, ".1f") for each in mounts],
+            f"bound there ({quantity.unit})": [_value(quantity, each.upper_bound) for each in mounts],
+        }
+    )
+    whole = found.omnidirectional.objective.value
+    lines = [
+        f"Target: {found.share:.7g} of the {quantity.smallest} of a vehicle that takes any attitude, "
+        f"{quantity.in_unit(found.target):.4f} of {quantity.in_unit(whole):.4f} {quantity.unit}.",
+        "Mount: angle between the antenna and the body's vertical, 0 upright, 90 flat. Yaw is free.",
+        "Least tilt: a pose with it reaches the target. Too little: with that tilt no pose does.",
+        *rigour_lines([("bounds", found.rigour)]),
+    ]
+    name = found.omnidirectional.scenario.name
+    return document(
+        head(name), "", table("Tilt that suffices", cells), "\n".join(lines), "", head(answer(found))
+    )
+
+
+def answer(found: LeastTilt) -> str:
+    """Say in a sentence or two what vehicle suffices, of those with the mounts that were looked at."""
+    sentences = [_sentence(mount) for mount in found.mounts]
+    if found.best is not None:
+        mount = f"the antenna mounted at {found.best.mount_deg:.4g} degrees"
+        if found.best.suffices_deg == 0.0:
+            sentences.append(f"With {mount}, a level vehicle suffices for this scene.")
+        else:
+            sentences.append(
+                f"Of all mounts looked at, {_sentence(found.best)[0].lower()}{_sentence(found.best)[1:]}"
+            )
+    return "\n".join(sentences)
+
+
+def _sentence(mount: MountTilt) -> str:
+    at = f"mounted at {mount.mount_deg:.4g} degrees"
+    if mount.suffices_deg is None:
+        return f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt."
+    if mount.suffices_deg == 0.0:
+        return f"An antenna {at} needs no tilt: a level vehicle suffices."
+    if mount.fails_deg is None:
+        return f"An antenna {at} needs at most {mount.suffices_deg:.1f} degrees of tilt."
+    return (
+        f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt; "
+        f"{mount.suffices_deg:.1f} degrees suffice."
+    )
+
+
+def _number(number: float | None, digits: str) -> str | None:
+    return None if number is None else f"{number:{digits}}"
+
+
+def _value(quantity: Quantity, value: float | None) -> str | None:
+    return None if value is None else f"{quantity.in_unit(value):.4f}"

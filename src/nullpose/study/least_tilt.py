@@ -1,0 +1,332 @@
+"""The least vehicle that suffices: for each mount of the antenna, the least tilt with a good enough pose.
+
+More tilt never lowers the best value, since it allows more axes. So the tilts that suffice begin at one
+angle. Each solve shows that its tilt suffices, by a pose, or that it does not, by its upper bound.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Unpack
+
+import numpy as np
+
+from nullpose.errors import SolveError, UsageError
+from nullpose.files import PlainTable
+from nullpose.objectives import FloatArray, Quantity
+from nullpose.physics import Pose, evaluate
+from nullpose.scenario import Airframe, Scenario, require_scenario
+from nullpose.solver import Result, SolveKeywords, Status, solve
+from nullpose.solver.rigour import Rigour
+
+MOUNTS_DEG = (0.0, 45.0, 90.0)
+"""The mounts that are looked at unless others are stated."""
+STEP_DEG = 0.1
+"""How near a tilt that suffices and one that does not come to each other."""
+_MOST_STEPS = 1800
+_GRID_DEG = 5.0  # of the best mount, where one on it needs no more tilt than any other
+_GAPS = 1e-8, 1e-3  # least and widest gap of a solve
+_WIDEST_GAP, _SHARES = 10.0, (0.9, 0.5, 0.1)  # of what is missing to the target: the gaps of proofs
+_ANGLES = 46  # of a figure, every 2 degrees
+_ROUNDING = 1e-12  # relative, of a value that is evaluated twice
+_SAME_TILT = 1e-6  # of a step, likewise
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MountTilt:
+    """The tilts that a mount of the antenna takes.
+
+    Args:
+        mount_deg: angle between the antenna and the body's vertical.
+        suffices_deg: a tilt with which a pose reaches the target; None if none was found.
+        value: of that pose.
+        pose: that pose.
+        fails_deg: a tilt with which no pose reaches the target; None where a level vehicle suffices.
+        upper_bound: that no pose with that tilt exceeds.
+    """
+
+    mount_deg: float
+    suffices_deg: float | None = None
+    value: float | None = None
+    pose: Pose | None = None
+    fails_deg: float | None = None
+    upper_bound: float | None = None
+
+    def to_dict(self) -> PlainTable:
+        """Write the two sides as plain data."""
+        keys = ("mount_deg", "suffices_deg", "value", "fails_deg", "upper_bound")
+        return {key: getattr(self, key) for key in keys}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LeastTilt:
+    """The least tilt for several mounts, and the mount that needs least.
+
+    Args:
+        share: of the omnidirectional value that is to be reached.
+        omnidirectional: the best pose of a vehicle that takes any attitude.
+        mounts: the two sides of each mount.
+        best: those of the mount that needs least tilt; None for an antenna that has no axis.
+        rigour: of the least sure bound.
+        seconds: how long it took.
+    """
+
+    share: float
+    omnidirectional: Result
+    mounts: tuple[MountTilt, ...]
+    best: MountTilt | None
+    rigour: Rigour
+    seconds: float
+
+    @property
+    def target(self) -> float:
+        """The value that is to be reached."""
+        return self.share * self.omnidirectional.objective.value
+
+    def to_dict(self) -> PlainTable:
+        """Write everything but the poses as plain data for JSON."""
+        value = self.omnidirectional.objective.value
+        return {
+            "target": {"share": self.share, "value": self.target, "omnidirectional_value": value},
+            "mounts": [mount.to_dict() for mount in self.mounts],
+            "best": None if self.best is None else self.best.to_dict(),
+            "rigour": str(self.rigour),
+            "seconds": self.seconds,
+        }
+
+
+def least_tilt(
+    scenario: Scenario,
+    *,
+    share: float = 0.99,
+    mounts_deg: Sequence[float] = MOUNTS_DEG,
+    on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
+) -> LeastTilt:
+    """Find the least tilt with which a vehicle reaches a share of the omnidirectional value.
+
+    Of every mount, and of the best one. A level vehicle with free yaw reaches every axis at the angle of its
+    mount, so the mount of the best pose needs no tilt at all.
+
+    Args:
+        scenario: what is asked for; its airframe and its array are left out.
+        share: of the value (a power ratio or a rate) of the vehicle that takes any attitude, at most 1.
+        mounts_deg: angles between the antenna and the body's vertical, 0 to 90; none for the best one alone.
+        on_progress: called with how many mounts are done and how many there are.
+        options: as for :func:`nullpose.solve`; the gap is chosen by the share unless it is stated.
+
+    Raises:
+        UsageError: a share or a mount that is not allowed.
+        SolveError: no pose of the omnidirectional vehicle reaches every node.
+
+    Example:
+        >>> import nullpose
+        >>> found = nullpose.least_tilt(nullpose.load("examples/paper.toml"))
+        >>> [(mount.mount_deg, mount.suffices_deg) for mount in found.mounts]
+        [(0.0, 74.5), (45.0, 29.5), (90.0, 4.5)]
+        >>> found.best.mount_deg, found.best.suffices_deg
+        (80.0, 0.0)
+    """
+    require_scenario(scenario)
+    if not 0.0 < share <= 1.0:
+        raise UsageError(f"share: given {share!r}; allowed: above 0 to 1, of the omnidirectional value")
+    for mount_deg in mounts_deg:
+        if not 0.0 <= mount_deg <= 90.0:
+            raise UsageError(f"mount: given {mount_deg!r} degrees; allowed: 0 (upright) to 90 (flat)")
+    if not mounts_deg and not scenario.antenna_record.is_axisymmetric:
+        raise UsageError(
+            f"mount: given best with a {scenario.antenna_record.label}, which has no axis; state mounts in "
+            "degrees"
+        )
+    began, total = time.perf_counter(), len(mounts_deg) + 1
+    if options.get("gap") is None:
+        options["gap"] = min(max(0.1 * (1.0 - share), _GAPS[0]), _GAPS[1])
+    search = _Search(scenario.without_array.model_copy(update={"airframe": None}), share, options)
+    mounts = []
+    for done, mount_deg in enumerate(mounts_deg, start=1):
+        mounts.append(search.sides(mount_deg))
+        if on_progress is not None:
+            on_progress(done, total)
+    best = search.best() if scenario.antenna_record.is_axisymmetric else None
+    if on_progress is not None:
+        on_progress(total, total)
+    return LeastTilt(
+        share=share,
+        omnidirectional=search.whole,
+        mounts=tuple(mounts),
+        best=best,
+        rigour=max(search.rigours, key=list(Rigour).index),
+        seconds=time.perf_counter() - began,
+    )
+
+
+def share_of(reach: float | None, loss_db: float | None) -> float:
+    """Choose the share that suffices: stated, by a loss in dB, or 0.99.
+
+    Raises:
+        UsageError: both are stated, or one that is not allowed.
+    """
+    if reach is not None and loss_db is not None:
+        raise UsageError(f"--reach: given {reach:g} with --loss-db {loss_db:g}; leave out one of the two")
+    if loss_db is not None:
+        if not 0.0 < loss_db < math.inf:
+            raise UsageError(f"--loss-db: given {loss_db!r}; allowed: more than 0 dB, as in 0.05")
+        return float(10.0 ** (-loss_db / 10.0))
+    return 0.99 if reach is None else reach
+
+
+def mounts_of(text: str) -> tuple[float, ...]:
+    """Read mounts such as ``0,45,90``, or none from ``best``.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    if text.strip() == "best":
+        return ()
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise UsageError(
+            f"--mount: given {text!r}; allowed: angles in degrees from 0 to 90, as in 0,45,90, or best"
+        ) from None
+
+
+def values_by_angle(
+    found: LeastTilt,
+    *,
+    on_progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[SolveKeywords],
+) -> tuple[FloatArray, FloatArray]:
+    """Find the best value at each angle between the antenna and the vertical: what a level vehicle reaches.
+
+    With a tilt t and a mount m a vehicle reaches the angles from m - t to m + t, and the best value of these.
+
+    Args:
+        found: with the scenario.
+        on_progress: called with how many angles are done and how many there are.
+        options: as for :func:`nullpose.solve`; the gap is 1e-3 unless it is stated.
+
+    Returns:
+        Angles [deg] and values, (n,) each; the best pose's angle is one of them.
+
+    Raises:
+        UsageError: the antenna is not the same all round its axis and upside down.
+    """
+    scenario = found.omnidirectional.scenario
+    antenna = scenario.antenna_record
+    if not (antenna.is_axisymmetric and antenna.is_even):
+        raise UsageError(
+            f"--figure: given a {antenna.label}; allowed: an antenna that is the same all round its axis and "
+            "upside down"
+        )
+    angles_deg, values = np.linspace(0.0, 90.0, _ANGLES), []
+    for done, angle_deg in enumerate(angles_deg.tolist(), start=1):
+        level = Airframe(tilt_max_deg=0.0, mount_deg=angle_deg)
+        options.setdefault("gap", _GAPS[1])
+        try:
+            result = solve(scenario.model_copy(update={"airframe": level}), **options)
+            values.append(result.objective.value)
+        except SolveError:  # no pose at that angle reaches every node
+            values.append(0.0)
+        if on_progress is not None:
+            on_progress(done, len(angles_deg))
+    best_deg = angle_from_vertical_deg(found.omnidirectional)
+    return np.append(angles_deg, best_deg), np.append(values, found.omnidirectional.objective.value)
+
+
+def angle_from_vertical_deg(result: Result) -> float:
+    """Measure the angle between the antenna and the vertical [deg]; folded where both ends are alike."""
+    upwards = float(result.pose.antenna_axis[2])
+    upwards = abs(upwards) if result.scenario.antenna_record.is_even else upwards
+    return math.degrees(math.acos(min(1.0, max(-1.0, upwards))))
+
+
+class _Search:
+    """The solves of one scenario without an airframe."""
+
+    def __init__(self, scenario: Scenario, share: float, options: SolveKeywords) -> None:
+        self.scenario, self.options = scenario, options
+        self.whole = solve(scenario, **options)
+        self.target = share * self.whole.objective.value
+        self.rigours = {self.whole.objective.rigour}
+
+    def on(self, steps: int, mount_deg: float) -> Scenario:
+        """Put a vehicle of so much tilt into the scenario."""
+        airframe = Airframe(tilt_max_deg=round(steps * STEP_DEG, 6), mount_deg=mount_deg)
+        return self.scenario.model_copy(update={"airframe": airframe})
+
+    def sides(self, mount_deg: float) -> MountTilt:
+        """Find a tilt that suffices and one that does not, as near to each other as may be."""
+        good = self.reused(self.whole, mount_deg)
+        least, most, bound, steps = _MOST_STEPS if good is None else good[0], -1, None, 0
+        while least - most > 1:
+            result = self.solved(steps, mount_deg)
+            other = None if result is None else self.reused(result, mount_deg)
+            if other is not None:
+                least, good = min(other[0], steps), other
+            elif result is None or self.is_below(result):
+                most, bound = steps, 0.0 if result is None else result.objective.upper_bound
+            else:
+                break
+            steps = (least + most) // 2
+        return MountTilt(
+            mount_deg=mount_deg,
+            suffices_deg=None if good is None else round(least * STEP_DEG, 6),
+            value=None if good is None else good[1],
+            pose=None if good is None else good[2],
+            fails_deg=None if most < 0 else round(most * STEP_DEG, 6),
+            upper_bound=bound,
+        )
+
+    def solved(self, steps: int, mount_deg: float) -> Result | None:
+        """Search with a tilt, and where that misses the target prove that all poses do; None without a pose.
+
+        Where the value is far below the target a wide gap proves it, which takes few boxes.
+        """
+        scenario = self.on(steps, mount_deg)
+        try:
+            result = solve(scenario, **self.options | {"certify": False})
+            for share in _SHARES:
+                value = result.objective.value
+                if value >= self.target or self.is_below(result):
+                    break
+                missing = self.target / value - 1.0 if value > 0.0 else math.inf
+                gap = min(max(share * missing, _GAPS[0]), _WIDEST_GAP)
+                result = solve(scenario, **self.options | {"gap": gap})
+                self.rigours.add(result.objective.rigour)
+                if result.status is not Status.CERTIFIED:
+                    break
+        except SolveError:  # no pose reaches every node
+            return None
+        return result
+
+    def is_below(self, result: Result) -> bool:
+        """Check that a bound is proved and is below the target."""
+        return result.objective.upper_bound is not None and result.objective.upper_bound < self.target
+
+    def reused(self, result: Result, mount_deg: float) -> tuple[int, float, Pose] | None:
+        """Take a result's pose at the least tilt that it needs; None where it misses the target.
+
+        Returns:
+            That tilt in steps, the value and the pose.
+        """
+        free = self.on(_MOST_STEPS, mount_deg)
+        orientation = result.pose.orientation(free.antenna_record)
+        pose = Pose.of_airframe(free, result.pose.position_m, orientation)
+        value = Quantity.of(free).least(evaluate(free, pose))
+        if value < self.target * (1.0 - _ROUNDING):
+            return None
+        return math.ceil(math.degrees(pose.tilt_rad) / STEP_DEG - _SAME_TILT), value, pose
+
+    def best(self) -> MountTilt:
+        """Find the mount that needs least tilt: on a grid, or else that of the best pose."""
+        angle_deg = min(90.0, angle_from_vertical_deg(self.whole))
+        found: list[MountTilt] = []
+        for mount_deg in (_GRID_DEG * round(angle_deg / _GRID_DEG), round(angle_deg, 1), angle_deg):
+            found.append(self.sides(mount_deg))
+            if found[-1].suffices_deg == 0.0:
+                break
+        return min(found, key=lambda each: math.inf if each.suffices_deg is None else each.suffices_deg)
