@@ -100,7 +100,7 @@ def test_what_is_no_file_is_never_replaced(tmp_path: Path, kind: str) -> None:
     with pytest.raises(OutputError, match=r"cannot write .* a folder, a device or a pipe is in the way"):
         write_text(path, "text")
     with pytest.raises(OutputError, match=r"--figure: cannot write .* is in the way"):
-        check_outputs({}, {"--figure": path})
+        check_outputs({}, [("--figure", path)])
     assert os.path.samestat(before, path.stat())
 
 
@@ -123,11 +123,11 @@ def test_one_file_is_not_two(tmp_path: Path, way: str) -> None:
         (tmp_path / "linked").symlink_to(folder)
         other = tmp_path / "linked" / "a.toml"
     with pytest.raises(OutputError, match=r"--certificate: .* is the file of the scenario too"):
-        check_outputs({"the scenario": file}, {"--certificate": other})
+        check_outputs({"the scenario": file}, [("--certificate", other)])
     if way != "hard link":  # there is none of what is not there
         file.unlink()
     with pytest.raises(OutputError, match=r"--figure: .* is the file of --certificate too"):
-        check_outputs({}, {"--certificate": file, "--figure": other})
+        check_outputs({}, [("--certificate", file), ("--figure", other)])
 
 
 def test_reading_is_bounded(tmp_path: Path) -> None:

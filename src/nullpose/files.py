@@ -100,29 +100,29 @@ def json_text(value: object, indent: int | None = 2) -> str:
     return json.dumps(read_back, indent=indent)
 
 
-def check_outputs(inputs: Mapping[str, Path], outputs: Mapping[str, Path | None]) -> None:
+def check_outputs(inputs: Mapping[str, Path], outputs: Iterable[tuple[str, Path | None]]) -> None:
     """Make sure, before any work, that files can be written and that no two of them are one.
 
     Args:
         inputs: the files that are read, by what to call them.
-        outputs: those that are to be written, by the options that name them; None where nothing is.
+        outputs: those that are to be written, each after the option that names it; None where nothing is.
 
     Raises:
         OutputError: one is an input or another output too, is a folder or a device, or its folder cannot be
             made or written.
     """
-    taken = dict(inputs)
-    for option, path in outputs.items():
+    taken = list(inputs.items())
+    for option, path in outputs:
         if path is None:
             continue
-        for other, used in taken.items():
+        for other, used in taken:
             if _is_same(path, used):
                 raise OutputError(
                     f"{option}: {path} is the file of {other} too, which would be lost; give another name"
                 )
         with refusals(f"{option}: cannot write {path}"):
             prepare_folder(_target(path).parent)
-        taken[option] = path
+        taken.append((option, path))
 
 
 def _is_same(path: Path, other: Path) -> bool:

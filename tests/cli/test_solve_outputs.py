@@ -42,9 +42,10 @@ def unsolvable(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object, **__: object) -> None:
         raise AssertionError("solved before the outputs were looked at")
 
+    study = import_module("nullpose.study")  # first: it keeps the solver that it finds
+    monkeypatch.setattr(study, "compare_airframes", fail)
+    monkeypatch.setattr(study, "sweep", fail)
     monkeypatch.setattr(import_module("nullpose.solver"), "solve", fail)
-    monkeypatch.setattr(import_module("nullpose.study"), "compare_airframes", fail)
-    monkeypatch.setattr(import_module("nullpose.study"), "sweep", fail)
 
 
 @pytest.mark.usefixtures("unsolvable")

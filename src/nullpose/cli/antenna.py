@@ -65,7 +65,7 @@ def show(
 
     if figure is not None:
         prepare_figure_file(figure)
-    check_outputs({"the pattern": file}, {"--figure": figure})
+    check_outputs({"the pattern": file}, [("--figure", figure)])
     table = read_pattern(file, format_name, frequency_hz, estimate=True)
     if figure is not None:
         from nullpose.report.figures.pattern import draw_pattern

@@ -48,7 +48,7 @@ def best_map(
 
     scenario = scene.read()
     require_map(scenario, altitude, cells)
-    scene.check_outputs({f"--out ({name})": out / name for name in ("map.csv", "map.png", "map.pdf")})
+    scene.check_outputs((f"--out ({name})", out / name) for name in ("map.csv", "map.png", "map.pdf"))
     options = proof.keywords(fast)
     with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         result = solve(scenario, scheme.value, on_progress=bar, **options)

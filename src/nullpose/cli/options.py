@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
 from inspect import Parameter, Signature, signature
@@ -173,7 +173,7 @@ class SceneOptions:
             say(f"warning: {warning}", err=True)
         return scenario
 
-    def check_outputs(self, outputs: Mapping[str, Path | None]) -> None:
+    def check_outputs(self, outputs: Iterable[tuple[str, Path | None]]) -> None:
         """Make sure, before any work, that outputs can be written and take no input's place.
 
         Raises:

@@ -114,4 +114,4 @@ def prepare_outputs(
         from nullpose.report.figures.style import prepare_figure_file
 
         prepare_figure_file(figure)
-    scene.check_outputs({f"--{name}": path for name, path in {**others, "figure": figure}.items()})
+    scene.check_outputs((f"--{name}", path) for name, path in {**others, "figure": figure}.items())

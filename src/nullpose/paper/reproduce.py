@@ -122,7 +122,7 @@ def reproduce(
     Raises:
         OutputError: the folder or a file cannot be written; the folder is tried before any work.
     """
-    check_outputs({}, {name: folder / name for name in _FILES})
+    check_outputs({}, [(name, folder / name) for name in _FILES])
     scenario = paper_scenario()
     table = sweep(scenario, JAMMER_POWER, levels, seed=seed, on_progress=on_progress)
     printed = tuple(search_as_printed(scenario, level, seed=seed) for level in printed_levels)

@@ -223,7 +223,7 @@ class Folder:
             OutputError: another process holds it.
         """
         path = self.path / LOCK
-        check_outputs({}, {"the study's lock": path})
+        check_outputs({}, [("the study's lock", path)])
         with path.open("a+", encoding="utf-8", errors="replace") as file:
             if owner := _other_owner(file):
                 raise OutputError(f"{self.path}: {owner} writes this study now; wait for it, or end it")
