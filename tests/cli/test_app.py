@@ -15,7 +15,7 @@ Process = Callable[..., subprocess.CompletedProcess[str]]
 
 SCENE, PROOF = "--set --allow-outside", "--gap --time-limit --node-limit --seed"
 VERBS = {
-    "solve": f"{SCENE} {PROOF} --scheme --fast --robust --off --null-jammer --certificate --verify --geojson "
+    "solve": f"{SCENE} {PROOF} --scheme --fast --robust --off --null-jammer --certificate --verify --export "
     "--figure --width --json",
     "compare": f"{SCENE} {PROOF} --airframes --fast --figure --width --json",
     "evaluate": f"{SCENE} {PROOF} --pose --pose-lat-lon --attitude --poses --off --json",

@@ -49,14 +49,14 @@ def unsolvable(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("unsolvable")
-@pytest.mark.parametrize("option", ["--certificate", "--geojson", "--figure"])
+@pytest.mark.parametrize("option", ["--certificate", "--export", "--figure"])
 def test_inputs_are_not_overwritten(option: str, run: Run, scene: Path) -> None:
     """The scenario and the file of its nodes, themselves or through a link, are no outputs."""
-    link = scene.with_name("link.svg")
+    link = scene.with_name("link.kml" if option == "--export" else "link.svg")
     link.symlink_to(scene)
     before = {path: path.read_bytes() for path in scene.parent.iterdir()}
     for output, what in ((link, "the scenario"), (scene, "the scenario"), ("nodes.geojson", "nodes_from")):
-        if option == "--figure" and output != link:
+        if (option, output) in {("--figure", "nodes.geojson"), ("--figure", scene), ("--export", scene)}:
             continue  # refused by its name before that
         result = run("solve", scene, option, scene.parent / output)
         assert (result.exit_code, result.stdout) == (2, "")
@@ -71,15 +71,22 @@ def test_two_outputs_are_two_files(run: Run, scene: Path) -> None:
     assert result.exit_code == 2
     assert "--figure: " in result.stderr
     assert " is the file of --certificate too" in result.stderr
+    (scene.parent / "link.tum").symlink_to("pose.kml")
+    exports = (word for name in ("pose.kml", "link.tum") for word in ("--export", scene.parent / name))
+    assert (
+        f"--export: {scene.parent / 'link.tum'} is the file of --export too"
+        in run("solve", scene, *exports).stderr
+    )
 
 
 @pytest.mark.usefixtures("unsolvable")
-@pytest.mark.parametrize("option", ["--certificate", "--geojson", "--figure"])
+@pytest.mark.parametrize("option", ["--certificate", "--export", "--figure"])
 def test_outputs_are_tried_before_the_solve(option: str, run: Run, scene: Path) -> None:
     """A folder of that name, a device, or a file where the folder would be is told at once."""
-    (scene.parent / "folder.svg").mkdir()
-    (scene.parent / "device.svg").symlink_to("/dev/null")
-    for name in ("folder.svg", "device.svg", "nodes.geojson/x.svg"):
+    ending = ".kml" if option == "--export" else ".svg"
+    (scene.parent / f"folder{ending}").mkdir()
+    (scene.parent / f"device{ending}").symlink_to("/dev/null")
+    for name in (f"folder{ending}", f"device{ending}", f"nodes.geojson/x{ending}"):
         result = run("solve", scene, option, scene.parent / name)
         assert result.exit_code == 2
         assert "cannot write" in result.stderr
@@ -103,7 +110,7 @@ def test_other_verbs_try_theirs_too(run: Run, scene: Path) -> None:
 
 def test_a_full_disk_leaves_what_was_there(scene: Path, tmp_path: Path) -> None:
     """Each output that does not fit is a message and exit code 2; the older file stays, and no other."""
-    outputs = {"--certificate": "p.json", "--geojson": "p.geojson", "--figure": "p.png"}
+    outputs = {"--certificate": "p.json", "--export": "p.geojson", "--figure": "p.png"}
     paths = {option: tmp_path / name for option, name in outputs.items()}
     for path in paths.values():
         path.write_text("old", encoding="utf-8")

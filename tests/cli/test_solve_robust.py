@@ -68,7 +68,7 @@ def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:
     origin = "\n[origin]\nlat_deg = 50.0\nlon_deg = 14.5\nalt_m = 230.0\nalt_msl_m = 185.0\n"
     earthly.write_text(Path(ROBUST).read_text(encoding="utf-8") + origin, encoding="utf-8")
     path = tmp_path / "poses.geojson"
-    result = run("solve", earthly, "--robust", "--fast", "--geojson", path)
+    result = run("solve", earthly, "--robust", "--fast", "--export", path)
     assert (result.exit_code, result.stderr, result.stdout.count("on the Earth")) == (0, "", 2)
     robust, nominal, *_ = json.loads(path.read_text(encoding="utf-8"))["features"]
     assert [robust["properties"]["kind"], nominal["properties"]["kind"]] == ["pose", "pose-as-stated"]

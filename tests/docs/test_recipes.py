@@ -38,5 +38,5 @@ def test_recipe_works(title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
                 _run(command)
         else:
             exec(compile(text, "recipes.md", "exec"), {})
-    for name in re.findall(r"[\w/]+\.(?:svg|png|csv|html|pdf|geojson)\b", RECIPES[title]):
+    for name in re.findall(r"[\w/]+\.(?:svg|png|csv|html|pdf|geojson|plan)\b", RECIPES[title]):
         assert (tmp_path / name).is_file(), name

@@ -3,34 +3,14 @@
 import math
 
 import numpy as np
+from earth import east_north_up, ecef_m
 from hypothesis import given, strategies as st
 
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu, ned_from_enu
 
-SEMI_MAJOR_M = 6378137.0
-FLATTENING = 1.0 / 298.257223563
-ECCENTRICITY_SQUARED = FLATTENING * (2.0 - FLATTENING)
-
 origins = st.tuples(st.floats(-90.0, 90.0), st.floats(-180.0, 180.0), st.floats(-500.0, 9000.0))
 sideways = st.floats(-20e3, 20e3)
 positions = st.tuples(sideways, sideways, st.floats(-5e3, 20e3))
-
-
-def ecef_m(geodetic: tuple[float, float, float]) -> np.ndarray:
-    """Returns Earth-centred coordinates from the textbook's closed form."""
-    lat, lon = math.radians(geodetic[0]), math.radians(geodetic[1])
-    normal_m = SEMI_MAJOR_M / math.sqrt(1.0 - ECCENTRICITY_SQUARED * math.sin(lat) ** 2)
-    axial_m = (normal_m + geodetic[2]) * math.cos(lat)
-    polar_m = (normal_m * (1.0 - ECCENTRICITY_SQUARED) + geodetic[2]) * math.sin(lat)
-    return np.array([axial_m * math.cos(lon), axial_m * math.sin(lon), polar_m])
-
-
-def east_north_up(origin: tuple[float, float, float]) -> np.ndarray:
-    """Returns the three directions at a place as rows, in Earth-centred coordinates."""
-    lat, lon = math.radians(origin[0]), math.radians(origin[1])
-    east = np.array([-math.sin(lon), math.cos(lon), 0.0])
-    up = np.array([math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat)])
-    return np.stack([east, np.cross(up, east), up])
 
 
 @given(origins, positions)

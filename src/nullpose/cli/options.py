@@ -108,12 +108,13 @@ Verified = Annotated[
     bool, typer.Option("--verify", help="Check the proof in interval arithmetic, as nullpose verify does.")
 ]
 
-GeoJsonFile = Annotated[
-    Path | None,
+ExportFiles = Annotated[
+    list[Path] | None,
     typer.Option(
-        "--geojson",
+        "--export",
         metavar="FILE",
-        help="Write pose, nodes and airspace to FILE as GeoJSON. The scenario needs an origin.",
+        help="Write the pose to FILE for another program, in the format of its ending: .json, .tum, .csv, "
+        ".geojson, .kml or .plan. Can be repeated.",
         show_default=False,
     ),
 ]

@@ -100,7 +100,12 @@ def compiling_announced() -> Iterator[None]:
 
 
 def prepare_outputs(
-    scene: SceneOptions, *, figure: Path | None, width: str | None = None, **others: Path | None
+    scene: SceneOptions,
+    *,
+    figure: Path | None,
+    width: str | None = None,
+    export: Sequence[Path] = (),
+    **others: Path | None,
 ) -> None:
     """Make sure, before any work, that a figure and other outputs, by their options, can be written.
 
@@ -114,4 +119,5 @@ def prepare_outputs(
         from nullpose.report.figures.style import prepare_figure_file
 
         prepare_figure_file(figure)
-    scene.check_outputs((f"--{name}", path) for name, path in {**others, "figure": figure}.items())
+    outputs = [*others.items(), *(("export", path) for path in export), ("figure", figure)]
+    scene.check_outputs((f"--{name}", path) for name, path in outputs)

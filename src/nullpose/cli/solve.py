@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,10 +11,10 @@ import typer
 
 from nullpose.cli.options import (
     CertificateFile,
+    ExportFiles,
     Fast,
     FigureFile,
     FigureWidth,
-    GeoJsonFile,
     JsonOutput,
     NullJammer,
     Off,
@@ -27,6 +28,7 @@ from nullpose.cli.options import (
     refuse,
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
+from nullpose.cli.printing import say
 from nullpose.cli.progress import GapBar, Ticker
 from nullpose.problem.schemes import Scheme
 
@@ -52,7 +54,7 @@ def solve(
     null_jammer: NullJammer = None,
     certificate: CertificateFile = None,
     verify: Verified = False,
-    geojson: GeoJsonFile = None,
+    export: ExportFiles = None,
     figure: FigureFile = None,
     width: Width = None,
     json_output: JsonOutput = False,
@@ -76,17 +78,17 @@ def solve(
     from nullpose.solver.robust import ROBUST_GAP
 
     scenario = scene.read()
-    prepare_outputs(scene, certificate=certificate, geojson=geojson, figure=figure, width=width)
+    if exports := export or []:
+        from nullpose.report.export import require_exports
+
+        require_exports(scenario, exports)
+    prepare_outputs(scene, certificate=certificate, export=exports, figure=figure, width=width)
     options, sizes = proof.keywords(fast), error_sizes(off)
     is_checked = verify or certificate is not None
     is_array = scenario.array is not None and not robust
-    if geojson is not None:
-        from nullpose.report.geojson import require_origin
-
-        require_origin(scenario)
     if robust or is_array:
         where = "with --robust" if robust else "for a scenario with an [array]"
-        refuse(where, geojson=geojson if is_array else None, scheme=scheme is not Scheme.OPTIMUM)
+        refuse(where, export=exports if is_array else None, scheme=scheme is not Scheme.OPTIMUM)
         refuse(where, null_jammer=null_jammer, certificate=certificate, verify=verify)
     elif fast:
         refuse("with --fast, which proves nothing,", certificate=certificate, verify=verify)
@@ -106,7 +108,7 @@ def solve(
             found = verified(found, ticker)
     found = replace(found, error_sizes=sizes, note=" ".join(filter(None, (note, found.note))))
     is_rejected = is_checked and found.rigour.value != "verified"
-    files = _write(found, None if is_rejected else certificate, geojson, figure, width)
+    files = _write(found, None if is_rejected else certificate, exports, figure, width)
     fault = _REJECTED.format(found.reason) if is_rejected else ""
     tell(found, result_view, json_output, files=files, fault=fault)
 
@@ -129,23 +131,25 @@ def _with_errors(scenario: Scenario, sizes: ErrorSizes) -> Scenario:
 def _write(
     result: Result,
     certificate: Path | None,
-    geojson: Path | None,
+    exports: Sequence[Path],
     figure: Path | None,
     width: FigureWidth | None,
 ) -> list[Path]:
-    """Write the files that have a name; return their paths."""
+    """Write the files that have a name, and say what a format cannot hold; return their paths."""
     if certificate is not None:
         from nullpose.certificate import write_certificate
         from nullpose.solver.certificate_from_proof import certificate_of
 
         write_certificate(certificate_of(result), certificate)
-    if geojson is not None:
-        from nullpose.report.geojson import write_geojson
+    if exports:
+        from nullpose.report.export import write_export
 
-        write_geojson(result, geojson)
+        for path in exports:
+            if lost := write_export(result, path):
+                say(f"{path}: {lost}", err=True)
     if figure is not None:
         from nullpose.report.figures.poses import draw_result
         from nullpose.report.figures.style import write_figure_file
 
         write_figure_file(draw_result(result, width), figure)
-    return [path for path in (certificate, geojson, figure) if path is not None]
+    return [path for path in (certificate, *exports, figure) if path is not None]

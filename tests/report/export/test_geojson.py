@@ -5,7 +5,6 @@ import math
 from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,8 @@ import shapely
 
 from nullpose import Link, Pose, Result, evaluate, solve
 from nullpose.errors import UsageError
-from nullpose.report.geojson import require_origin, solution_geojson, write_geojson
+from nullpose.report.export.geojson import geojson_file, solution_geojson
+from nullpose.report.export.places import require_origin
 from nullpose.scenario import Scenario
 from nullpose.scenario.geodesy import enu_from_geodetic
 
@@ -135,20 +135,18 @@ def test_who_listens_in_is_on_the_map(solution: Result, paper: Scenario) -> None
     assert features(secret, "jammer") == []
 
 
-def test_without_an_origin(solution: Result, paper: Scenario, tmp_path: Path) -> None:
-    """A scenario that lies nowhere on the Earth is refused, with what to add, and nothing is written."""
+def test_without_an_origin(solution: Result, paper: Scenario) -> None:
+    """A scenario that lies nowhere on the Earth is refused, with what to add."""
     nowhere = replace(solution, scenario=paper)
-    for refused in (lambda: require_origin(paper), lambda: write_geojson(nowhere, tmp_path / "x.geojson")):
+    for refused in (lambda: require_origin(paper), lambda: geojson_file(nowhere)):
         with pytest.raises(UsageError, match=r"has no origin.*add a table headed \[origin\]"):
             refused()
-    assert list(tmp_path.iterdir()) == []
 
 
-def test_a_written_file_is_the_collection(solution: Result, tmp_path: Path) -> None:
+def test_a_file_is_the_collection(solution: Result) -> None:
     """The file holds the same, a feature a line; a number that JSON lacks is null."""
     silent = replace(solution, links=(Link("S1", {"sinr": 0.0, "sinr_db": -math.inf}), solution.links[1]))
-    path = write_geojson(silent, tmp_path / "out.geojson")
-    text = path.read_text(encoding="utf-8")
+    text = geojson_file(silent).decode()
     collection = json.loads(text)
     assert len(text.splitlines()) == len(collection["features"]) + 2
     values = [each["properties"].get("sinr_db") for each in collection["features"]]

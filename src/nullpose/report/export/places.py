@@ -1,0 +1,110 @@
+"""The points of a result, and where they are on the Earth: what every format of maps shares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike
+
+from nullpose.errors import UsageError
+from nullpose.files import PlainTable
+from nullpose.physics import Pose, pose_frames
+from nullpose.report.geometry import azimuth_rad, tilt_rad
+from nullpose.report.links import binding_nodes
+from nullpose.report.words import channel_words
+from nullpose.scenario import Origin, Scenario
+from nullpose.solver import Result
+from nullpose.solver.robust import RobustDetails
+
+
+class MapPlace(NamedTuple):
+    """A place on the Earth with an altitude that autopilots and KML understand.
+
+    Args:
+        lat_deg: geodetic latitude [degrees].
+        lon_deg: longitude [degrees].
+        altitude_m: over the sea, or above the origin [m].
+        is_over_sea: which of the two; over the sea if the origin states its own altitude so.
+    """
+
+    lat_deg: float
+    lon_deg: float
+    altitude_m: float
+    is_over_sea: bool
+
+
+def require_origin(scenario: Scenario) -> Origin:
+    """Look up the origin that puts a scenario on the map.
+
+    Raises:
+        UsageError: it has none.
+    """
+    if scenario.origin is None:
+        raise UsageError(
+            "GeoJSON, KML and plans: the scenario has no origin, so where on the Earth it lies is not known; "
+            "add a table headed [origin] with lat_deg, lon_deg and alt_m (or alt_msl_m) of the place where "
+            "position_m is [0, 0, 0]"
+        )
+    return scenario.origin
+
+
+def map_place(origin: Origin, position_m: ArrayLike) -> MapPlace:
+    """Convert a position to a place whose altitude counts from the sea, or else from the origin.
+
+    Args:
+        origin: of the scenario.
+        position_m: east, north and up [m], (3,).
+    """
+    place = origin.place(position_m)
+    height_m = place.get("alt_msl_m", place.get("alt_m", 0.0) - (origin.alt_m or 0.0))
+    return MapPlace(place["lat_deg"], place["lon_deg"], height_m, origin.alt_msl_m is not None)
+
+
+def marked_points(solution: Result) -> Iterator[tuple[ArrayLike, PlainTable]]:
+    """Yield the pose, the nodes, the jammers and the eavesdroppers: position in metres, and properties."""
+    scenario, binding = solution.scenario, binding_nodes(solution)
+    objective = solution.objective
+    properties: PlainTable = {
+        "kind": "pose",
+        "name": solution.label,
+        "status": solution.status.value,
+        "rigour": solution.rigour.value,
+        "objective": objective.name,
+        "value": objective.value,
+        "value_db": objective.value_db,
+        "upper_bound": objective.upper_bound,
+    }
+    channel = channel_words(scenario)
+    properties |= {} if channel is None else {"channel": channel}
+    yield solution.pose.position_m, properties | _angles(scenario, solution.pose)
+    if isinstance(solution.details, RobustDetails):
+        nominal = solution.details.nominal
+        named = {"kind": "pose-as-stated", "name": "best pose as stated", "guaranteed": nominal.guaranteed}
+        yield nominal.pose.position_m, named | _angles(scenario, nominal.pose)
+    for node, link in zip(scenario.nodes, solution.links, strict=True):
+        values = dict(link.values)
+        yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **values}
+    for jammer in scenario.jammers:
+        reach = {"power_w": jammer.transmit_power_w, "uncertainty_m": jammer.uncertainty_reach_m}
+        yield jammer.position_m, {"kind": "jammer", "name": jammer.name, **reach}
+    for point in scenario.eavesdroppers:
+        reach = {"uncertainty_m": point.uncertainty_reach_m}
+        yield point.position_m, {"kind": "eavesdropper", "name": point.name, **reach}
+
+
+def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
+    """Convert the attitude to the frames of other programs, and the antenna's axis to two angles."""
+    frames, is_even = pose_frames(scenario, pose), scenario.antenna_record.is_even
+    return {
+        **{
+            f"{name}_{angle}_deg": math.degrees(getattr(frame, f"{angle}_rad"))
+            for name, frame in (("enu", frames.enu), ("ned", frames.ned))
+            for angle in ("roll", "pitch", "yaw")
+        },
+        "enu_quaternion_wxyz": list(frames.enu.quaternion_wxyz),
+        "ned_quaternion_wxyz": list(frames.ned.quaternion_wxyz),
+        "antenna_tilt_deg": math.degrees(tilt_rad(pose, is_even)),
+        "antenna_bearing_deg": (90.0 - math.degrees(azimuth_rad(pose, is_even))) % 360.0,
+    }

@@ -1,0 +1,121 @@
+"""The position of a result as a plan of QGroundControl: where to hover, at which yaw, within which fence."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nullpose.files import PlainTable, json_text
+from nullpose.physics import Pose, evaluate, pose_frames
+from nullpose.report.export.places import map_place, require_origin
+from nullpose.report.numbers import with_unit
+from nullpose.scenario import Airspace, NoFlyZone, Origin
+from nullpose.scenario.airspace import BORDER_M
+from nullpose.scenario.geodesy import geodetic_from_enu
+from nullpose.solver import Result
+
+_HOVER = 17  # MAV_CMD_NAV_LOITER_UNLIM
+_OVER_SEA, _OVER_HOME = (0, 2), (3, 1)  # MAV_FRAME, and AltitudeMode of QGroundControl
+_PX4, _MULTIROTOR = 12, 2  # MAV_AUTOPILOT, MAV_TYPE
+
+
+def plan_file(result: Result) -> bytes:
+    """Write a result as a plan: one waypoint to hover at, and the geofence with the no-fly zones.
+
+    The altitude is over the sea where the origin states its own, and otherwise over home, which is the
+    origin. A zone of a plan has all altitudes: one above or below the pose is left out.
+
+    Raises:
+        UsageError: the scenario has no origin.
+    """
+    origin = require_origin(result.scenario)
+    place = map_place(origin, result.pose.position_m)
+    frame, mode = _OVER_SEA if place.is_over_sea else _OVER_HOME
+    waypoint = {
+        "type": "SimpleItem",
+        "command": _HOVER,
+        "frame": frame,
+        "params": [0, 0, 0, _heading_deg(result), place.lat_deg, place.lon_deg, place.altitude_m],
+        "Altitude": place.altitude_m,
+        "AltitudeMode": mode,
+        "AMSLAltAboveTerrain": None,
+        "autoContinue": True,
+        "doJumpId": 1,
+    }
+    content = {
+        "fileType": "Plan",
+        "groundStation": "QGroundControl",
+        "mission": {
+            "items": [waypoint],
+            "plannedHomePosition": origin.geodetic.tolist(),
+            "firmwareType": _PX4,
+            "vehicleType": _MULTIROTOR,
+            "cruiseSpeed": 5,
+            "hoverSpeed": 5,
+            "version": 2,
+        },
+        "geoFence": _fence(origin, result.scenario.airspace, result.pose),
+        "rallyPoints": {"points": [], "version": 2},
+        "version": 1,
+    }
+    return f"{json_text(content)}\n".encode()
+
+
+def loss_words(result: Result) -> str:
+    """Say what a level hover there leaves, since a plan drops the attitude; and what else to look out for.
+
+    Raises:
+        UsageError: the scenario has no origin.
+    """
+    scenario, pose, quantity = result.scenario, result.pose, result.objective.quantity
+    level = Pose(pose.position_m, 0.0, 0.0, pose.yaw_rad, pose.mount_rad)
+    values = [quantity.in_unit(quantity.least(evaluate(scenario, each))) for each in (level, pose)]
+    left, whole = (with_unit(value, quantity) for value in values)
+    sentences = [
+        f"a plan holds no attitude: at a level hover there, at yaw {_heading_deg(result):.1f} deg clockwise "
+        f"from north, the {quantity.smallest} is {left}; with the pose's attitude it is {whole}"
+    ]
+    if require_origin(scenario).alt_msl_m is None:
+        sentences.append("the altitude counts from home: take off at the origin's altitude")
+    if zones := [zone.name for zone in scenario.airspace.no_fly if _is_over_or_under(zone, pose)]:
+        sentences.append(f"left out, being above or below the pose: {', '.join(zones)}")
+    return "; ".join(sentences)
+
+
+def _heading_deg(result: Result) -> float:
+    """Convert the yaw to degrees clockwise from north, in [0, 360)."""
+    return math.degrees(pose_frames(result.scenario, result.pose).ned.yaw_rad) % 360.0
+
+
+def _fence(origin: Origin, airspace: Airspace, pose: Pose) -> PlainTable:
+    """List the geofence to stay in, and the zones to stay out of, as polygons and circles."""
+    zones = [zone for zone in airspace.no_fly if not _is_over_or_under(zone, pose)]
+    shapes: list[PlainTable] = [_shape(origin, zone) for zone in zones]
+    if airspace.geofence_m is not None:
+        corners = _corners(origin, airspace.geofence_outline_m)
+        shapes.insert(0, {"polygon": corners, "inclusion": True, "version": 1})
+    parts = {f"{kind}s": [shape for shape in shapes if kind in shape] for kind in ("polygon", "circle")}
+    return {**parts, "version": 2}
+
+
+def _shape(origin: Origin, zone: NoFlyZone) -> PlainTable:
+    """Write a zone as a circle or polygon to stay out of."""
+    rules = {"inclusion": False, "version": 1}
+    if zone.centre_m is None:
+        return {"polygon": _corners(origin, zone.outline_m)} | rules
+    return {"circle": {"center": _corners(origin, zone.centre_m), "radius": zone.radius_m}} | rules
+
+
+def _corners(origin: Origin, east_north_m: ArrayLike) -> list[Any]:
+    """Convert places at the origin's altitude, (..., 2), to latitudes and longitudes [degrees]."""
+    level_m = np.insert(np.asarray(east_north_m, dtype=float), 2, 0.0, axis=-1)
+    return list(geodetic_from_enu(level_m, origin.geodetic)[..., :2].tolist())
+
+
+def _is_over_or_under(zone: NoFlyZone, pose: Pose) -> bool:
+    """Check if a pose would be inside a zone that had all altitudes."""
+    unbounded = zone.model_copy(update={"altitude_m": None})
+    return float(unbounded.depth_m(pose.position_m)) > BORDER_M
