@@ -10,6 +10,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
 from scipy.spatial.transform import Rotation
 from typer.testing import Result
 
@@ -94,11 +96,16 @@ def test_every_file_has_the_attitude_that_is_printed(
     feature = json.loads(files[".geojson"].read_bytes())["features"][0]["properties"]
     mark = ElementTree.parse(files[".kml"]).find(".//{*}Placemark")
     data = {each.get("name"): each.findtext("{*}value") for each in mark.findall(".//{*}Data")}
+    with files[".mcap"].open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        (*_, message), *_ = reader.iter_decoded_messages(topics="/pose")
+    turn = message.pose.orientation
     quaternions_xyzw = {
         "tum": np.loadtxt(files[".tum"])[4:],
         "json": np.roll(plain["quaternion_wxyz"], -1),
         "csv": [float(row[name]) for name in ("qx", "qy", "qz", "qw")],
         "geojson": np.roll(feature["enu_quaternion_wxyz"], -1),
+        "mcap": [turn.x, turn.y, turn.z, turn.w],
     }
     names = ("roll_deg", "pitch_deg", "yaw_deg")
     stated = {

@@ -114,7 +114,7 @@ ExportFiles = Annotated[
         "--export",
         metavar="FILE",
         help="Write the pose to FILE for another program, in the format of its ending: .json, .tum, .csv, "
-        ".geojson, .kml or .plan. Can be repeated.",
+        ".geojson, .kml, .plan or .mcap. Can be repeated.",
         show_default=False,
     ),
 ]

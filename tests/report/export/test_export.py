@@ -29,7 +29,7 @@ def test_an_unknown_ending(placed: Placed, tmp_path: Path, name: str) -> None:
     """Any other ending is refused, before a solve and at the end, with those that are allowed."""
     result, path = placed("alt_m"), tmp_path / name
     for refused in (lambda: require_exports(result.scenario, [path]), lambda: write_export(result, path)):
-        with pytest.raises(UsageError, match=r"given .*; allowed endings: \.json, \.tum, \.csv, .*\.plan$"):
+        with pytest.raises(UsageError, match=r"given .*; allowed endings: \.json, \.tum, \.csv, .*\.mcap$"):
             refused()
     assert list(tmp_path.iterdir()) == []
 

@@ -10,6 +10,7 @@ from nullpose.errors import UsageError
 from nullpose.files import replacing
 from nullpose.report.export.geojson import geojson_file
 from nullpose.report.export.kml import kml_file
+from nullpose.report.export.mcap import mcap_file, require_foxglove
 from nullpose.report.export.places import require_origin
 from nullpose.report.export.plain import csv_file, json_file, tum_file
 from nullpose.report.export.plan import loss_words, plan_file
@@ -39,6 +40,7 @@ EXPORTS = {
     ".geojson": ExportFormat(geojson_file, require_origin),
     ".kml": ExportFormat(kml_file, require_origin),
     ".plan": ExportFormat(plan_file, require_origin, loss_words),
+    ".mcap": ExportFormat(mcap_file, require_foxglove),
 }
 """The formats, by the ending of a file's name."""
 

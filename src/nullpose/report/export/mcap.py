@@ -1,0 +1,91 @@
+"""A result as a recording for Foxglove (MCAP): the pose, and the scene with the antenna's axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from importlib.util import find_spec
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from nullpose.errors import UsageError
+from nullpose.files import PlainTable
+from nullpose.physics import Pose, pose_frames
+from nullpose.report.export.places import marked_points
+from nullpose.report.geometry import azimuth_rad, tilt_rad
+from nullpose.scenario import Scenario
+from nullpose.solver import Result
+
+_COLOURS = {
+    "pose": {"r": 0.0, "g": 0.6, "b": 0.2, "a": 1.0},
+    "node": {"r": 0.1, "g": 0.4, "b": 0.8, "a": 1.0},
+    "jammer": {"r": 0.8, "g": 0.2, "b": 0.1, "a": 1.0},
+}
+_SIZE = 0.02  # diameter of a sphere, shares of the scene's extent
+
+
+def require_foxglove(_: Scenario) -> None:
+    """Make sure that the library that writes recordings is there.
+
+    Raises:
+        UsageError: it is not installed.
+    """
+    if find_spec("foxglove") is None:
+        raise UsageError("--export: .mcap needs foxglove-sdk; pip install 'nullpose[flight]'")
+
+
+def mcap_file(result: Result) -> bytes:
+    """Write a result as MCAP: topics ``/pose`` and ``/scene`` with a message each, at t = 0.
+
+    Their schemas are foxglove.PoseInFrame and foxglove.SceneUpdate. Needs what ``require_foxglove`` checks.
+    """
+    from foxglove import Context, channels, messages, open_mcap
+
+    stream, context = BytesIO(), Context()
+    at = {"timestamp": messages.Timestamp(0, 0), "frame_id": "enu"}
+    pose = messages.PoseInFrame(pose=_pose_message(result, result.pose), **at)
+    entities = [messages.SceneEntity(**parts, **at) for parts in _entities(result)]
+    with open_mcap(stream, context=context):
+        channels.PoseInFrameChannel("/pose", context=context).log(pose, log_time=0)
+        scene = messages.SceneUpdate(entities=entities)
+        channels.SceneUpdateChannel("/scene", context=context).log(scene, log_time=0)
+    return stream.getvalue()
+
+
+def _entities(result: Result) -> Iterator[PlainTable]:
+    """Yield the parts of an arrow along the antenna's axis, and of a sphere with its name for each point."""
+    from foxglove.messages import ArrowPrimitive, Color, SpherePrimitive, TextPrimitive, Vector3
+
+    points, pose = list(marked_points(result)), result.pose
+    size_m = _SIZE * float(np.ptp([np.asarray(position_m) for position_m, _ in points], axis=0).max())
+    is_even = result.scenario.antenna_record.is_even
+    along = Pose(pose.position_m, 0.0, tilt_rad(pose, is_even) - math.pi / 2.0, azimuth_rad(pose, is_even))
+    arrow = ArrowPrimitive(
+        pose=_pose_message(result, along),
+        shaft_length=4.0 * size_m,
+        shaft_diameter=0.3 * size_m,
+        head_length=size_m,
+        head_diameter=0.6 * size_m,
+        color=Color(**_COLOURS["pose"]),
+    )
+    yield {"id": "antenna axis", "arrows": [arrow]}
+    for position_m, properties in points:
+        kind, name = properties["kind"], properties["name"]
+        place = _pose_message(result, Pose(np.asarray(position_m), 0.0, 0.0))
+        looks = {"pose": place, "color": Color(**_COLOURS.get(kind, _COLOURS["jammer"]))}
+        sphere = SpherePrimitive(size=Vector3(x=size_m, y=size_m, z=size_m), **looks)
+        text = TextPrimitive(text=name, font_size=0.5 * size_m, **looks)
+        yield {"id": f"{kind} {name}", "spheres": [sphere], "texts": [text]}
+
+
+def _pose_message(result: Result, pose: Pose) -> Any:
+    """Convert a pose to a message: ENU, the rotation to the world from the body."""
+    from foxglove import messages
+
+    enu = pose_frames(result.scenario, pose).enu
+    return messages.Pose(
+        position=messages.Vector3(**dict(zip("xyz", enu.position_m, strict=True))),
+        orientation=messages.Quaternion(**dict(zip("xyzw", enu.quaternion_xyzw, strict=True))),
+    )
