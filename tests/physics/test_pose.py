@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
+from nullpose import Airframe, Scenario
 from nullpose.physics import Pose
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -21,6 +22,36 @@ def test_a_pose_from_an_axis_has_that_axis(seed: int, yaw: float, length: float)
     assert pose.yaw_rad == yaw
     assert abs(pose.roll_rad) <= math.pi / 2
     assert abs(pose.pitch_rad) <= math.pi / 2
+
+
+@given(seed=SEEDS, tilt_deg=st.floats(0.0, 180.0), mount_deg=st.floats(0.0, 90.0))
+def test_a_vehicle_has_its_dipole_along_every_axis_that_it_reaches(
+    seed: int, tilt_deg: float, mount_deg: float
+) -> None:
+    """The axis is reproduced within the tilt; a dipole gives u and -u the same pose."""
+    rng = np.random.default_rng(seed)
+    scenario = Scenario.from_arrays([[0, 0, 0]], noise_w=1e-3, altitude_m=(8, 30)).model_copy(
+        update={"airframe": Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)}
+    )
+    angle = math.radians(rng.uniform(max(0.0, mount_deg - tilt_deg), min(90.0, mount_deg + tilt_deg)))
+    azimuth, across = rng.uniform(-math.pi, math.pi), math.sin(angle)
+    axis = np.array([across * math.cos(azimuth), across * math.sin(azimuth), math.cos(angle)])
+    pose = Pose.of_airframe(scenario, [1.0, 2.0, 3.0], axis)
+    assert pose == Pose.of_airframe(scenario, [1.0, 2.0, 3.0], -axis)
+    assert pose.tilt_rad <= scenario.airframe.tilt_max_rad
+    sign = math.copysign(1.0, pose.antenna_axis @ axis)
+    np.testing.assert_allclose(sign * pose.antenna_axis, axis, atol=1e-12)
+
+
+@given(seed=SEEDS)
+def test_a_vehicle_that_takes_any_attitude_need_not_be_stated(seed: int) -> None:
+    """Omnidirectional, stated or left out: the same axis has the same angles, with no yaw."""
+    axis = np.random.default_rng(seed).normal(size=3)
+    free = Scenario.from_arrays([[0, 0, 0]], noise_w=1e-3, altitude_m=(8, 30))
+    stated = free.model_copy(update={"airframe": Airframe(preset="omnidirectional")})
+    poses = [Pose.of_airframe(scenario, [1.0, 2.0, 3.0], axis) for scenario in (free, stated)]
+    assert poses[0] == poses[1]
+    assert poses[0].yaw_rad == 0.0
 
 
 def test_a_pose_is_a_frozen_value() -> None:

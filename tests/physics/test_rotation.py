@@ -8,8 +8,10 @@ from hypothesis import given, strategies as st
 from scipy.spatial.transform import Rotation
 
 from nullpose.physics import Pose, antenna_axis, attitude_from_axis, rotation_world_from_body
-from nullpose.physics.rotation import attitude_of
+from nullpose.physics.rotation import attitude_of, attitude_of_axis
 
+QUARTER = math.pi / 2.0
+MOUNTS = st.one_of(st.sampled_from([0.0, QUARTER]), st.floats(0.0, QUARTER))
 ANGLES = st.floats(-math.pi, math.pi)
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -69,3 +71,43 @@ def test_attitudes_keep_within_a_tilt(seed: int, tilt_max: float, error: float) 
     if abs(abs(pitch) - math.pi / 2.0) > 1e-2:  # there roll and yaw turn about one axis
         moved = Rotation.from_matrix(rotation_world_from_body(roll, pitch, found).T @ stated).magnitude()
         assert moved <= 200.0 * 10.0**error + 1e-7
+
+
+def _axis(angle: float, azimuth: float) -> np.ndarray:
+    """Returns the axis at an angle from the vertical."""
+    across = math.sin(angle)
+    return np.array([across * math.cos(azimuth), across * math.sin(azimuth), math.cos(angle)])
+
+
+@given(
+    st.one_of(st.sampled_from([0.0, QUARTER, math.pi]), st.floats(0.0, math.pi)),
+    ANGLES,
+    MOUNTS,
+    st.booleans(),
+)
+def test_the_attitude_of_an_axis_takes_the_least_tilt(
+    angle: float, azimuth: float, mount: float, is_even: bool
+) -> None:
+    """The axis is reproduced, within the least tilt that reaches it, whether the limit is that or none."""
+    axis, folded = _axis(angle, azimuth), min(angle, math.pi - angle) if is_even else angle
+    least = abs(folded - mount)
+    found = attitude_of_axis(axis, mount_rad=mount, is_even=is_even)
+    assert Pose([0.0, 0.0, 8.0], *found, mount).tilt_rad == pytest.approx(least, abs=1e-12)
+    for attitude in (found, attitude_of_axis(axis, least, mount, is_even=is_even)):
+        reached = antenna_axis(*attitude, mount)
+        sign = math.copysign(1.0, reached @ axis) if is_even else 1.0
+        np.testing.assert_allclose(sign * reached, axis, atol=1e-12)
+    assert Pose([0.0, 0.0, 8.0], *attitude, mount).tilt_rad <= least
+
+
+@given(st.floats(0.0, math.pi), ANGLES, MOUNTS)
+def test_both_signs_of_an_axis_have_one_attitude(angle: float, azimuth: float, mount: float) -> None:
+    """An even antenna has the same angles for u and -u; no yaw if upright, at most a quarter turn if flat."""
+    axis = _axis(angle, azimuth)
+    found = attitude_of_axis(axis, mount_rad=mount)
+    assert attitude_of_axis(-axis, mount_rad=mount) == found
+    if mount == 0.0:
+        assert found[2] == 0.0
+        assert found[:2] == pytest.approx(attitude_from_axis(axis), abs=1e-12)
+    if mount == QUARTER:
+        assert -QUARTER <= found[2] < QUARTER

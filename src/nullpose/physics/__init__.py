@@ -40,7 +40,7 @@ from nullpose.physics.reception import (
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
-    attitude_within_tilt,
+    attitude_of_axis,
     rotation_world_from_body,
 )
 from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
@@ -59,7 +59,7 @@ __all__ = [
     "antenna_gain",
     "array_channels",
     "attitude_from_axis",
-    "attitude_within_tilt",
+    "attitude_of_axis",
     "beam_sinr",
     "digital_sinr",
     "digital_weights",

@@ -14,7 +14,7 @@ from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
     attitude_of,
-    attitude_within_tilt,
+    attitude_of_axis,
     rotation_world_from_body,
 )
 from nullpose.physics.types import FloatArray
@@ -95,27 +95,29 @@ class Pose:
 
     @classmethod
     def of_airframe(cls, scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Pose:
-        """Return the pose at a position in which the scenario's airframe has its dipole along an axis.
+        """Turn the scenario's vehicle so that its antenna lies along an axis, by the least tilt and then yaw.
 
-        Without an airframe, at yaw 0 (paper eq. 1.1); with one, at the attitude of least tilt, which does not
-        exceed the airframe's.
+        Every reported attitude comes from here, so that the same axis has the same angles everywhere.
 
         Args:
-            scenario: with its airframe.
+            scenario: with its airframe; without one the antenna is upright on the body, which takes any
+                attitude.
             position_m: shape ``(3,)``, metres.
             axis: the dipole's direction, shape ``(3,)``, of any length but zero; one that is reached. Or the
-                rotation to the world from the antenna's axes, shape ``(3, 3)``: then that is the attitude.
+                rotation to the world from the antenna's axes, shape ``(3, 3)``, of which only the axis counts
+                for an antenna that is the same all round.
         """
-        airframe = scenario.airframe
-        mount_rad = 0.0 if airframe is None else airframe.mount_rad
-        if np.ndim(axis) == 2:
-            body = np.asarray(axis) @ rotation_world_from_body(0.0, mount_rad, 0.0).T
-            angles = attitude_of(body, math.pi if airframe is None else airframe.tilt_max_rad)
-            return cls(np.asarray(position_m, dtype=float), *angles, mount_rad)
-        if airframe is None:
-            return cls.from_axis(position_m, axis)
-        roll, pitch, yaw = attitude_within_tilt(axis, airframe.tilt_max_rad, mount_rad)
-        return cls(np.asarray(position_m, dtype=float), float(roll), float(pitch), float(yaw), mount_rad)
+        airframe, antenna = scenario.airframe, scenario.antenna_record
+        tilt_max_rad, mount_rad = (
+            (math.pi, 0.0) if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
+        )
+        axis = np.asarray(axis, dtype=float)
+        if axis.ndim == 2 and not antenna.is_axisymmetric:
+            angles = attitude_of(axis @ rotation_world_from_body(0.0, mount_rad, 0.0).T, tilt_max_rad)
+        else:
+            along = axis[:, 2] if axis.ndim == 2 else axis
+            angles = attitude_of_axis(along, tilt_max_rad, mount_rad, is_even=antenna.is_even)
+        return cls(np.asarray(position_m, dtype=float), *angles, mount_rad)
 
     @property
     def antenna_axis(self) -> FloatArray:

@@ -104,29 +104,37 @@ def antenna_axis(
     return np.asarray(np.sin(mount_rad) * rotation[..., 0] + np.cos(mount_rad) * rotation[..., 2])
 
 
-def attitude_within_tilt(
-    axis: ArrayLike, tilt_max_rad: float, mount_rad: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Find the roll, pitch and yaw of least tilt that put a dipole mounted at an angle along an axis.
+def attitude_of_axis(
+    axis: ArrayLike, tilt_max_rad: float = math.pi, mount_rad: float = 0.0, *, is_even: bool = True
+) -> tuple[float, float, float]:
+    """Find the roll, pitch and yaw of least tilt, and then of least yaw, that put a dipole along an axis.
 
-    The yaw turns the dipole's side of the body to the axis's azimuth; the pitch, kept within the tilt, does
-    the rest: an axis at an angle t from the vertical takes a pitch of ``t - mount``. The inverse of
-    ``antenna_axis`` for every axis that the vehicle reaches.
+    An upright dipole leaves the yaw free: it is zero. A mounted one leans towards the body's x axis, so an
+    axis at an angle t from the vertical takes a pitch of ``t - mount`` at the yaw of its azimuth. Of ``u``
+    and ``-u`` the one that points up takes less tilt. If both take the same, the yaw is in [-pi/2, pi/2).
 
     Args:
-        axis: directions, shape ``(..., 3)``, not zero, of either sign.
+        axis: direction, shape ``(3,)``, not zero, one that the vehicle reaches.
         tilt_max_rad: largest angle between the body's vertical and the world's, radians.
         mount_rad: angle between the dipole and the body's vertical, in [0, pi/2], radians.
-
-    Returns:
-        Roll, which is zero, pitch and yaw, each of the leading shape, radians.
+        is_even: whether ``u`` and ``-u`` are the same antenna.
     """
-    u = np.asarray(axis, dtype=float)
-    u = u * np.where(u[..., 2:] < 0.0, -1.0, 1.0)
-    across = np.hypot(u[..., 0], u[..., 1])
-    yaw = np.where(across > 0.0, np.arctan2(u[..., 1], u[..., 0]), 0.0)
-    pitch = np.clip(np.arctan2(across, u[..., 2]) - mount_rad, -tilt_max_rad, tilt_max_rad)
-    return np.zeros_like(yaw), pitch, yaw
+    x, y, z = np.asarray(axis, dtype=float).tolist()
+    order = (x, -y, z) if mount_rad == math.pi / 2.0 else (z, x, -y)
+    if is_even and order < (0.0, 0.0, 0.0):
+        x, y, z = -x, -y, -z
+    across, limit = math.hypot(x, y), tilt_max_rad * (1.0 - 1e-15)  # rounded again, it is not beyond
+    tilt = math.atan2(across, z) - mount_rad
+    if mount_rad == 0.0:
+        if tilt > limit:
+            inwards = math.sin(limit) / across
+            x, y, z = x * inwards, y * inwards, math.cos(limit)
+        up = -1.0 if z < 0.0 else 1.0
+        return math.atan2(0.0 - y, up * math.hypot(x, z)), math.atan2(up * x, up * z) + 0.0, 0.0
+    pitch, yaw = min(max(tilt, -limit), limit), math.atan2(y, x) if across > 0.0 else 0.0
+    if pitch > math.pi / 2.0:  # upside down: the same attitude with a pitch in [-pi/2, pi/2]
+        return math.pi, math.pi - pitch, yaw - math.copysign(math.pi, yaw)
+    return 0.0, pitch + 0.0, yaw + 0.0
 
 
 def attitude_from_axis(axis: ArrayLike, yaw_rad: ArrayLike = 0.0) -> tuple[FloatArray, FloatArray]:
