@@ -18,7 +18,13 @@ from nullpose.report.figures.style import INK, VEHICLES, Curve, house_style
 
 FOLDER = Path(__file__).parent
 IMAGES = FOLDER.parent / "images"
-DIPOLES = ("level-vertical", "level-horizontal", "tilt-10", "tilt-30", "omnidirectional")
+DIPOLES = (
+    "level-vertical",
+    "level-horizontal",
+    "tilt-10-horizontal",
+    "tilt-30-horizontal",
+    "omnidirectional",
+)
 LEAST_LOSS_DB = -12.0
 FIELD_SIZES, SIZE_SHADES = (2, 4, 8), ("#00204d", "#7c7b78", "#d8a800")
 MINUS = "\N{MINUS SIGN}"
@@ -216,7 +222,7 @@ def draw_errors() -> None:
     }
     for axes, (kind, words) in zip(panels, kinds.items(), strict=True):
         other = next(name for name in kinds if name != kind)
-        for name in ("omnidirectional", "tilt-10"):
+        for name in ("omnidirectional", "tilt-10-horizontal"):
             look = VEHICLES[name]
             chosen = (table["case"] == name) & (table[other] == 0.0)
             x = table[kind][chosen]

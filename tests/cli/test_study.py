@@ -30,7 +30,7 @@ power_w = 1.0
 name = "free"
 [[cases]]
 name = "tilt"
-airframe = "tilt-10"
+airframe = "tilt-10-horizontal"
 [sweep]
 jammers.M.power_w = [1.0, 10.0]
 """

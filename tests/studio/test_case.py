@@ -5,6 +5,7 @@ from pathlib import Path
 from nullpose import apply_overrides, load
 from nullpose.scenario import Scenario
 from nullpose.studio.case import CASES, OPTIMUM, case_named, cases_of
+from nullpose.study import AIRFRAME_CASES
 
 
 def test_the_papers_cases_and_vehicles_are_offered(paper: Scenario, unsure: Scenario) -> None:
@@ -14,7 +15,7 @@ def test_the_papers_cases_and_vehicles_are_offered(paper: Scenario, unsure: Scen
     labels = [case.label for case in cases_of(paper)]
     assert labels[:4] == ["Optimum pose", "Zero interference", "Maximum gain", "Vertical"]
     assert "Robust pose" not in labels
-    assert sum(label.startswith("Vehicle: ") for label in labels) == 5
+    assert sum(label.startswith("Vehicle: ") for label in labels) == len(AIRFRAME_CASES)
 
 
 def test_a_secrecy_rate_leaves_few_cases(secret: Scenario) -> None:

@@ -8,7 +8,10 @@ from nullpose import Airframe, Array, Scenario, load
 from nullpose.study import AIRFRAME_CASES, cases_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-DIPOLES = ["level-vertical", "level-horizontal", "tilt-10", "tilt-30", "omnidirectional"]
+LEVELS = ("level", "tilt-10", "tilt-20", "tilt-30")
+DIPOLES = [f"{level}-{dipole}" for level in LEVELS for dipole in ("vertical", "horizontal")] + [
+    "omnidirectional"
+]
 
 
 def names(scenario: Scenario) -> list[str]:
@@ -24,27 +27,22 @@ def test_dipoles_come_by_the_tilt_that_they_take(paper: Scenario) -> None:
     assert names(paper) == [*DIPOLES, "array-2-digital", "array-4-digital", "array-8-digital"]
 
 
-def test_bands_of_axes_widen(paper: Scenario) -> None:
-    """Each horizontal dipole reaches what the one before does; the omnidirectional vehicle reaches all."""
-    bands = [case.airframe.axis_band for case in AIRFRAME_CASES[1:]]
-    assert [low for low, _ in bands] == [0.0] * 4
-    highs = [high for _, high in bands]
-    assert highs == sorted(highs)
-    assert AIRFRAME_CASES[-1].airframe.is_omnidirectional
-    assert AIRFRAME_CASES[0].airframe.axis_band == (1.0, 1.0)
+@pytest.mark.parametrize(("dipole", "mount_deg", "end"), [("vertical", 0.0, 1.0), ("horizontal", 90.0, 0.0)])
+def test_each_mount_has_the_same_tilts(dipole: str, mount_deg: float, end: float) -> None:
+    """Upright or flat, each dipole is tried at each tilt, and reaches more the more its vehicle tilts."""
+    airframes = [case.airframe for case in AIRFRAME_CASES if case.name.endswith(f"-{dipole}")]
+    assert [each.tilt_max_deg for each in airframes] == [0.0, 10.0, 20.0, 30.0]
+    assert {each.mount_deg for each in airframes} == {mount_deg}
+    widths = [high - low for low, high in (each.axis_band for each in airframes)]
+    assert widths == sorted(set(widths))
+    assert all(end in each.axis_band for each in airframes)
 
 
 def test_own_airframe_joins_by_its_tilt(paper: Scenario) -> None:
     """One that is none of the others stands where its tilt puts it; one with the same axes is left out."""
-    own = paper.model_copy(update={"airframe": Airframe(tilt_max_deg=20.0, mount_deg=45.0)})
-    assert names(own)[:6] == [
-        "level-vertical",
-        "level-horizontal",
-        "tilt-10",
-        "stated",
-        "tilt-30",
-        "omnidirectional",
-    ]
+    own = paper.model_copy(update={"airframe": Airframe(tilt_max_deg=15.0, mount_deg=45.0)})
+    after = DIPOLES.index("tilt-10-horizontal") + 1
+    assert names(own)[: len(DIPOLES) + 1] == [*DIPOLES[:after], "stated", *DIPOLES[after:]]
     same = paper.model_copy(update={"airframe": Airframe(tilt_max_deg=90.0, mount_deg=0.0)})
     assert names(same) == names(paper)
 

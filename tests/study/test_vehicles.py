@@ -3,6 +3,7 @@
 import csv
 import itertools
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,16 +14,16 @@ from nullpose.files import json_text
 from nullpose.scenario import apply_overrides
 from nullpose.study import AIRFRAME_CASES
 from nullpose.study.vehicles import (
+    Verdict,
     arrays,
     least_sufficient,
-    share,
-    suffices,
-    verdict,
+    verdict_on,
+    verdicts,
 )
 
 ROOT = Path(__file__).parents[2]
 KNOWN = ROOT / "tests" / "reference" / "airframes" / "known_answers.csv"
-TILTS = ("level-horizontal", "tilt-10", "tilt-30", "omnidirectional")
+TILTS = ("level-horizontal", "tilt-10-horizontal", "tilt-30-horizontal", "omnidirectional")
 
 
 def known() -> list[dict[str, float]]:
@@ -63,13 +64,43 @@ def test_more_tilt_is_never_worse(paper: Scenario) -> None:
 def test_the_least_vehicle_that_suffices(paper: Scenario) -> None:
     """Ten degrees are enough at a ratio of 1, level is enough where jamming is weak."""
     found = compare_airframes(paper, cases=AIRFRAME_CASES)
-    assert least_sufficient(found).name == "tilt-10"
+    assert least_sufficient(found).name == "tilt-10-horizontal"
     weak = compare_airframes(apply_overrides(paper, ["jammers.M.power_w=0.01"]), cases=AIRFRAME_CASES)
     assert least_sufficient(weak).name == "level-horizontal"
-    assert suffices(found, found.of("omnidirectional")[0])
-    assert share(found, found.of("omnidirectional")[0]) == 1.0
-    assert not suffices(found, found.of("level-vertical")[0])
-    assert suffices(found, found.of("level-vertical")[0], tolerance=0.6)
+    assert verdict_on(found, found.of("omnidirectional")[0]) is Verdict.SUFFICES
+    (level,) = found.of("level-vertical")
+    assert verdict_on(found, level) is Verdict.FALLS_SHORT
+    assert verdict_on(found, level, tolerance=0.6) is Verdict.SUFFICES
+
+
+def test_an_upright_dipole_can_need_the_least_tilt() -> None:
+    """With whips on the ground the dipole has to stand: with it flat no tilt compared suffices."""
+    found = compare_airframes(load(ROOT / "examples" / "whips.toml"))
+    assert least_sufficient(found).name == "tilt-30-vertical"
+    assert verdict_on(found, found.of("tilt-30-horizontal")[0]) is Verdict.FALLS_SHORT
+
+
+def test_a_verdict_is_proved_or_left_open(paper: Scenario) -> None:
+    """A vehicle suffices by its value against the other's bound, falls short by its bound, or neither."""
+    found = compare_airframes(paper, cases=AIRFRAME_CASES)
+    (row,), (whole,) = found.of("tilt-10-horizontal"), found.of("omnidirectional")
+
+    def verdict(value: float, bound: float | None, ceiling: float | None) -> Verdict:
+        bounded = replace(whole, objective=replace(whole.objective, value=1.0, upper_bound=ceiling))
+        table = replace(found, rows=(row, bounded))
+        return verdict_on(
+            table, replace(row, objective=replace(row.objective, value=value, upper_bound=bound))
+        )
+
+    assert verdict(0.995, 0.996, 1.001) is Verdict.SUFFICES
+    assert verdict(0.985, 0.988, 1.001) is Verdict.FALLS_SHORT
+    for value, bound, ceiling in [
+        (0.985, 0.995, 1.001),
+        (0.995, 0.996, 1.2),
+        (0.5, None, None),
+        (1.0, 1.0, None),
+    ]:
+        assert verdict(value, bound, ceiling) is Verdict.NOT_PROVED
 
 
 def test_arrays_are_tried_on_a_level_vehicle(paper: Scenario) -> None:
@@ -95,7 +126,7 @@ def test_guarantees_hold_what_they_say(robust: ResultTable) -> None:
 def test_a_guarantee_is_below_random_errors(robust: ResultTable) -> None:
     """With axis and jammer moved at random within the stated errors, no value falls below the guarantee."""
     rng = np.random.default_rng(4)
-    result = robust.of("tilt-10")[0]
+    result = robust.of("tilt-10-horizontal")[0]
     scenario, pose = robust.scenario, result.pose
     place, axis = np.array(scenario.jammer_positions_m[0]), pose.antenna_axis
     worst = np.inf
@@ -118,27 +149,30 @@ def test_no_errors_nothing_guaranteed(paper: Scenario) -> None:
     found = compare_airframes(
         paper, cases=AIRFRAME_CASES, certify=False, on_progress=lambda *tick: ticks.append(tick)
     )
-    assert ticks == [(done, 5) for done in range(1, 6)]
+    assert ticks == [(done, len(AIRFRAME_CASES)) for done in range(1, len(AIRFRAME_CASES) + 1)]
+    assert least_sufficient(found) is None
     assert {result.guaranteed for result in found.rows} == {None}
     assert {result.status for result in found.rows} == {Status.BEST_FOUND}
     assert {result.objective.upper_bound for result in found.rows} == {None}
 
 
 def test_rates_are_compared_as_rates() -> None:
-    """With an eavesdropper the shares are of rates, and more tilt is never worse."""
+    """With an eavesdropper rates are compared, and more tilt is never worse."""
     found = compare_airframes(load(ROOT / "examples" / "eavesdropper.toml"))
     assert arrays(found) == ()
     assert {result.objective.name for result in found.rows} == {"min_secrecy_rate"}
-    shares = [share(found, found.of(name)[0]) for name in TILTS]
-    assert all(less <= more + 1e-6 for less, more in itertools.pairwise(shares))
+    rates = [found.of(name)[0].objective.value for name in TILTS]
+    assert all(less <= more + 1e-6 for less, more in itertools.pairwise(rates))
 
 
 def test_plain_data(robust: ResultTable) -> None:
     """The table as plain data is JSON, and says what the objects say."""
-    data = json.loads(json_text(robust.to_dict() | verdict(robust)))
+    data = json.loads(json_text(robust.to_dict() | verdicts(robust)))
     assert [row["case"] for row in data["rows"]] == [case.name for case in AIRFRAME_CASES]
     assert data["least_sufficient"] == least_sufficient(robust).name
-    row = data["rows"][2]
+    (row,) = (row for row in data["rows"] if row["case"] == "tilt-10-horizontal")
     assert row["airframe"] == {"tilt_max_deg": 10.0, "mount_deg": 90.0}
-    assert row["guaranteed"]["robust_pose"] == robust.of("tilt-10")[0].guaranteed.robust_pose
-    assert data["share_of_omnidirectional"]["tilt-10"] == pytest.approx(0.9926, abs=1e-4)
+    assert row["guaranteed"]["robust_pose"] == robust.of("tilt-10-horizontal")[0].guaranteed.robust_pose
+    assert data["difference_from_omnidirectional"]["tilt-10-horizontal"] == pytest.approx(-0.032, abs=1e-3)
+    assert data["suffices"]["level-vertical"] == "no"
+    assert data["suffices"]["tilt-10-horizontal"] == "yes"

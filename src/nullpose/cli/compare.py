@@ -20,7 +20,7 @@ def compare(
         bool,
         typer.Option(
             "--airframes",
-            help="Compare vehicles instead: level, tilting, omnidirectional, and level with an array.",
+            help="Compare vehicles instead: tilts up to 0, 10, 20, 30 degrees and any, and arrays.",
         ),
     ] = False,
     figure: FigureFile = None,
@@ -36,7 +36,7 @@ def compare(
     from nullpose.report.answer import answer_lines
     from nullpose.report.comparison import airframes_view, comparison_view
     from nullpose.study import ResultTable
-    from nullpose.study.vehicles import compare_airframes, compare_schemes, verdict
+    from nullpose.study.vehicles import compare_airframes, compare_schemes, verdicts
 
     solver: Callable[..., ResultTable] = compare_airframes if airframes else compare_schemes
     with compiling_announced(), Ticker("comparing vehicles" if airframes else "solving") as ticker:
@@ -47,5 +47,5 @@ def compare(
 
         write_figure_file(draw_comparison(found, width), figure)
     view = airframes_view if airframes else comparison_view
-    answer: PlainTable = {"answer": answer_lines(found), **verdict(found)} if airframes else {}
+    answer: PlainTable = {"answer": answer_lines(found), **verdicts(found)} if airframes else {}
     tell(found, view, json_output, files=[] if figure is None else [figure], **answer)

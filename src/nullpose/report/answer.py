@@ -9,44 +9,64 @@ from nullpose.objectives import Quantity
 from nullpose.report.numbers import capitalised, with_unit
 from nullpose.study import ResultRow, ResultTable
 from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
-from nullpose.study.vehicles import TOLERANCE, arrays, difference, dipoles, least_sufficient, suffices
+from nullpose.study.vehicles import TOLERANCE, Verdict, arrays, difference, dipoles, verdict_on
+
+_VERDICTS = {
+    Verdict.SUFFICES: "is proved to suffice",
+    Verdict.FALLS_SHORT: "is proved not to suffice",
+    Verdict.NOT_PROVED: "is not proved to suffice, nor not to",
+}
 
 
 def answer_lines(comparison: ResultTable) -> list[str]:
-    """Answer whether the vehicle has to be omnidirectional, by the vehicles that were compared alone.
+    """Answer which of the vehicles compared can stand in for the omnidirectional one, so far as it is proved.
 
-    The least of them that suffices or the one that comes nearest, with one dipole and with an array.
+    Of those with one dipole and of those with an array: the least that suffices, or the nearest.
     """
-    least, whole = least_sufficient(comparison), comparison.of(OMNIDIRECTIONAL)[0]
-    if least is None:
-        return ["Of the vehicles compared, none with one dipole gives every node a signal in this scene."]
+    whole = comparison.of(OMNIDIRECTIONAL)[0]
+    if all(row.objective.value <= 0.0 for row in dipoles(comparison)):
+        return ["Of the vehicles compared, none with one dipole was found to reach every node."]
     lesser = [row for row in dipoles(comparison) if row is not whole]
     lines = [_least_line(comparison, kind) for kind in (lesser, arrays(comparison)) if kind]
-    if least is whole:
-        only = "Of the vehicles compared with one dipole, only the omnidirectional one was found to suffice."
-        lines.insert(0, f"{only} Another tilt or mount may: state it in [airframe] to compare it.")
-    for row in comparison.rows:
-        if row.name == FILE_VEHICLE and row is not least:
-            verdict = "suffices too" if suffices(comparison, row) else "does not suffice"
-            lines.append(f"{capitalised(row.case.phrase)} {verdict}: it {_reach(comparison, row)}.")
-    return lines
+    for row in lesser:
+        if row.name == FILE_VEHICLE:
+            phrase, verdict = capitalised(row.case.phrase), _VERDICTS[verdict_on(comparison, row)]
+            lines.append(f"{phrase} {verdict}: it {_reach(comparison, row)}.")
+    return [*lines, "The least tilt for each mount of the dipole: nullpose vehicle FILE"]
+
+
+def sufficing(quantity: Quantity) -> str:
+    """Say what a vehicle has to reach to suffice, and how either answer is proved."""
+    loss = "" if quantity.is_rate else f" ({-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB less)"
+    return (
+        f"Suffices: reaches {100.0 * (1.0 - TOLERANCE):g} %{loss} of the omnidirectional vehicle's bound. "
+        "No: its own bound is below that share of the omnidirectional vehicle's value."
+    )
 
 
 def _least_line(comparison: ResultTable, found: Sequence[ResultRow]) -> str:
     """Name the least of a kind's vehicles, in the order of what they take, that suffices or is nearest."""
-    best, verdict = max(found, key=lambda row: row.objective.value), "comes nearest"
-    least = next((row for row in found if suffices(comparison, row)), None)
-    if least is not None:
-        is_rate = best.objective.quantity.is_rate
-        within = f"{100.0 * TOLERANCE:g} %" if is_rate else f"{-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB"
-        best, verdict = least, f"is the simplest within {within} of that"
-    kind = "an array" if best.case.array else "one dipole"
-    reach = f"{capitalised(best.case.phrase)} {_reach(comparison, best)} in this scene."
-    return f"{reach} Of the vehicles compared with {kind}, it {verdict}."
+    kind, less = ("an array", "fewer elements") if found[0].case.array else ("one dipole", "less tilt")
+    enough = (1.0 - TOLERANCE) * comparison.of(OMNIDIRECTIONAL)[0].objective.value
+    close = [row for row in found if row.objective.value >= enough]
+    proved = [row for row in close if verdict_on(comparison, row) is Verdict.SUFFICES]
+    if close:
+        row, how = (proved or close)[0], "proved" if proved else "found (not proved)"
+        reach = f"{capitalised(row.case.phrase)} {_reach(comparison, row)}."
+        return f"{reach} It is {how} to suffice; of the vehicles compared with {kind}, none with {less} is."
+    nearest = max(found, key=lambda row: row.objective.value)
+    are_short = all(verdict_on(comparison, row) is Verdict.FALLS_SHORT for row in found)
+    reach = f"{nearest.case.phrase} comes nearest: it {_reach(comparison, nearest)}"
+    all_of = "All" if are_short else "Not all"
+    return f"Of the lesser vehicles compared with {kind}, {reach}. {all_of} are proved not to suffice."
 
 
 def _reach(comparison: ResultTable, row: ResultRow) -> str:
-    words = _less_or_more(difference(comparison, row), row.objective.quantity)
+    if row.objective.value <= 0.0:
+        return "leaves a node without signal"
+    loss = difference(comparison, row)
+    # one dipole cannot reach more: what it is found to reach beyond is within the gaps
+    words = _less_or_more(loss if row.case.array else min(loss, 0.0), row.objective.quantity)
     return f"reaches {words} than the omnidirectional vehicle"
 
 

@@ -8,19 +8,19 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.answer import answer_lines, antennas_answer
+from nullpose.report.answer import answer_lines, antennas_answer, sufficing
 from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import Row, View, beside, document, grouped, head, rows, table
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.links import binding_nodes
-from nullpose.report.numbers import bound_text, capitalised, rounded_up
+from nullpose.report.numbers import bound_text, capitalised
 from nullpose.report.results import pose_cells, work_words
 from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer
 from nullpose.solver import Status
 from nullpose.study import ResultRow, ResultTable
 from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
-from nullpose.study.vehicles import dipoles
+from nullpose.study.vehicles import dipoles, verdict_on
 
 _STATUS = {
     Status.CERTIFIED: "certified",
@@ -62,10 +62,11 @@ def comparison_view(comparison: ResultTable) -> View:
 def airframes_view(comparison: ResultTable) -> View:
     """Set a row for each vehicle, what it guarantees under errors, what is proved, and the answer."""
     found, count = comparison.rows, len(dipoles(comparison))
-    scenario, unit = found[0].scenario, found[0].objective.quantity.unit
+    scenario, quantity = found[0].scenario, found[0].objective.quantity
     whole = comparison.of(OMNIDIRECTIONAL)[0]
     labels = [row.label for row in found]
     bold = [row.label for row in found if row.name == FILE_VEHICLE]
+    verdicts = [verdict_on(comparison, row).value for row in found]
     nominal, robust, most = numbers_of(comparison)[2:, :count]
     guaranteed = rows(
         {
@@ -76,26 +77,21 @@ def airframes_view(comparison: ResultTable) -> View:
             "difference": _texts(robust - robust[found.index(whole)], 3),
         }
     )
-    gaps = [row.objective.relative_gap for row in found if row.objective.relative_gap is not None]
     lines = [
-        "Omnidirectional: the vehicle can take any attitude. Difference: from that vehicle.",
+        "Omnidirectional: it can take any attitude. Difference: from that vehicle.",
+        "Vertical, horizontal: the dipole while the vehicle is level. Yaw is free.",
+        sufficing(quantity),
         *_absent(comparison),
         *_proof_lines(comparison, lambda row: "arrays" if row.case.array else "one dipole"),
-        *([f"The widest relative gap between value and bound is {rounded_up(max(gaps))}."] if gaps else []),
-        *(
-            [
-                "Guaranteed: proved for every error within the stated limits. "
-                "No guarantee is computed for arrays."
-            ]
-            if scenario.is_uncertain
-            else []
-        ),
     ]
+    if scenario.is_uncertain:
+        lines.append("Guaranteed: proved for every error within the stated limits, but not for arrays.")
+        lines.append("The answer is about the values without errors.")
     return document(
         head(scenario.name),
         "",
-        _values(found, whole, "vehicle, dipole", labels, bold=bold, rule=count),
-        table(f"Guaranteed under the file's errors ({unit})", guaranteed, bold=bold)
+        _values(found, whole, "vehicle, dipole", labels, bold=bold, rule=count, verdicts=verdicts),
+        table(f"Guaranteed under the file's errors ({quantity.unit})", guaranteed, bold=bold)
         if scenario.is_uncertain
         else None,
         "\n".join(lines),
@@ -142,6 +138,7 @@ def _values(
     *,
     bold: Sequence[str] = (),
     rule: int = 0,
+    verdicts: Sequence[str] | None = None,
 ) -> View | None:
     """Set the value and the bound of each row, its difference from one of them, and its status.
 
@@ -152,23 +149,26 @@ def _values(
         labels: of the rows.
         bold: those that stand out.
         rule: place of a line between rows; 0 for none.
+        verdicts: whether each vehicle suffices, in place of the power ratio.
     """
     quantity, objectives = whole.objective.quantity, [row.objective for row in found]
     values = np.array([quantity.in_unit(each.value) for each in objectives])
+    has_ratio = verdicts is None and not quantity.is_rate
     cells = rows(
         {
             heading: labels,
-            "power ratio": [None if quantity.is_rate else f"{each.value:.5g}" for each in objectives],
+            "power ratio": [f"{each.value:.5g}" if has_ratio else None for each in objectives],
             "value": _texts(values, 4),
             "bound": [bound_text(each, 4) for each in objectives],
             "difference": _texts(values - quantity.in_unit(whole.objective.value), 3),
+            "suffices": verdicts or [None] * len(found),
             "status": [_STATUS[row.status] for row in found],
         }
     )
     if rule:
         cells.insert(rule, {})
     title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
-    return table(title, cells, bold=bold, left=["status"])
+    return table(title, cells, bold=bold, left=["suffices", "status"])
 
 
 def _texts(numbers: FloatArray, digits: int) -> list[str | None]:

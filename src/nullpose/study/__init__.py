@@ -10,13 +10,13 @@ from nullpose.study.sweep import spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import value_map
 from nullpose.study.vehicles import (
+    Verdict,
     cases_of,
     compare_airframes,
     compare_schemes,
     difference,
     least_sufficient,
-    share,
-    suffices,
+    verdict_on,
 )
 
 __all__ = [
@@ -30,6 +30,7 @@ __all__ = [
     "MountTilt",
     "ResultRow",
     "ResultTable",
+    "Verdict",
     "cases_of",
     "compare_airframes",
     "compare_antennas",
@@ -39,9 +40,8 @@ __all__ = [
     "least_sufficient",
     "least_tilt",
     "poses_from_csv",
-    "share",
     "spaced",
-    "suffices",
     "sweep",
     "value_map",
+    "verdict_on",
 ]

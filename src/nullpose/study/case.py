@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field
@@ -23,19 +24,14 @@ from nullpose.study.fixed_pose import FixedPose
 OMNIDIRECTIONAL = "omnidirectional"  # the case that other vehicles are compared with
 FILE_VEHICLE = "stated"  # the case of the scenario's own vehicle, if it is none of the others
 
-# The vehicles of every comparison, by the tilt that they take: largest tilt and mount of the dipole [deg],
-# label in a table, phrase in a sentence. Yaw is free for all of them.
-_USUAL = {
-    "level-vertical": (0.0, 0.0, "level, vertical", "a level vehicle with a vertical dipole"),
-    "level-horizontal": (0.0, 90.0, "level, horizontal", "a level vehicle with a horizontal dipole"),
-    "tilt-10": (10.0, 90.0, "tilt 10, horizontal", "a 10 degree tilt with a horizontal dipole"),
-    "tilt-30": (30.0, 90.0, "tilt 30, horizontal", "a 30 degree tilt with a horizontal dipole"),
-    OMNIDIRECTIONAL: (180.0, 0.0, "omnidirectional", "an omnidirectional vehicle"),
-}
+_TILTS_DEG, _MOUNTS_DEG = (0, 10, 20, 30), {"vertical": 0.0, "horizontal": 90.0}
 _AIRFRAMES = {
-    name: Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
-    for name, (tilt_deg, mount_deg, *_) in _USUAL.items()
-}
+    f"{f'tilt-{tilt_deg}' if tilt_deg else 'level'}-{dipole}": Airframe(
+        tilt_max_deg=tilt_deg, mount_deg=mount_deg
+    )
+    for tilt_deg, (dipole, mount_deg) in product(_TILTS_DEG, _MOUNTS_DEG.items())
+} | {OMNIDIRECTIONAL: Airframe(tilt_max_deg=180.0)}
+"""The vehicles of every comparison, by the tilt that they take; every tilt with either mount."""
 LEVEL = "level-vertical"  # the case that studies compare others with
 
 Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
@@ -106,7 +102,7 @@ class Case(Section):
     name: Label = Field(
         default="",
         description="What tables and figures call it. Left out: C1, C2, ... by its place in the file.",
-        examples=["tilt-10"],
+        examples=["tilt-10-horizontal"],
     )
     scheme: _SchemeName | None = Field(
         default=None,
@@ -115,9 +111,10 @@ class Case(Section):
     )
     airframe: Annotated[Airframe, _VEHICLE] | None = Field(
         default=None,
-        description="The vehicle in place of the scene's: level-vertical, level-horizontal, tilt-10, "
-        "tilt-30, omnidirectional, a preset, or a table with tilt_max_deg and mount_deg, which may be best.",
-        examples=["tilt-10"],
+        description="The vehicle in place of the scene's: level-vertical, level-horizontal, "
+        "tilt-10-horizontal (or 20 or 30, or vertical), omnidirectional, a preset, or a table with "
+        "tilt_max_deg and mount_deg, which may be best.",
+        examples=["tilt-10-horizontal"],
     )
     mount_scenes: Annotated[int, Count("a number of scenes", 1, 1e6, "more take longer")] | None = Field(
         default=None,
@@ -200,7 +197,8 @@ class Case(Section):
             return f"file: tilt {_degrees(self.airframe.tilt_max_rad)}, mount {self.airframe.mount_deg:g}"
         if self.scheme is not None:
             return self.scheme.label
-        return _USUAL[self.name][2] if self.name in _USUAL else self.name
+        level_or_tilt, _, dipole = self.name.rpartition("-")
+        return f"{level_or_tilt.replace('-', ' ')}, {dipole}" if dipole in _MOUNTS_DEG else self.name
 
     @property
     def phrase(self) -> str:
@@ -213,11 +211,12 @@ class Case(Section):
             return f"the {self.scheme.label.lower()} pose"
         if self.airframe is None and not self.usual:
             return f"the case {self.name}"
-        phrase = _USUAL[self.usual][3] if self.usual else ""
-        if self.airframe is not None and not phrase:
-            tilt = _degrees(self.airframe.tilt_max_rad)
-            vehicle = f"a {tilt} degree tilt" if self.airframe.tilt_max_rad else "a level vehicle"
-            phrase = f"{vehicle} with the dipole mounted at {self.airframe.mount_deg:g} degrees"
+        phrase, airframe = f"an {OMNIDIRECTIONAL} vehicle", _AIRFRAMES.get(self.usual, self.airframe)
+        if airframe is not None and self.usual != OMNIDIRECTIONAL:
+            tilt, mount_deg = _degrees(airframe.tilt_max_rad), airframe.mount_deg
+            words = {usual_deg: f"a {word} dipole" for word, usual_deg in _MOUNTS_DEG.items()}
+            dipole = words.get(mount_deg, f"the dipole mounted at {mount_deg:g} degrees")
+            phrase = f"{'a level vehicle' if tilt == '0' else f'a {tilt} degree tilt'} with {dipole}"
         if self.name == FILE_VEHICLE:
             phrase = f"the file's vehicle ({phrase})"
         chosen = f" (the best mount tried, on up to {self.mount_scenes} scenes)" if self.mount_scenes else ""

@@ -182,7 +182,7 @@ class ResultTable:
         """Return the rows of one case, in the order of the values.
 
         Args:
-            name: of the case: a scheme, or a vehicle such as ``tilt-10``.
+            name: of the case: a scheme, or a vehicle such as ``tilt-10-horizontal``.
 
         Raises:
             KeyError: the table has no such case.

@@ -1,10 +1,11 @@
-"""Schemes or vehicles compared, and the question whether it has to be an omnidirectional vehicle."""
+"""Schemes or vehicles compared, and which vehicles suffice in place of an omnidirectional one."""
 
 from __future__ import annotations
 
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from enum import StrEnum
 from types import MappingProxyType
 from typing import Unpack
 
@@ -19,7 +20,7 @@ from nullpose.solver.robust import guarantee
 from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, Case
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 
-TOLERANCE = 0.01  # a vehicle suffices if it reaches no less than the omnidirectional one but for this share
+TOLERANCE = 0.01  # a vehicle suffices if it reaches what the omnidirectional one can, but for this share
 _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
 
 
@@ -84,7 +85,7 @@ def compare_airframes(
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> ResultTable:
-    """Solve a scenario for each kind of vehicle: level, tilting, omnidirectional, with an array.
+    """Solve a scenario for vehicles that differ in tilt and in the dipole's mount, and for arrays.
 
     The scenario's own airframe is tried as well if it states one that is none of the others. Where it states
     errors, what each dipole guarantees is worked out at the pose that is best without them, and at the pose
@@ -104,9 +105,9 @@ def compare_airframes(
     Example:
         >>> import nullpose
         >>> scenario = nullpose.load("examples/paper.toml")
-        >>> found = nullpose.compare_airframes(scenario, certify=False)
+        >>> found = nullpose.compare_airframes(scenario)
         >>> nullpose.study.least_sufficient(found).name
-        'tilt-10'
+        'tilt-10-horizontal'
     """
     vehicles = cases_of(scenario) if cases is None else cases
     return _solved(scenario, vehicles, options, on_progress, {})
@@ -152,40 +153,47 @@ def arrays(table: ResultTable) -> tuple[ResultRow, ...]:
     return tuple(row for row in table.rows if row.case.array is not None)
 
 
-def share(table: ResultTable, row: ResultRow) -> float | None:
-    """Divide a vehicle's power ratio or rate by the omnidirectional one's; None if that is 0."""
-    whole = table.of(OMNIDIRECTIONAL)[0].objective.value
-    return row.objective.value / whole if whole > 0.0 else None
-
-
 def difference(table: ResultTable, row: ResultRow) -> float:
     """Subtract the omnidirectional vehicle's value from a vehicle's, in dB or bits/s/Hz."""
     quantity, whole = row.objective.quantity, table.of(OMNIDIRECTIONAL)[0]
     return quantity.in_unit(row.objective.value) - quantity.in_unit(whole.objective.value)
 
 
-def suffices(table: ResultTable, row: ResultRow, tolerance: float = TOLERANCE) -> bool:
-    """Decide whether a vehicle reaches as much as the omnidirectional one, but for a relative tolerance.
+class Verdict(StrEnum):
+    """Whether a vehicle suffices in place of the omnidirectional one, so far as the bounds prove it."""
 
-    Measured against the upper bound of the omnidirectional one where there is one, so that a yes is proved.
+    SUFFICES = "yes"
+    FALLS_SHORT = "no"
+    NOT_PROVED = "not proved"
+
+
+def verdict_on(table: ResultTable, row: ResultRow, tolerance: float = TOLERANCE) -> Verdict:
+    """Decide whether a vehicle reaches what the omnidirectional one can, but for a relative tolerance.
+
+    It suffices if its value is close to the omnidirectional vehicle's upper bound, and falls short if its own
+    upper bound is below the value that the omnidirectional one needs at least.
     """
-    best = table.of(OMNIDIRECTIONAL)[0]
-    whole = best.objective.value if best.objective.upper_bound is None else best.objective.upper_bound
-    return best.objective.value > 0.0 and (row is best or row.objective.value >= (1.0 - tolerance) * whole)
+    whole, stated, share = table.of(OMNIDIRECTIONAL)[0], row.objective, 1.0 - tolerance
+    best, ceiling = whole.objective.value, whole.objective.upper_bound
+    if best > 0.0 and ceiling is not None and (row is whole or stated.value >= share * ceiling):
+        return Verdict.SUFFICES
+    if stated.upper_bound is not None and stated.upper_bound < share * best:
+        return Verdict.FALLS_SHORT
+    return Verdict.NOT_PROVED
 
 
 def least_sufficient(table: ResultTable) -> ResultRow | None:
-    """Find the vehicle with one dipole that suffices with the least tilt; None if none reaches anything."""
-    return next((row for row in dipoles(table) if suffices(table, row)), None)
+    """Find the vehicle with one dipole and the least tilt that is proved to suffice; None if none is."""
+    return next((row for row in dipoles(table) if verdict_on(table, row) is Verdict.SUFFICES), None)
 
 
-def verdict(table: ResultTable) -> PlainTable:
-    """Return the differences from the omnidirectional vehicle, and the least that suffices, as plain data."""
+def verdicts(table: ResultTable) -> PlainTable:
+    """List what the table answers, as plain data: differences, verdicts and the least tilt that suffices."""
     least = least_sufficient(table)
     return {
-        "share_of_omnidirectional": {row.name: share(table, row) for row in table.rows},
         "difference_from_omnidirectional": {row.name: difference(table, row) for row in table.rows},
         "tolerance": TOLERANCE,
+        "suffices": {row.name: verdict_on(table, row).value for row in table.rows},
         "least_sufficient": None if least is None else least.name,
     }
 

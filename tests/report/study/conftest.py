@@ -34,7 +34,7 @@ TABLES: dict[str, Any] = {
     },
 }
 
-VEHICLES = ("level-vertical", "tilt-10", "omnidirectional")
+VEHICLES = ("level-vertical", "tilt-10-horizontal", "omnidirectional")
 CASES = [{"name": name, "airframe": name} for name in VEHICLES]
 
 Cell = float | tuple[float, str] | str

@@ -32,13 +32,16 @@ def specify() -> Specify:
 
 
 def test_vehicles_have_their_phrases(specify: Specify) -> None:
-    """The usual five are named as everywhere, whatever the case is called and however it is stated."""
+    """The usual ones are named as everywhere, whatever the case is called and however it is stated."""
     cases = report_cases(
         specify(*({"name": f"v{n}", "airframe": c.name} for n, c in enumerate(AIRFRAME_CASES)))
     )
     assert list(cases["phrase"]) == [case.phrase for case in AIRFRAME_CASES]
     stated = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 10.0, "mount_deg": 90.0}}))
-    assert list(stated.loc["x", ["usual", "phrase"]]) == ["tilt-10", AIRFRAME_CASES[2].phrase]
+    assert list(stated.loc["x", ["usual", "phrase"]]) == [
+        "tilt-10-horizontal",
+        "a 10 degree tilt with a horizontal dipole",
+    ]
     other = report_cases(specify({"name": "x", "airframe": {"tilt_max_deg": 20.0, "mount_deg": 45.0}}))
     phrase = "a 20 degree tilt with the dipole mounted at 45 degrees"
     assert list(other.loc["x", ["usual", "phrase"]]) == ["", phrase]
@@ -80,14 +83,14 @@ def test_equal_phrases_are_told_apart(specify: Specify) -> None:
 
 def test_what_others_are_measured_against(specify: Specify) -> None:
     """The upright level vehicle, another level one, the first; robust cases among themselves."""
-    free, tilt = {"name": "free"}, {"name": "tilt", "airframe": "tilt-10"}
+    free, tilt = {"name": "free"}, {"name": "tilt", "airframe": "tilt-10-horizontal"}
     flat, upright = ({"name": name, "airframe": name} for name in ("level-horizontal", "level-vertical"))
     for given, expected in (
         ((free, flat, upright), "level-vertical"),
         ((free, tilt, flat), "level-horizontal"),
         ((free, tilt), "free"),
     ):
-        sure = {"name": "sure", "airframe": "tilt-30", "robust": True}
+        sure = {"name": "sure", "airframe": "tilt-30-horizontal", "robust": True}
         cases = report_cases(specify(*given, sure))
         assert set(cases.loc[~cases["robust"], "against"]) == {expected}
         assert set(cases.loc[~cases["robust"], "whole"]) == {"free"}

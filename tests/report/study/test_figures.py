@@ -36,7 +36,7 @@ def test_gains_stand_at_their_medians(summed: Summed, ladder: Ladder) -> None:
     """A row for each case but the reference."""
     figure = figures_of(summed(ladder(40, 1.0, 2.5)))["gain"]
     (axes,) = figure.axes
-    assert [label.get_text() for label in axes.get_yticklabels()] == ["tilt-10", "omnidirectional"]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["tilt-10-horizontal", "omnidirectional"]
     discs, _ = (one for one in axes.collections if isinstance(one, PathCollection))
     assert discs.get_offsets()[:, 0].tolist() == pytest.approx([1.0, 2.5])
     assert "over level-vertical  (dB)" in figure.get_supxlabel()
@@ -50,7 +50,7 @@ def test_cases_look_different(summed: Summed) -> None:
         {"name": "c", "robust": True},
         {"name": "d", "scheme": "zero-interference"},
         {"name": "e", "airframe": {"tilt_max_deg": 20.0, "mount_deg": 90.0}},
-        {"name": "f", "airframe": "tilt-10"},
+        {"name": "f", "airframe": "tilt-10-horizontal"},
     ]
     (legend,) = figures_of(summed([[[0.0] * 6]], cases=cases))["distribution"].legends
     lines = legend.get_lines()

@@ -27,7 +27,7 @@ def test_levels_and_gains(summed: Summed, ladder: Ladder) -> None:
         (4.0, 4.0, 4.0)
     )
     assert (whole["against"], whole["pairs"]) == ("level-vertical", 100)
-    tilted = _row(summary, "tilt-10")
+    tilted = _row(summary, "tilt-10-horizontal")
     assert (tilted["difference_median"], tilted["difference_worst_tenth"]) == pytest.approx((-2.0, -2.0))
     ends = tilted["difference_median_low"], tilted["difference_median_high"]
     assert ends == pytest.approx((-2.0, -2.0))
@@ -49,7 +49,9 @@ def test_another_case_to_measure_against(summed: Summed, ladder: Ladder) -> None
 
 def test_a_wrong_name_to_measure_against(summed: Summed, ladder: Ladder) -> None:
     """It is told with the names that there are."""
-    with pytest.raises(UsageError, match=r"against: given 'level'; allowed: level-vertical, tilt-10"):
+    with pytest.raises(
+        UsageError, match=r"against: given 'level'; allowed: level-vertical, tilt-10-horizontal"
+    ):
         summed(ladder(2, 0.0, 0.0), against="level")
 
 
@@ -72,7 +74,7 @@ def test_outage(summed: Summed, ladder: Ladder) -> None:
 
 def test_time_and_gaps(summed: Summed, ladder: Ladder) -> None:
     """Median, 95th percentile and worst of what was needed and reached."""
-    row = _row(summed(ladder(20, 0.0, 0.0)), "tilt-10")
+    row = _row(summed(ladder(20, 0.0, 0.0)), "tilt-10-horizontal")
     assert (row["seconds_median"], row["seconds_p95"], row["seconds_worst"]) == pytest.approx(
         (0.1, 0.19, 0.2)
     )
@@ -108,5 +110,5 @@ def test_no_signal_at_all(summed: Summed) -> None:
     cells = [[[-math.inf, -math.inf, 0.0]], [[0.0, 0.0, 1.0]], [[-math.inf, 1.0, 2.0]]]
     summary = summed(cells)
     assert _row(summary, "level-vertical")["median"] == -math.inf
-    assert _row(summary, "tilt-10")["gain_median"] == 0.0
-    assert _row(summary, "tilt-10")["difference_median"] == -math.inf
+    assert _row(summary, "tilt-10-horizontal")["gain_median"] == 0.0
+    assert _row(summary, "tilt-10-horizontal")["difference_median"] == -math.inf

@@ -117,7 +117,7 @@ def test_studies_with_little_in_them(make: Make, cells: Any, given: Any, figures
 
 def test_no_text_of_a_study_is_markup(make: Make, ladder: Ladder) -> None:
     """A title and names with signs of Markdown, HTML and TeX stand in the report as they are."""
-    cases = [{"name": "<b>|x|</b>"}, {"name": "$\\alpha$ [a](b)", "airframe": "tilt-10"}]
+    cases = [{"name": "<b>|x|</b>"}, {"name": "$\\alpha$ [a](b)", "airframe": "tilt-10-horizontal"}]
     folder = make(ladder(40, 1.0), cases=cases, name="<script>alert(1)</script> & *x* {{ 1 }}")
     report_study(folder)
     text = (folder / "report" / "report.md").read_text(encoding="utf-8")

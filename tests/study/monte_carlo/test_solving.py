@@ -84,7 +84,7 @@ def test_without_a_jammer_there_is_no_null(spec: Spec) -> None:
 def test_a_given_pose_that_is_not_allowed_says_so(spec: Spec) -> None:
     """A tilt that the vehicle does not reach is the reason of the row, as in an evaluation."""
     pose = {"position_m": [1.0, 25.0, 9.0], "roll_deg": 80.0}
-    row, _ = _row(spec(cases=[{"pose": pose, "airframe": "tilt-10"}]))
+    row, _ = _row(spec(cases=[{"pose": pose, "airframe": "tilt-10-horizontal"}]))
     assert row["status"] == "given"
     assert row["reason"] == "not allowed: tilted by 80.000 deg, more than the airframe's 10 deg"
 

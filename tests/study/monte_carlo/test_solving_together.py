@@ -16,7 +16,12 @@ from nullpose.study.monte_carlo.solving import solved_row
 
 Spec = Callable[..., StudySpec]
 
-CASES = [{"name": "free"}, {"name": "tilt", "airframe": "tilt-10"}, {"scheme": "vertical"}, {"gap": 0.1}]
+CASES = [
+    {"name": "free"},
+    {"name": "tilt", "airframe": "tilt-10-horizontal"},
+    {"scheme": "vertical"},
+    {"gap": 0.1},
+]
 MOUNTS = {"free": 0.0, "tilt": math.pi / 2.0}
 SWEEP = {"jammers.M.power_w": [0.1, 10.0]}
 

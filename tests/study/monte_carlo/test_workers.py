@@ -24,7 +24,7 @@ SpecFile = Callable[..., Path]
 Spec = Callable[..., StudySpec]
 
 SCENES = 1200
-CASES = [{"name": "free"}, {"name": "level", "airframe": "tilt-10"}]
+CASES = [{"name": "free"}, {"name": "level", "airframe": "tilt-10-horizontal"}]
 SWEEP = {"jammers.M.power_w": [0.1, 10.0]}
 
 # A module that lets every process that solves scene 7 die.
