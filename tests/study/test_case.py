@@ -65,11 +65,12 @@ def test_a_case_replaces_vehicle_and_array(paper: Scenario, case) -> None:
 
 
 def test_arrays_are_compared_with_the_papers_antennas_only() -> None:
-    """With other antennas at either end, or a secrecy rate, there is no array beside the dipoles."""
+    """With other antennas, another channel or a secrecy rate there is no array beside the dipoles."""
     assert names(load(EXAMPLES / "eavesdropper.toml")) == DIPOLES
     data = load(EXAMPLES / "paper.toml").to_dict()
     assert any(case.array for case in cases_of(Scenario.from_dict(data)))
     leaking = data | {"antenna": {"null_depth_db": 30.0}}
     circular = data | {"nodes": [node | {"antenna": "circular"} for node in data["nodes"]]}
-    for other in (leaking, circular):
+    urban = data | {"channel": {"model": "power-law", "exponent": 2.5}}
+    for other in (leaking, circular, urban):
         assert not any(case.array for case in cases_of(Scenario.from_dict(other)))

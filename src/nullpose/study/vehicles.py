@@ -45,7 +45,7 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
         tilts_rad = [case.airframe.tilt_max_rad for case in vehicles if case.airframe]
         place = bisect_right(tilts_rad, of_file.airframe.tilt_max_rad)
         vehicles = (*vehicles[:place], of_file, *vehicles[place:])
-    if scenario.objective != USUAL or scenario.states_antennas:
+    if scenario.objective != USUAL or scenario.states_antennas or scenario.has_channels:
         return vehicles
     sized = (array.model_copy(update={"elements": size}) for size in sorted({*ARRAY_SIZES, array.elements}))
     return (*vehicles, *(Case(name=f"array-{each.elements}-digital", array=each) for each in sized))
