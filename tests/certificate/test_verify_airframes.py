@@ -19,7 +19,7 @@ AIRFRAMES = {
     "upright": {"preset": "level"},
     "flat": {"preset": "level", "mount_deg": 90.0},
     "cone": {"preset": "level", "mount_deg": 45.0},
-    "hexarotor": {"preset": "fixed-tilt-hexarotor"},
+    "hexarotor": {"preset": "hexarotor-tilted-30"},
     "low": {"tilt_max_deg": 10.0, "mount_deg": 90.0},
     "belt": {"tilt_max_deg": 20.0, "mount_deg": 45.0},
     "any": {"tilt_max_deg": 45.0, "mount_deg": 45.0},

@@ -29,7 +29,7 @@ airframes = st.one_of(
     st.fixed_dictionaries(
         {"tilt_max_deg": st.floats(0.0, 180.0)}, optional={"mount_deg": st.floats(0.0, 90.0)}
     ),
-    st.fixed_dictionaries({"preset": st.sampled_from(["omnidirectional", "level", "fixed-tilt-hexarotor"])}),
+    st.fixed_dictionaries({"preset": st.sampled_from(["omnidirectional", "level", "hexarotor-tilted-30"])}),
 )
 zones = st.one_of(
     st.fixed_dictionaries({"x_m": st.just([0.0, 5.0]), "y_m": st.just([-5.0, 5.0])}),

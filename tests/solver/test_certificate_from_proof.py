@@ -54,7 +54,7 @@ def test_a_bound_from_distances_has_leaves_that_show_it(altitude_m: tuple, scene
     [
         {"preset": "level"},
         {"preset": "level", "mount_deg": 90.0},
-        {"preset": "fixed-tilt-hexarotor"},
+        {"preset": "hexarotor-tilted-30"},
         {"tilt_max_deg": 10.0, "mount_deg": 70.0},
     ],
 )

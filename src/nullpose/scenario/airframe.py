@@ -7,13 +7,21 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.rules import Choice
+from nullpose.scenario.rules import ByName, Choice
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import MountDegrees, TiltDegrees
 from nullpose.scenario.ways import Ways, exactly_one
 
-PRESET_TILTS_DEG = {"omnidirectional": 180.0, "level": 0.0, "fixed-tilt-hexarotor": 30.0}
-"""Largest tilt of each airframe that has a name [deg]."""
+PRESET_TILTS_DEG = {
+    "level": 0.0,
+    "quadrotor": 25.0,
+    "hexarotor-tilted-20": 20.0,
+    "hexarotor-tilted-30": 30.0,
+    "omnidirectional": 180.0,
+}
+"""Largest tilt of each airframe that has a name [deg]; docs/airframes.md has the sources."""
+
+_PRESETS = ", ".join(f"{name} ({tilt_deg:g})" for name, tilt_deg in PRESET_TILTS_DEG.items())
 
 
 _Preset = Annotated[str, Choice("a preset", tuple(PRESET_TILTS_DEG))]
@@ -27,8 +35,7 @@ class Airframe(Section):
     ``[max(0, a - t), min(90 deg, a + t)]``, an elevation band.
 
     Args:
-        preset: an airframe by name: omnidirectional (tilts by up to 180 degrees), level (0) or
-            fixed-tilt-hexarotor (30); or else
+        preset: an airframe by name, a key of ``PRESET_TILTS_DEG``; or else
         tilt_max_deg: largest angle between the body's vertical and the world's [deg].
         mount_deg: angle between the dipole and the body's vertical [deg].
     """
@@ -37,8 +44,7 @@ class Airframe(Section):
     unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
 
     preset: _Preset | None = optional(
-        "An airframe by name: omnidirectional (tilts by up to 180 degrees), level (0 degrees) or "
-        "fixed-tilt-hexarotor (30 degrees). Either this or tilt_max_deg.",
+        f"An airframe by name, with its largest tilt in degrees: {_PRESETS}. Either this or tilt_max_deg.",
         "level",
     )
     tilt_max_deg: TiltDegrees | None = optional(
@@ -79,3 +85,10 @@ class Airframe(Section):
     @property
     def _tilt_deg(self) -> float:
         return PRESET_TILTS_DEG[self.preset] if self.preset else self.tilt_max_deg or 0.0
+
+
+NamedAirframe = Annotated[
+    Airframe,
+    ByName("a table with tilt_max_deg, or a name", {name: {"preset": name} for name in PRESET_TILTS_DEG}),
+]
+"""The type of a key ``airframe``: a table, or the name of a preset."""

@@ -6,13 +6,12 @@ from collections.abc import Iterable
 from typing import Annotated, ClassVar
 
 from pydantic import Field, SkipValidation
-from pydantic.json_schema import JsonSchemaValue
 
 from nullpose.channel import CHANNELS, ENVIRONMENTS, Custom, LinkChannel
 from nullpose.channel.elevation import AVERAGES
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place
-from nullpose.scenario.rules import Choice, Quantity, Rule
+from nullpose.scenario.rules import ByName, Choice, Quantity, Rule
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import BlockedDecibels, LossDecibels, ReferenceMetres, ratio_from_db
 from nullpose.scenario.ways import Ways
@@ -193,20 +192,19 @@ class CustomChannel(Channel):
         return self.law.link()
 
 
-class _ByName(Rule):
-    """A table, in place of which the model's name may stand, or in Python a channel of one's own."""
+class _OrCustom(Rule):
+    """A table, in place of which there may be a channel of one's own, in Python."""
 
     def read(self, value: object) -> object:
         """Return the table."""
-        if isinstance(value, Custom):
-            return CustomChannel.model_construct(model=value.name, law=value)
-        return {"model": value} if isinstance(value, str) else value
-
-    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
-        """Return the JSON Schema: the name of a model that needs no more, or that of the table."""
-        names = [name for name, model in CHANNELS.items() if not model.keys]
-        return {"anyOf": [{"type": "string", "enum": names}, inner]}
+        return (
+            CustomChannel.model_construct(model=value.name, law=value) if isinstance(value, Custom) else value
+        )
 
 
-NamedChannel = Annotated[Channel, _ByName()]
+_OR_NAME = ByName(
+    'a table such as { model = "power-law", exponent = 2.4 }, or the name of a model that needs no numbers',
+    {name: {"model": name} for name, model in CHANNELS.items() if not model.keys},
+)
+NamedChannel = Annotated[Channel, _OrCustom(), _OR_NAME]
 """The type of a point's key ``channel``: a table, or the name of a model."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -120,6 +120,27 @@ class Choice(Rule):
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
         """Return the JSON Schema: a text with its allowed values."""
         return {"type": "string", "enum": list(self.words)}
+
+
+@dataclass(frozen=True, slots=True)
+class ByName(Rule):
+    """A table, in place of which a name may stand, as the metadata of an annotated table.
+
+    Args:
+        noun: what may be written, as in ``a table with tilt_max_deg, or a name``.
+        tables: the table that each name stands for.
+    """
+
+    noun: str
+    tables: Mapping[str, object] = field(hash=False)
+
+    def read(self, value: object) -> Any:
+        """Return the table, or raises the fault that names those that have a name."""
+        return self.tables[Choice(self.noun, self.tables).read(value)] if isinstance(value, str) else value
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Return the JSON Schema: one of the names, or that of the table."""
+        return {"anyOf": [{"type": "string", "enum": list(self.tables)}, inner]}
 
 
 @dataclass(frozen=True, slots=True)

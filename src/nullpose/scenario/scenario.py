@@ -16,7 +16,7 @@ from nullpose.channel.buildings import Prisms, prisms_of
 from nullpose.errors import WrongTypeError
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
-from nullpose.scenario.airframe import Airframe
+from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.arrays import PointArrays, rows_of_points
@@ -71,9 +71,10 @@ class Scenario(Section, PointArrays):
         "Left out: nowhere in particular."
     )
     airspace: Airspace = Field(description="A table headed [airspace]: where the vehicle may be, in metres.")
-    airframe: Airframe | None = optional(
-        "A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted. "
-        "Left out: every axis is reached."
+    airframe: NamedAirframe | None = optional(
+        "A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted; or a "
+        "preset's name. Left out: every axis is reached.",
+        "quadrotor",
     )
     antenna: Antenna | None = optional(
         "A table headed [antenna]: which antenna the drone carries. Left out: a short dipole."

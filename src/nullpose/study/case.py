@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from itertools import product
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field
 
@@ -14,7 +13,7 @@ from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, rejection
-from nullpose.scenario.rules import Choice, Count, Quantity, Rule
+from nullpose.scenario.rules import ByName, Choice, Count, Quantity, Rule
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
@@ -45,23 +44,11 @@ def _read_scheme(value: object) -> str:
 
 _SchemeName = Annotated[Scheme, BeforeValidator(_read_scheme)]
 
-_BY_NAME = _AIRFRAMES | {
-    preset: Airframe(preset=preset) for preset in PRESET_TILTS_DEG if preset not in _AIRFRAMES
-}
-
-
-@dataclass(frozen=True, slots=True)
-class _Named(Choice):
-    """A table, or a name for one."""
-
-    tables: Mapping[str, object] = field(hash=False)
-
-    def read(self, value: object) -> Any:
-        return self.tables[Choice.read(self, value)] if isinstance(value, str) else value
-
-
-_VEHICLE = _Named("a table with tilt_max_deg and mount_deg, or a name", tuple(_BY_NAME), _BY_NAME)
-_POSE = _Named("a table with position_m, or a name", ("centroid",), {"centroid": {"position_m": "centroid"}})
+_VEHICLE = ByName(
+    "a table with tilt_max_deg and mount_deg, or a name",
+    {preset: Airframe(preset=preset) for preset in PRESET_TILTS_DEG} | _AIRFRAMES,
+)
+_POSE = ByName("a table with position_m, or a name", {"centroid": {"position_m": "centroid"}})
 
 
 class _Truth(Rule):

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from nullpose.channel import ENVIRONMENTS
 from nullpose.errors import ScenarioError
 from nullpose.files import PlainTable
 from nullpose.scenario import Channel
 from nullpose.scenario.channel import EnvironmentName
 from nullpose.scenario.faults import Place
-from nullpose.scenario.rules import MOST_MEMBERS, ListOf, Rule
+from nullpose.scenario.rules import MOST_MEMBERS, ByName, ListOf, Rule
 from nullpose.scenario.section import Section
 from nullpose.scenario.ways import Ways
 from nullpose.study.monte_carlo.distribution import Distribution, Drawn
@@ -44,11 +45,7 @@ class Environments(Section):
         return np.asarray(np.array(self.choice)[places])
 
 
-class _Named(Rule):
-    """A table of names, in place of which a name may stand."""
-
-    def read(self, value: object) -> object:
-        return {"choice": [value]} if isinstance(value, str) else value
+_OR_NAME = ByName("an environment", {name: {"choice": [name]} for name in ENVIRONMENTS})
 
 
 def _number(key: str) -> Drawn:
@@ -80,7 +77,7 @@ class DrawnChannel(Section):
     reference_distance_m: Annotated[Distribution, _number("reference_distance_m")] | None = _key(
         "reference_distance_m"
     )
-    environment: Annotated[Environments, _Named()] | None = _key("environment")
+    environment: Annotated[Environments, _OR_NAME] | None = _key("environment")
     a: Annotated[Distribution, _number("a")] | None = _key("a")
     b: Annotated[Distribution, _number("b")] | None = _key("b")
     los_loss_db: Annotated[Distribution, _number("los_loss_db")] | None = _key("los_loss_db")

@@ -10,7 +10,6 @@ from pydantic import Field
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, USUAL
 from nullpose.scenario import (
-    Airframe,
     Airspace,
     Antenna,
     Array,
@@ -25,6 +24,7 @@ from nullpose.scenario import (
     Scenario,
     Transmitter,
 )
+from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.faults import Place
 from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
@@ -71,7 +71,9 @@ class SceneBase(Section):
     objective: _Objective = Field(default=USUAL, description="As in a scenario file.", examples=list(RECORDS))
     origin: Origin | None = Field(default=None, description="A table headed [scene.origin].")
     airspace: Airspace | None = Field(default=None, description="A table headed [scene.airspace].")
-    airframe: Airframe | None = Field(default=None, description="A table headed [scene.airframe].")
+    airframe: NamedAirframe | None = Field(
+        default=None, description="A table headed [scene.airframe], or the name of a preset."
+    )
     antenna: Antenna | None = Field(default=None, description="A table headed [scene.antenna].")
     array: Array | None = Field(default=None, description="A table headed [scene.array].")
     channel: Annotated[Channel | DrawnChannel, FixedOrDrawn()] | None = Field(
