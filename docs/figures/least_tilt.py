@@ -127,7 +127,7 @@ def draw(rows: list[Row]) -> Figure:
             axes.set_ylim(0.0, 100.0)
             axes.set_xlabel("tilt (deg)")
             axes.set_title("isotropic ground antennas" if antenna == "isotropic" else "upright whips")
-        figure.axes[0].set_ylabel("scenes that need more (%)")
+        figure.axes[0].set_ylabel("scenes in which no pose was found (%)")
         figure.axes[1].legend(frameon=False)
     return figure
 

@@ -86,3 +86,19 @@ def test_what_any_attitude_gains_on_farms(antenna: str, tmp_path: Path) -> None:
     assert set(many.status.flat) == {nullpose.Status.CERTIFIED}
     most = f"{gain_db.max():.{0 if gain_db.max() > 10.0 else 1}f}"
     assert f"{np.median(gain_db):.2f} dB | {most} dB" in PAGE
+
+
+def test_the_least_tilts_of_random_fields() -> None:
+    """The sentence below the table says what is in it."""
+    with (DOCS / "figures" / "least-tilt-table.csv").open(encoding="utf-8", newline="") as file:
+        flat = [
+            row
+            for row in csv.DictReader(file)
+            if (row["channel"], row["mount (deg)"]) == ("free space", "90")
+        ]
+    isotropic, whips = (
+        [f"{float(row[tilt].split(' / ')[0]):.0f} %" for tilt in ("10°", "30°")] for row in flat
+    )
+    words = " ".join(PAGE.split())
+    assert f"10 degrees suffice in {isotropic[0]} of the fields and 30 degrees in {isotropic[1]}" in words
+    assert f"With whips it is {whips[0]} and {whips[1]}" in words
