@@ -116,7 +116,7 @@ def least_tilt(
         share: of the value (a power ratio or a rate) of the vehicle that takes any attitude, at most 1.
         mounts_deg: angles between the antenna and the body's vertical, 0 to 90; none for the best one alone.
         on_progress: called with how many mounts are done and how many there are.
-        options: as for :func:`nullpose.solve`; the gap is chosen by the share unless it is stated.
+        options: as for :func:`nullpose.solver.solve`; the gap is chosen by the share unless it is stated.
 
     Raises:
         UsageError: a share or a mount that is not allowed.
@@ -207,7 +207,7 @@ def values_by_angle(
     Args:
         found: with the scenario.
         on_progress: called with how many angles are done and how many there are.
-        options: as for :func:`nullpose.solve`; the gap is 1e-3 unless it is stated.
+        options: as for :func:`nullpose.solver.solve`; the gap is 1e-3 unless it is stated.
 
     Returns:
         Angles [deg] and values, (n,) each; the best pose's angle is one of them.
