@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nullpose import ResultTable, Scenario, Status, compare_airframes, load, min_sinr
+from nullpose import ResultTable, Scenario, Status, compare_airframes, load, min_sinr, solve
 from nullpose.files import json_text
 from nullpose.scenario import apply_overrides
 from nullpose.study import AIRFRAME_CASES
@@ -59,6 +59,12 @@ def test_more_tilt_is_never_worse(paper: Scenario) -> None:
     for result in found.rows:
         assert result.pose.tilt_rad <= result.case.airframe.tilt_max_rad + 1e-9
         assert min_sinr(paper, result.pose) == pytest.approx(result.objective.value, rel=1e-12)
+
+
+def test_solve_and_compare_report_the_same_attitude(paper: Scenario) -> None:
+    """The omnidirectional vehicle compared has the pose of a solve without an airframe, digit by digit."""
+    (whole,) = compare_airframes(paper, cases=AIRFRAME_CASES[-1:]).rows
+    assert whole.pose == solve(paper).pose
 
 
 def test_the_least_vehicle_that_suffices(paper: Scenario) -> None:
