@@ -172,7 +172,9 @@ def test_the_pattern_opens_towards_the_camera(hand: Hand) -> None:
 
 def test_shadows_of_buildings_are_a_layer(hand: Hand) -> None:
     """Drawn, and named on the card; the switch takes both away."""
-    hand.session.change(lambda state: state.with_scenario(load(EXAMPLES / "town.toml"), ""))
+    town = load(EXAMPLES / "town.toml")
+    solve(town)  # compiles, which may take longer than the page is waited for
+    hand.session.change(lambda state: state.with_scenario(town, ""))
     hand.certified()
     legend = hand.page.locator("[data-np=overlay-shadows]")
     legend.wait_for()
