@@ -72,10 +72,10 @@ class Hand:
         return Hand(self.page, self.running)
 
     def certified(self) -> float:
-        """Wait for the present scene's proof, and return the value that the page shows."""
+        """Wait for the proof of the present scene or a later one; return the value that the page shows."""
         version = self.session.state.version
         self.page.wait_for_function(
-            f"+document.querySelector('[data-np=readout]')?.dataset.version == {version} && {CERTIFIED}"
+            f"+document.querySelector('[data-np=readout]')?.dataset.version >= {version} && {CERTIFIED}"
         )
         return self.shown("value-0")
 
