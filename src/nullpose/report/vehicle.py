@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from nullpose.objectives import Quantity
-from nullpose.report.certainty import rigour_lines
 from nullpose.report.document import View, document, head, rows, table
 from nullpose.study.least_tilt import LeastTilt, MountTilt
 
@@ -24,12 +23,19 @@ def vehicle_view(found: LeastTilt) -> View:
         }
     )
     whole = found.omnidirectional.objective.value
+    kind = "" if quantity.is_rate else ", a power ratio,"
     lines = [
-        f"Target: {found.share:.7g} of the {quantity.smallest} of a vehicle that takes any attitude, "
-        f"{quantity.in_unit(found.target):.4f} of {quantity.in_unit(whole):.4f} {quantity.unit}.",
-        "Mount: angle between the antenna and the body's vertical, 0 upright, 90 flat. Yaw is free.",
+        f"Target: {100.0 * found.share:.6g} % of the {quantity.smallest}{kind} of a vehicle that takes any "
+        f"attitude: {quantity.in_unit(found.target):.4f} of {quantity.in_unit(whole):.4f} {quantity.unit}.",
+        "Mount: angle between the antenna and the body's vertical, 0 upright, 90 flat. Yaw is free, and each "
+        "mount has its own best position.",
         "Least tilt: a pose with it reaches the target. Too little: with that tilt no pose does.",
-        *rigour_lines([("bounds", found.rigour)]),
+        *(
+            ["The errors that the file states are not considered."]
+            if found.omnidirectional.scenario.is_uncertain
+            else []
+        ),
+        f"Bounds: {found.rigour.message}.",
     ]
     name = found.omnidirectional.scenario.name
     return document(
