@@ -126,7 +126,7 @@ def least_tilt(
         >>> import nullpose
         >>> found = nullpose.least_tilt(nullpose.load("examples/paper.toml"))
         >>> [(mount.mount_deg, mount.suffices_deg) for mount in found.mounts]
-        [(0.0, 74.5), (45.0, 29.5), (90.0, 4.5)]
+        [(0.0, 75.4), (45.0, 30.4), (90.0, 6.1)]
         >>> found.best.mount_deg, found.best.suffices_deg
         (80.0, 0.0)
     """
