@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 
 import nullpose
 from nullpose.report.figures.style import house_style
+from nullpose.report.figures.vehicle import MOUNT_CURVES
 from nullpose.study.monte_carlo import StudySpec, draw_scene
 
 FOLDER = Path(__file__).parent
@@ -113,14 +114,15 @@ def draw(rows: list[Row]) -> Figure:
     with house_style():
         figure = Figure(figsize=(9.0, 3.8), layout="constrained")
         for axes, antenna in zip(figure.subplots(1, 2, sharey=True), ANTENNAS, strict=True):
-            for mount, colour in zip(MOUNTS_DEG, ("#0072b2", "#d55e00", "#009e73"), strict=True):
+            for mount, look in zip(MOUNTS_DEG, MOUNT_CURVES, strict=False):
                 tilts = [row[4] for row in rows if (row[0], row[1], row[3]) == ("free space", antenna, mount)]
                 steps = np.sort(tilts)
                 axes.step(
                     [0.0, *steps, 90.0],
                     [100.0, *(100.0 * (1.0 - np.arange(1, len(steps) + 1) / len(steps))), 0.0],
                     where="post",
-                    color=colour,
+                    color=look.colour,
+                    linestyle=look.line,
                     label=f"mounted at {mount:g}°",
                 )
             axes.set_xlim(0.0, 90.0)

@@ -67,6 +67,22 @@ def test_a_limit_leaves_the_bound_that_was_reached() -> None:
     assert 1e-3 < found.objective.relative_gap < math.inf
 
 
+def test_an_interrupt_leaves_the_bound_that_was_reached() -> None:
+    """And the bound is above the best value there is."""
+    calls: list[float] = []
+
+    def interrupt(gap: float, boxes: int) -> None:
+        calls.append(gap)
+        if len(calls) == 200:
+            raise KeyboardInterrupt
+
+    channel = Custom(gain=urban, exponents=(2.0, 2.0), db_per_deg=0.6)
+    found = nullpose.solve(scene(channel), gap=1e-3, on_progress=interrupt)
+    model = {"model": "elevation", "environment": "urban", "average": "power"}
+    assert found.interrupted
+    assert nullpose.solve(scene(model), gap=1e-4).objective.value <= (found.objective.upper_bound or 0.0)
+
+
 def test_without_bounds_nothing_is_bounded_and_the_reason_says_so() -> None:
     """Status and bound are those of a search."""
     found = nullpose.solve(scene(Custom(gain=urban)))

@@ -53,7 +53,7 @@ def power(x: Interval, exponent: FloatArray) -> Interval:
 
 
 def most_excess(family: Family, point: IntArray, square: FloatArray) -> Interval | float:
-    """Return what bounds the excess over ``d^2`` beyond a distance, by its square: the gain falls with it.
+    """Return a bound on the excess over ``d^2`` beyond a distance, by its square: the gain falls with it.
 
     Args:
         family: with its channels.
@@ -79,9 +79,9 @@ def amplitude(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> 
     """
     if family.channels is None:
         return None
-    one, none = Interval(np.ones(len(boxes))), Interval(np.zeros((3, len(boxes))))
+    unit, zeros = Interval(np.ones(len(boxes))), Interval(np.zeros((3, len(boxes))))
     parts = ((BY_DISTANCE, _by_distance), (BY_ELEVATION, _by_elevation))
-    return _by_kind(Amplitude(one, none, one, none[0], none[0]), parts, family, boxes, point, is_above)
+    return _by_kind(Amplitude(unit, zeros, unit, zeros[0], zeros[0]), parts, family, boxes, point, is_above)
 
 
 def _by_distance(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above: bool) -> Amplitude:
@@ -111,15 +111,15 @@ def _by_elevation(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above
     near, root = boxes.nearest(points_m), gain.sqrt().most()
     whole = root, (root * steep / near).most(), (root * bend / near.squared()).most()
     level = (r[0].squared() + r[1].squared()).sqrt()
-    here, change, _ = _relative(rows, -r[2] / level)
-    value = here.sqrt()
+    at_centre, change, _ = _relative(rows, -r[2] / level)
+    value = at_centre.sqrt()
     by = value * change * 0.5 / r.squared().total()
     gradient = stack([-(by * r[2] * r[0] / level), -(by * r[2] * r[1] / level), by * level])
     end = gain.high if is_above else gain.low
     inverse, square, (h0, h1, h2) = 1.0 / near.low, 0.5 * boxes.half2.low, (x.high for x in whole)
     b0, b1 = h0 * inverse, (h0 * inverse + h1) * inverse
     left_out = square * (b1 * b1 + b0 * (2.0 * b1 + h2) * inverse)
-    use = left_out < np.abs(end - here.middle()) * inverse**2 + 3.0 * square * end * inverse**4
+    use = left_out < np.abs(end - at_centre.middle()) * inverse**2 + 3.0 * square * end * inverse**4
     ends = Interval(end).sqrt()
     ends = Interval(ends.high if is_above else ends.low)
     return Amplitude(

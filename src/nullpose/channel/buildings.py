@@ -92,8 +92,8 @@ def _overlapping(parts: Sequence[Sequence[FloatArray]], building: NDArray[np.int
         for index, piece in zip(building, pieces, strict=True)
     ]
     walls = [wall for piece in edges for wall in piece]
-    known = set(walls)
-    touches = np.array([(index, edge[::-1]) in known for index, edge in walls])
+    edges_of_all = set(walls)
+    touches = np.array([(index, edge[::-1]) in edges_of_all for index, edge in walls])
     tree = shapely.STRtree([shapely.Polygon(piece) for piece in pieces])
     lines = shapely.linestrings(np.reshape([edge for _, edge in walls], (-1, 2, 2)))
     wall, piece = tree.query(lines, predicate="dwithin", distance=OVERLAP_M)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import typer
@@ -51,9 +52,9 @@ def vehicle(
     which none does.
     """
     from nullpose.report.vehicle import vehicle_view
-    from nullpose.study.least_tilt import least_tilt, mounts_of, share_of, values_by_angle
+    from nullpose.study.least_tilt import least_tilt, values_by_angle
 
-    share, mounts_deg = share_of(reach, loss_db), mounts_of(mount)
+    share, mounts_deg = _share(reach, loss_db), _mounts_deg(mount)
     scenario = scene.read()
     prepare_outputs(scene, figure=figure, width=width)
     with compiling_announced(), Ticker("least tilt") as ticker:
@@ -73,3 +74,38 @@ def vehicle(
             values = values_by_angle(found, on_progress=ticker, time_limit_s=time_limit, seed=seed)
         write_figure_file(draw_least_tilt(found, values, width), figure)
     tell(found, vehicle_view, json_output, files=[] if figure is None else [figure])
+
+
+def _share(reach: float | None, loss_db: float | None) -> float:
+    """Choose the share that suffices: stated, by a loss in dB, or 0.99.
+
+    Raises:
+        UsageError: both are stated, or one that is not allowed.
+    """
+    from nullpose.errors import UsageError
+
+    if reach is not None and loss_db is not None:
+        raise UsageError(f"--reach: given {reach:g} with --loss-db {loss_db:g}; leave out one of the two")
+    if loss_db is not None:
+        if not 0.0 < loss_db < math.inf:
+            raise UsageError(f"--loss-db: given {loss_db!r}; allowed: more than 0 dB, as in 0.05")
+        return float(10.0 ** (-loss_db / 10.0))
+    return 0.99 if reach is None else reach
+
+
+def _mounts_deg(text: str) -> tuple[float, ...]:
+    """Read mounts such as ``0,45,90``, or none from ``best``.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    from nullpose.errors import UsageError
+
+    if text.strip() == "best":
+        return ()
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise UsageError(
+            f"--mount: given {text!r}; allowed: angles in degrees from 0 to 90, as in 0,45,90, or best"
+        ) from None

@@ -59,6 +59,8 @@ def answer(found: LeastTilt) -> str:
 
 def _sentence(mount: MountTilt) -> str:
     at = f"mounted at {mount.mount_deg:.4g} degrees"
+    if mount.suffices_deg is None and mount.fails_deg is None:
+        return f"Of an antenna {at} neither is known: what suffices, nor what is too little."
     if mount.suffices_deg is None:
         return f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt."
     if mount.suffices_deg == 0.0:

@@ -87,7 +87,6 @@ def _degrees(angle_rad: float) -> str:
 def channel_words(scenario: Scenario) -> str | None:
     """Describe the channel, and those of points that have their own; None where none is stated."""
     points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
-    own = {f"{point.name}: ": point.channel for point in points}
-    stated = {name: channel for name, channel in ({"": scenario.channel} | own).items() if channel}
+    channels = {"": scenario.channel} | {f"{point.name}: ": point.channel for point in points}
     words = "words" if scenario.prisms is None else "words_among_buildings"
-    return "; ".join(f"{name}{getattr(channel, words)}" for name, channel in stated.items()) or None
+    return "; ".join(f"{name}{getattr(each, words)}" for name, each in channels.items() if each) or None

@@ -96,11 +96,11 @@ def _tables(area: Area, height: BuildingHeight, rules: Building, names: set[str]
 
 def _notes(found: Sequence[tuple[Area, BuildingHeight]], counts: Counter[str]) -> Iterator[str]:
     """Yield how the heights of all buildings are stated and what is passed over, then what is not read."""
-    ways = Counter(height.by for area, height in found for _ in area.polygons)
+    sources = Counter(height.by for area, height in found for _ in area.polygons)
     passed = counted({kind: counts[kind] for kind in _PASSED_OVER})
     parts = {
-        f"buildings: {ways.total()}": True,
-        ": " + ", ".join(f"{number} {way}" for way, number in ways.most_common()): found,
+        f"buildings: {sources.total()}": True,
+        ": " + ", ".join(f"{number} {source}" for source, number in sources.most_common()): found,
         f"; {EXCHANGED}": counts["area"] and not found,
         f"; out of reach: {counts['area'] - len(found)}": counts["area"] > len(found),
         f"; passed over: {passed}": passed,

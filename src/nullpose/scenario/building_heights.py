@@ -85,7 +85,7 @@ def _altitudes_m(feature: Feature) -> Floats:
 
 
 def _roof(feature: Feature, rules: Building) -> tuple[str, tuple[float, float]]:
-    """Return how the roof is stated, and both ends of its height above the ground [m]."""
+    """Read the words for how the roof is stated, and both ends of its height above the ground [m]."""
     properties = feature.properties
     if rules.roof_property in properties and rules.ground_property in properties:
         roof_m, ground_m = (

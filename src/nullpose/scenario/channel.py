@@ -95,15 +95,15 @@ class Channel(Section):
         """Return keys that have no meaning for the model, what it lacks, and losses that are exchanged."""
         if self.model is None:
             return
-        given, named = {key for key in raw if raw[key] is not None}, f'model = "{self.model}"'
-        for key in sorted(given - {"model", "blocked_loss_db", *_keys_of(self.model)}):
+        present, named = {key for key in raw if raw[key] is not None}, f'model = "{self.model}"'
+        for key in sorted(present - {"model", "blocked_loss_db", *_keys_of(self.model)}):
             others = " or ".join(f'model = "{name}"' for name in CHANNELS if key in _keys_of(name))
             yield (key,), f"has no meaning with {named}; remove it, or write {others}"
         for key in CHANNELS[self.model].keys:
-            if key not in given | _DEFAULTS.keys() | {*_NUMBERS}:
+            if key not in present | _DEFAULTS.keys() | {*_NUMBERS}:
                 description = type(self).model_fields[key].description
                 yield (key,), f"missing, but {named} needs it; add it: {description}"
-        if "environment" in _keys_of(self.model) and given.isdisjoint(("environment", *_NUMBERS)):
+        if "environment" in _keys_of(self.model) and present.isdisjoint(("environment", *_NUMBERS)):
             instead = f"{', '.join(_NUMBERS[:-1])} and {_NUMBERS[-1]}"
             yield ("environment",), f"missing, but {named} needs it, or {instead}; add either"
         seen, hidden = self.los_loss_db, self.nlos_loss_db

@@ -137,6 +137,8 @@ class CustomSearch(PositionSearch):
         start = self.best_at(self.state)[0]
         proofs = [prove(part, field, start, options) for field in self.fields]
         for proof in proofs:
+            if proof.reason == INTERRUPT:
+                raise KeyboardInterrupt
             before = self.best
             if proof.incumbent is not start and self.take(proof.incumbent.position_m) > before:
                 self.climb(self.state)
@@ -200,8 +202,8 @@ def _bounded(search: CustomSearch, options: SolveOptions, deadline: float) -> tu
                 bound, examined = search.bound_of(*ends_m, limits)
                 halves.append((-min(bound, -heap[0][0]), next(order), *ends_m))
                 boxes += examined
+            heapq.heappush(heap, halves[1])  # first: an interrupt between both leaves the whole box
             heapq.heapreplace(heap, halves[0])
-            heapq.heappush(heap, halves[1])
             if options.on_progress is not None:
                 options.on_progress(-heap[0][0] / value - 1.0, boxes)
             if limit_clock() > deadline:
@@ -210,4 +212,4 @@ def _bounded(search: CustomSearch, options: SolveOptions, deadline: float) -> tu
                 reason = f"the node limit of {options.node_limit}"
     except KeyboardInterrupt:
         reason = INTERRUPT
-    return -heap[0][0], boxes, reason
+    return (None if heap[0][0] == -math.inf else -heap[0][0]), boxes, reason

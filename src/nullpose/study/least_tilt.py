@@ -163,37 +163,6 @@ def least_tilt(
     )
 
 
-def share_of(reach: float | None, loss_db: float | None) -> float:
-    """Choose the share that suffices: stated, by a loss in dB, or 0.99.
-
-    Raises:
-        UsageError: both are stated, or one that is not allowed.
-    """
-    if reach is not None and loss_db is not None:
-        raise UsageError(f"--reach: given {reach:g} with --loss-db {loss_db:g}; leave out one of the two")
-    if loss_db is not None:
-        if not 0.0 < loss_db < math.inf:
-            raise UsageError(f"--loss-db: given {loss_db!r}; allowed: more than 0 dB, as in 0.05")
-        return float(10.0 ** (-loss_db / 10.0))
-    return 0.99 if reach is None else reach
-
-
-def mounts_of(text: str) -> tuple[float, ...]:
-    """Read mounts such as ``0,45,90``, or none from ``best``.
-
-    Raises:
-        UsageError: it is neither.
-    """
-    if text.strip() == "best":
-        return ()
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise UsageError(
-            f"--mount: given {text!r}; allowed: angles in degrees from 0 to 90, as in 0,45,90, or best"
-        ) from None
-
-
 def values_by_angle(
     found: LeastTilt,
     *,
@@ -219,7 +188,7 @@ def values_by_angle(
     antenna = scenario.antenna_record
     if not (antenna.is_axisymmetric and antenna.is_even):
         raise UsageError(
-            f"--figure: given a {antenna.label}; allowed: an antenna that is the same all round its axis and "
+            f"values by angle: given a {antenna.label}; allowed: one that is the same all round its axis and "
             "upside down"
         )
     angles_deg, values = np.linspace(0.0, 90.0, _ANGLES), []
@@ -227,7 +196,7 @@ def values_by_angle(
         level = Airframe(tilt_max_deg=0.0, mount_deg=angle_deg)
         options.setdefault("gap", _GAPS[1])
         try:
-            result = solve(scenario.model_copy(update={"airframe": level}), **options)
+            result = _uninterrupted(scenario.model_copy(update={"airframe": level}), options)
             values.append(result.objective.value)
         except SolveError:  # no pose at that angle reaches every node
             values.append(0.0)
@@ -244,12 +213,20 @@ def angle_from_vertical_deg(result: Result) -> float:
     return math.degrees(math.acos(min(1.0, max(-1.0, upwards))))
 
 
+def _uninterrupted(scenario: Scenario, options: SolveKeywords) -> Result:
+    """Solve, and go on with an interrupt that ended a proof."""
+    result = solve(scenario, **options)
+    if result.interrupted:
+        raise KeyboardInterrupt
+    return result
+
+
 class _Search:
     """The solves of one scenario without an airframe."""
 
     def __init__(self, scenario: Scenario, share: float, options: SolveKeywords) -> None:
         self.scenario, self.options = scenario, options
-        self.whole = solve(scenario, **options)
+        self.whole = _uninterrupted(scenario, options)
         self.target = share * self.whole.objective.value
         self.rigours = {self.whole.objective.rigour}
 
@@ -267,8 +244,8 @@ class _Search:
             other = None if result is None else self.reused(result, mount_deg)
             if other is not None:
                 least, good = min(other[0], steps), other
-            elif result is None or self.is_below(result):
-                most, bound = steps, 0.0 if result is None else result.objective.upper_bound
+            elif result is not None and self.is_below(result):
+                most, bound = steps, result.objective.upper_bound
             else:
                 break
             steps = (least + most) // 2
@@ -282,24 +259,24 @@ class _Search:
         )
 
     def solved(self, steps: int, mount_deg: float) -> Result | None:
-        """Search with a tilt, and where that misses the target prove that all poses do; None without a pose.
+        """Search with a tilt, and where that misses the target prove that all do; None if nothing is found.
 
         Where the value is far below the target a wide gap proves it, which takes few boxes.
         """
         scenario = self.on(steps, mount_deg)
         try:
-            result = solve(scenario, **self.options | {"certify": False})
+            result = _uninterrupted(scenario, self.options | {"certify": False})
             for share in _SHARES:
                 value = result.objective.value
                 if value >= self.target or self.is_below(result):
                     break
                 missing = self.target / value - 1.0 if value > 0.0 else math.inf
                 gap = min(max(share * missing, _GAPS[0]), _WIDEST_GAP)
-                result = solve(scenario, **self.options | {"gap": gap})
+                result = _uninterrupted(scenario, self.options | {"gap": gap})
                 self.rigours.add(result.objective.rigour)
                 if result.status is not Status.CERTIFIED:
                     break
-        except SolveError:  # no pose reaches every node
+        except SolveError:  # no pose was found that reaches every node, which proves nothing
             return None
         return result
 

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from itertools import cycle
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from nullpose.objectives import FloatArray
-from nullpose.report.figures.style import GREY, INK, house_style, inches
+from nullpose.report.figures.style import GREY, INK, VEHICLES, Look, house_style, inches
 from nullpose.study.least_tilt import LeastTilt
 
 _TILTS_DEG, _MOUNTS_DEG = np.linspace(0.0, 90.0, 181), np.linspace(0.0, 90.0, 91)
 _FINE_DEG, _HALF_STEP_DEG = np.linspace(0.0, 90.0, 361), 0.126  # every quarter of a degree
 _LOSSES_DB = (0.05, 0.5, 1.0, 3.0)
 _LINES = (INK, INK, INK, "white")  # the last is on dark ground
-_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+MOUNT_CURVES = tuple(
+    VEHICLES[name]
+    for name in ("level-vertical", "stated", "level-horizontal", "tilt-10-horizontal", "tilt-30-horizontal")
+)
+"""How mounts are drawn, in their order."""
 _LEAST = 1e-3  # share that is drawn
 
 
@@ -56,13 +62,14 @@ def reached(
 
 def _draw_shares(axes: Axes, found: LeastTilt, angles_deg: FloatArray, shares: FloatArray) -> None:
     best = [] if found.best is None or found.mounts else [found.best]
-    for mount, colour in zip((*found.mounts, *best), np.resize(_COLOURS, 99), strict=False):
+    for mount, look in zip((*found.mounts, *best), cycle(MOUNT_CURVES), strict=False):
         curve = reached(angles_deg, shares, _TILTS_DEG, mount.mount_deg)
-        axes.plot(_TILTS_DEG, curve, color=colour, label=f"mount {mount.mount_deg:.4g}°")
+        line: Look = {"color": look.colour, "linestyle": look.line, "linewidth": look.width}
+        axes.plot(_TILTS_DEG, curve, **line, label=f"mount {mount.mount_deg:.4g}°")
         if mount.suffices_deg is not None:
-            axes.plot(mount.suffices_deg, found.share, "o", color=colour, markersize=5.0, zorder=4.0)
+            axes.plot(mount.suffices_deg, found.share, "o", color=look.colour, markersize=5.0, zorder=4.0)
         if mount.fails_deg is not None:
-            axes.plot(mount.fails_deg, found.share, "|", color=colour, markersize=11.0, zorder=4.0)
+            axes.plot(mount.fails_deg, found.share, "|", color=look.colour, markersize=11.0, zorder=4.0)
     axes.axhline(found.share, color=GREY, linewidth=0.9, linestyle="--")
     axes.set_xlim(0.0, 90.0)
     axes.set_ylim(None, 1.02)

@@ -22,7 +22,7 @@ _ENTRIES = 62  # of denominators that are looked at: bits of a number
 
 @inner_kernel
 def blocked_end(points, sides, start, row, is_above, centre, half):
-    """Return what buildings leave of a link all over a box: the most, or the least, as ``is_above`` says.
+    """Return the share that a link keeps among buildings all over a box: the most or least, by ``is_above``.
 
     A shadow is convex: beyond one of its sides the box is clear of it, inside of all it is in it.
     """
@@ -253,7 +253,7 @@ def is_outside(piece, centre, half):
 
 @inner_kernel
 def norm_along(side, half):
-    """Return how far a box reaches along the normal of a side."""
+    """Return half the extent of a box along the normal of a side."""
     return abs(side[0]) * half[0] + abs(side[1]) * half[1] + abs(side[2]) * half[2]
 
 

@@ -40,7 +40,7 @@ def steepness(row, gain):
 
 @inner_kernel
 def blocked_gain(points, sides, start, row, p):
-    """Return what is left of a link at a position, by shadows from one to another of ``start``."""
+    """Return the share that a link keeps at a position, by shadows from one to another of ``start``."""
     for shadow in range(points[0], points[1]):
         inside = True
         for s in range(start[shadow], start[shadow + 1]):
@@ -54,7 +54,7 @@ def blocked_gain(points, sides, start, row, p):
 
 @small_kernel
 def sight_gain(family, channels, j, p):
-    """Return what buildings leave of point j's link at a position; 1 in the clear."""
+    """Return the share that point j's link keeps among buildings at a position; 1 in the clear."""
     if channels is not None and family.shadow_sides.shape[0] > 0:
         shadows = family.shadows_of_point[j : j + 2]
         return blocked_gain(shadows, family.shadow_sides, family.shadow_start, channels[j], p)
@@ -126,7 +126,7 @@ def excess_jet(row, r, slopes, bends):
 
 @small_kernel
 def reach_of(channels, j, square):
-    """Return how far off the gain of point j falls to one over ``square``, the farthest in any direction."""
+    """Return the largest distance at which the gain of point j is one over ``square``, in any direction."""
     if channels is not None:
         row = channels[j]
         if row[0] == BY_DISTANCE:

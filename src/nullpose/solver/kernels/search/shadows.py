@@ -17,7 +17,7 @@ from nullpose.solver.kernels.linear_algebra.symmetric import copy_table
 
 @inner_kernel
 def slack_of(side, p):
-    """Return how far outside of a shadow's side a position is."""
+    """Return the distance of a position beyond a shadow's side."""
     return side[0] * p[0] + side[1] * p[1] + side[2] * p[2] - side[4]
 
 
