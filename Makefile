@@ -52,6 +52,7 @@ judges: .venv/.with-core ## other engines on the same links, and what they say, 
 figures: .venv/.with-core ## the pictures and the claims that README and pages show, made anew
 	$(BIN)/python docs/make_figures.py
 	$(BIN)/python docs/figures/certificate_boxes.py
+	$(BIN)/python docs/figures/proof_boxes.py
 	$(BIN)/python docs/figures/airframes_data.py
 	$(BIN)/python docs/figures/airframes.py
 	$(BIN)/python docs/figures/channels.py

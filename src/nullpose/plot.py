@@ -90,7 +90,7 @@ def plan(result: Result, ax: Axes | None = None) -> Axes:
     Example:
         >>> import nullpose
         >>> nullpose.plot.plan(nullpose.solve(nullpose.load("examples/paper.toml"))).get_xlabel()
-        'x (east)  m'
+        'East x (m)'
     """
     with _axes(ax, (5.0, 5.0)) as axes:
         draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE), result.pose)
@@ -111,7 +111,7 @@ def heat_map(result: Result, ax: Axes | None = None, *, field: Field | None = No
     Example:
         >>> import nullpose
         >>> nullpose.plot.heat_map(nullpose.solve(nullpose.load("examples/paper.toml"))).get_ylabel()
-        'y (north)  m'
+        'North y (m)'
     """
     field = value_map(result, cells=_CELLS) if field is None else field
     with _axes(ax, (6.0, 6.0)) as axes:

@@ -64,7 +64,7 @@ def test_the_set_is_drawn_around_its_jammer(solution: Result) -> None:
         assert len(wires._segments3d) > 3
         points = np.vstack(wires._segments3d) - [17.0, 15.0, 4.0]
         assert np.linalg.norm(points, axis=1) == pytest.approx(3.0)
-        assert to_hex(wires.get_edgecolor()[0]) == "#d40000"
+        assert to_hex(wires.get_edgecolor()[0]) == "#d55e00"
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
     assert texts.count("where the jammer may be") == 1
 

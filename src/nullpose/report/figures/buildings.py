@@ -14,8 +14,8 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.stage import KINDS, Stage
-from nullpose.report.figures.style import GREY, INK, Look
+from nullpose.report.figures.stage import Stage
+from nullpose.report.figures.style import GREY, INK, MARKS, Look
 from nullpose.report.geometry import shadow_outlines_m
 from nullpose.scenario import Scenario
 
@@ -40,7 +40,7 @@ def draw_shadows(axes: Axes, stage: Stage, altitude_m: float, frame_m: FloatArra
     It is filled for nodes, the darker the more are blocked, and hatched for all others.
     """
     for kind, point in stage.points:
-        colour = KINDS[kind][0]
+        colour = MARKS[kind][0]
         look = {"facecolor": "none", "hatch": "////", "alpha": 0.5}
         if kind == "node":
             look = {"facecolor": colour, "alpha": 0.14}

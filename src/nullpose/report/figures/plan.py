@@ -11,9 +11,9 @@ from matplotlib.ticker import MaxNLocator
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_outlines, draw_shadows
-from nullpose.report.figures.scene import write_name
-from nullpose.report.figures.stage import ALONE, AXIS, DRONE, FORBIDDEN, KINDS, Stage, limits_m
-from nullpose.report.figures.style import GREY, Look, house_style, inches
+from nullpose.report.figures.scene import NULL_LINE, write_name
+from nullpose.report.figures.stage import ALONE, AXIS, Stage, limits_m
+from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, INK, MARKS, Look, house_style, inches
 from nullpose.report.numbers import MINUS, capitalised
 from nullpose.solver import Result
 from nullpose.study import Field
@@ -36,7 +36,7 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         box_m: low and high corner of what is shown, (2, 2), metres; the whole stage if left out.
     """
     low, high = np.stack(limits_m(stage))[:, :2] if box_m is None else box_m
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x (east)  m", ylabel="y (north)  m")
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="East x (m)", ylabel="North y (m)")
     axes.set_aspect("equal")
     if box_m is None:  # a map has its own colours
         draw_shadows(axes, stage, float(pose.position_m[2]), np.stack([low, high]))
@@ -51,16 +51,16 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
     x, y = pose.position_m[:2]
     rim: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 30}
     for kind, point in stage.points:
-        place, (colour, marker, order) = np.asarray(point.position_m[:2]), KINDS[kind]
+        place, (colour, marker) = np.asarray(point.position_m[:2]), MARKS[kind]
         is_node = kind == "node"
         dashes, width = ("-", 0.8) if is_node else ((0, (3, 1.5)), 1.2)
         axes.plot([x, place[0]], [y, place[1]], color=colour, linestyle=dashes, linewidth=width, zorder=1.5)
-        axes.scatter(*place, color=colour, marker=marker, zorder=order, label=kind, **rim)
-        names.append((point.name, place, colour, "above" if is_node else "right"))
+        axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.0, label=kind, **rim)
+        names.append((point.name, place, INK, "above" if is_node else "right"))
     radius_m = stage.view.pattern * stage.extent_m
     reach = AXIS * radius_m * pose.antenna_axis[:2]
     ends = np.stack([pose.position_m[:2] - reach, pose.position_m[:2] + reach])
-    axes.plot(*ends.T, color=DRONE, linewidth=1.8, zorder=6.5)
+    axes.plot(*ends.T, zorder=6.5, **NULL_LINE)
     axes.scatter(x, y, color=DRONE, zorder=7, label="drone", **rim)
     axes.apply_aspect()
     for name, place, colour, side in names + zone_names:

@@ -21,9 +21,9 @@ from nullpose.physics.array import placed_elements
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.scene import draw_line, draw_panel
-from nullpose.report.figures.stage import ALONE, AXIS, DRONE, PAIR, PANELS, SURFACE, Stage
-from nullpose.report.figures.style import INK, Look, house_style, inches
+from nullpose.report.figures.scene import NULL_LINE, draw_line, draw_panel
+from nullpose.report.figures.stage import ALONE, AXIS, PAIR, PANELS, Stage
+from nullpose.report.figures.style import DRONE, INK, SURFACE, Look, house_style, inches
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
@@ -176,8 +176,7 @@ def draw_dipole(axes: Axes3D, stage: Stage, pose: Pose) -> None:
     reach = AXIS * radius_m * pose.antenna_axis
     antenna = stage.scenario.antenna_record
     label = "antenna axis (null)" if antenna.is_quadratic else "antenna's z axis"
-    look = {"color": DRONE, "linewidth": 1.8, "zorder": 6.5}
-    draw_line(axes, position - reach, position + reach, label=label, **look)
+    draw_line(axes, position - reach, position + reach, label=label, zorder=6.5, **NULL_LINE)
     around = np.linspace(0.5 * _CUT_RAD, math.tau - 0.5 * _CUT_RAD, 49)
     surface = pattern_surface_m(antenna, pose, radius_m, around, stage.view.camera)
     draw_surface(axes, surface, SURFACE, (surface[:, :, 0], surface[:, :, -1]), DRONE)

@@ -17,12 +17,19 @@ from numpy.typing import ArrayLike
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_bodies
-from nullpose.report.figures.stage import FORBIDDEN, KINDS, Stage, limits_m
-from nullpose.report.figures.style import GREY, Look
+from nullpose.report.figures.stage import Stage, limits_m
+from nullpose.report.figures.style import FORBIDDEN, GREY, INK, MARKS, NULL, Look
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone
 
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
 _MERIDIANS, _PARALLELS, _STEPS = 8, 3, 6  # lines of a set from pole to pole, around them, points between two
+
+NULL_LINE: Look = {
+    "color": NULL,
+    "linewidth": 1.8,
+    "path_effects": [withStroke(linewidth=2.6, foreground=INK)],
+}
+"""How the direction of the null is drawn: its rim is seen on any ground."""
 
 _SIDES = {
     "above": (0.0, 7.0, "center", "bottom"),
@@ -76,7 +83,8 @@ def draw_panel(
     ground = np.array([*position[:2], floor_m])
     draw_line(axes, ground, position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
     for kind, point in stage.points:
-        place, (colour, marker, order) = np.asarray(point.position_m), KINDS[kind]
+        place, (colour, marker) = np.asarray(point.position_m), MARKS[kind]
+        order = 3.0 if kind == "node" else 6.0
         axes.scatter(*place, color=colour, marker=marker, s=38, zorder=order, depthshade=False, label=kind)
         if isinstance(point, Node):
             draw_line(axes, place, position, color=colour, linewidth=0.8, alpha=0.7, zorder=2)
@@ -86,7 +94,7 @@ def draw_panel(
             draw_line(axes, place, [*place[:2], floor_m], color=colour, linewidth=0.8, linestyle=":")
             if stage.uncertain and point.uncertainty_reach_m > 0.0:
                 draw_set(axes, point, colour, f"where the {kind} may be")
-        write_name(axes, point.name, place, colour, "above" if kind == "node" else "right")
+        write_name(axes, point.name, place, INK, "above" if kind == "node" else "right")
     draw_bodies(axes, stage.scenario)
     for zone, corners_m in stage.zones:
         _draw_zone(axes, zone, corners_m)
@@ -98,9 +106,9 @@ def _frame(axes: Axes3D, stage: Stage) -> None:
     low, high = limits_m(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(tuple(high - low), zoom=stage.view.zoom)  # one metre is as long along every axis
-    axes.set_xlabel("x (east)  m", labelpad=-3)
-    axes.set_ylabel("y (north)  m", labelpad=-1)
-    axes.set_zlabel("z (up)  m", labelpad=-8)
+    axes.set_xlabel("East x (m)", labelpad=-3)
+    axes.set_ylabel("North y (m)", labelpad=-1)
+    axes.set_zlabel("Up z (m)", labelpad=-8)
     axes.tick_params(pad=-2, labelsize=7.5)
     sides = ((axes.xaxis, 5), (axes.yaxis, 7), (axes.zaxis, 3))
     for index, (axis, most) in enumerate(sides):

@@ -18,14 +18,6 @@ _MARGIN = 0.12  # free ground around the scene
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
 AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
-DRONE, SURFACE = "#0a3fd6", "#8fb0ff"
-FORBIDDEN = "#b36b00"
-KINDS = {
-    "node": ("#0a6f3c", "s", 3.0),
-    "jammer": ("#d40000", "X", 6.0),
-    "eavesdropper": ("#9a4fb0", "D", 6.0),
-}
-"""Colour, marker and drawing order of points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,6 +22,13 @@ if TYPE_CHECKING:
 
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
+NODE, JAMMER, EAVESDROPPER, NULL = "#0072b2", "#d55e00", "#b04e94", "#e69f00"
+DRONE, SURFACE = INK, "#b9c2cc"
+FORBIDDEN = "#8c3b3b"
+MARKS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {"node": (NODE, "s"), "jammer": (JAMMER, "X"), "eavesdropper": (EAVESDROPPER, "D")}
+)
+"""Colour and marker of points: told apart in grey and with any colour vision."""
 _FORMATS = (".png", ".svg", ".pdf")
 
 
@@ -48,10 +55,10 @@ class Curve:
 
 CURVES: Mapping[str, Curve] = MappingProxyType(
     {
-        "optimum": Curve("optimum pose", "#0a3fd6", "-", "o", 2.4, 3.0),
+        "optimum": Curve("optimum pose", NODE, "-", "o", 2.4, 3.0),
         "zero-interference": Curve("zero interference", "#000000", (0, (6.0, 2.0)), "s", 1.5, 4.0),
-        "maximum-gain": Curve("maximum gain", "#d40000", "-", "^", 1.5, 3.5),
-        "vertical": Curve("vertical", "#c800c8", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.2),
+        "maximum-gain": Curve("maximum gain", JAMMER, "-", "^", 1.5, 3.5),
+        "vertical": Curve("vertical", EAVESDROPPER, (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.2),
     }
 )
 """How schemes are drawn, by name."""
@@ -59,12 +66,12 @@ CURVES: Mapping[str, Curve] = MappingProxyType(
 
 def curve_of(scheme: str) -> Curve:
     """Look up how a scheme is drawn: green and dotted, if it has no curve of its own."""
-    return CURVES.get(scheme) or Curve(scheme, "#007a3d", ":", "v", 1.5, 3.1)
+    return CURVES.get(scheme) or Curve(scheme, "#00694a", ":", "v", 1.5, 3.1)
 
 
 VEHICLES: Mapping[str, Curve] = MappingProxyType(
     {
-        "level-vertical": Curve("level, vertical", "#cc79a7", (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.0),
+        "level-vertical": Curve("level, vertical", EAVESDROPPER, (0, (5.0, 1.6, 1.2, 1.6)), "D", 1.5, 3.0),
         "level-horizontal": Curve("level, horizontal", "#e69f00", (0, (6.0, 2.0)), "s", 1.5, 3.1),
         "tilt-10-horizontal": Curve("tilt 10, horizontal", "#009e73", (0, (3.0, 1.2)), "^", 1.6, 3.3),
         "tilt-10-vertical": Curve("tilt 10, vertical", "#009e73", ":", "<", 1.5, 3.0),
@@ -72,9 +79,9 @@ VEHICLES: Mapping[str, Curve] = MappingProxyType(
         "tilt-20-horizontal": Curve("tilt 20, horizontal", "#44aa99", (0, (3.0, 1.2)), ">", 1.6, 3.25),
         "tilt-30-vertical": Curve("tilt 30, vertical", "#56b4e9", ":", "<", 1.5, 3.0),
         "tilt-30-horizontal": Curve("tilt 30, horizontal", "#56b4e9", "-", "v", 1.6, 3.2),
-        "omnidirectional": Curve("omnidirectional", "#0a3fd6", "-", "o", 2.4, 3.0),
-        "stated": Curve("the file's", "#d55e00", (0, (4.0, 1.0, 1.0, 1.0, 1.0, 1.0)), "X", 1.6, 3.4),
-        "array": Curve("array", "#8c8c8c", (0, (1.2, 1.2)), "P", 1.5, 2.9),
+        "omnidirectional": Curve("omnidirectional", NODE, "-", "o", 2.4, 3.0),
+        "stated": Curve("the file's", JAMMER, (0, (4.0, 1.0, 1.0, 1.0, 1.0, 1.0)), "X", 1.6, 3.4),
+        "array": Curve("array", GREY, (0, (1.2, 1.2)), "P", 1.5, 2.9),
     }
 )
 """How vehicles are drawn: Okabe and Ito's colours, told apart with any colour vision, lines and markers."""
