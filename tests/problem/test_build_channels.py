@@ -16,12 +16,10 @@ PAPER = load("examples/paper.toml")
 @pytest.mark.parametrize(
     "ask",
     [
-        lambda: solve(apply_overrides(load("examples/array.toml"), [URBAN % "power"])),
         lambda: solve(apply_overrides(load("examples/robust.toml"), [URBAN % "power"]), robust=True),
-        lambda: solve(apply_overrides(load("examples/frame.toml"), [URBAN % "power"])),
         lambda: build_family(apply_overrides(PAPER, ["channel={model='power-law', exponent=3.0}"])),
     ],
-    ids=["array", "robust", "pattern", "any other caller"],
+    ids=["robust", "any other caller"],
 )
 def test_refused(ask: Callable[[], object]) -> None:
     """What does not know channels says so, and names what it takes."""

@@ -25,7 +25,7 @@ def build_family(
     Args:
         scenario: its units and names end here.
         any_antenna: whether the caller brings the gain of an antenna that is no dipole.
-        any_channel: whether the caller knows every channel model, of a dipole.
+        any_channel: whether the caller knows every channel model.
         any_function: whether the caller brings the gain of channels that are functions in Python.
 
     Raises:
@@ -37,7 +37,7 @@ def build_family(
             f"antenna: given a {scenario.antenna_record.label}; allowed here: a dipole. For other antennas "
             "there are solve, evaluate and antenna compare"
         )
-    if not (any_channel and scenario.antenna_record.is_quadratic):
+    if not any_channel:
         _refuse_channels(scenario)
     if scenario.has_custom_channels and not any_function:
         raise UsageError(
@@ -59,9 +59,8 @@ def _refuse_channels(scenario: Scenario) -> None:
     """
     if scenario.has_channels:
         raise UsageError(
-            "channel: given a power law or line of sight by elevation; allowed for arrays, antennas with a "
-            'pattern and robust solving: free space, or average = "guaranteed"; solve and '
-            "evaluate know every channel for a dipole on the drone"
+            "channel: given a power law or line of sight by elevation; allowed for robust solving: free "
+            'space, or average = "guaranteed"; solve and evaluate know every channel'
         )
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nullpose.objectives import FloatArray, IntArray
+from nullpose.objectives import FloatArray, IntArray, Ratios
 
 
 class Domain(NamedTuple):
@@ -76,6 +76,7 @@ class Reach(NamedTuple):
 class ArrayProblem(NamedTuple):
     """What an array on a level vehicle receives; m points, the nodes first, and k elements."""
 
+    ratios: Ratios  # of the points, the nodes' first
     points_m: FloatArray  # (m, 3)
     strengths_m2: FloatArray  # (m,) power times path gain over noise, a node's divided by what it requires
     nodes: int

@@ -35,12 +35,12 @@ class ArraySearch(EpigraphSearch):
     angles = 1
 
     def __init__(self, scenario: Scenario, array: Array, seed: int) -> None:
-        family = build_family(scenario)
+        family = build_family(scenario, any_channel=True)
         super().__init__(family, float(array.elements), seed)
         places = element_positions(array.elements, array.layout, array.spacing_wavelengths)
         strengths_m2 = np.concatenate([family.numerator_weight, family.denominator_weight])
         base = np.ascontiguousarray(places[:, :2])
-        self.problem = ArrayProblem(family.points_m, strengths_m2, len(scenario.nodes), base)
+        self.problem = ArrayProblem(family.arrays, family.points_m, strengths_m2, len(scenario.nodes), base)
         self.elements = array.elements
         # by how many equal rotations the elements come to lie on each other
         self.symmetry = max(2, array.elements) if array.layout == "circular" else 2

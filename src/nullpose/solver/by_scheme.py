@@ -87,8 +87,9 @@ def solve_scheme(
     names = scenario.jammer_names
     if null_jammer is not None and null_jammer not in names:
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
-    family = build_family(scenario, any_antenna=True, any_channel=True, any_function=True)
-    if not scenario.antenna_record.is_quadratic:
+    is_dipole = scenario.antenna_record.is_quadratic
+    family = build_family(scenario, any_antenna=True, any_channel=True, any_function=is_dipole)
+    if not is_dipole:
         from nullpose.solver.pattern import solve_pattern  # and SciPy with it
 
         return solve_pattern(scenario, family, options), {}

@@ -152,6 +152,11 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
             "floating point; leave out --certificate and --verify"
         )
     antenna = scenario.antenna_record
+    if scenario.has_channels and not antenna.is_quadratic:
+        raise UsageError(
+            f"certificate: a {antenna.label} has one in free space only: in other channels its bound is "
+            "proved in floating point; leave out --certificate and --verify"
+        )
     if not antenna.is_axisymmetric:
         raise UsageError(
             f"certificate: a {antenna.label} has none: its gain changes round its axis, and its bound is "

@@ -31,7 +31,8 @@ def refusal(scenario: Scenario, *, robust: bool = False) -> str | None:
         if robust:
             Inner(worst_polarised(require_dipole(scenario)))
         else:
-            build_family(scenario, any_antenna=True, any_channel=True, any_function=True)
+            is_dipole = scenario.antenna_record.is_quadratic
+            build_family(scenario, any_antenna=True, any_channel=True, any_function=is_dipole)
     except UsageError as error:
         return str(error)
     return None

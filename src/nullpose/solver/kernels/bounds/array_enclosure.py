@@ -10,7 +10,8 @@ most and a rest of size ``E`` at most; then the right side is not above
 
 and its slope is that of the ratio itself. The smallest ratio is not above any mean of such bounds, and the
 mean is chosen so that the slopes cancel. A jammer straight below the box is left out, which only raises the
-bound.
+bound. So does a channel that counts with the largest excess gain in the box for a node, and with the least
+for a jammer.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.objectives import FloatArray
+from nullpose.solver.kernels.bounds.sight import excess_range
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.linear_algebra.vectors import along, dot, minus, over, row, square_range
 from nullpose.solver.kernels.search.array_response import channels_at, node_power, nulls_towards
@@ -41,7 +43,7 @@ class Spans(NamedTuple):
 
 
 @inner_heap_kernel
-def spans_over(problem, channels, centre, half):
+def spans_over(problem, strengths_m2, channels, centre, half):
     """Bound how amplitudes change over a box.
 
     The amplitude ``sqrt(strength) |flat| / r^2`` has second derivatives of at most ``sqrt(strength) (1 /
@@ -51,7 +53,7 @@ def spans_over(problem, channels, centre, half):
     table = np.full((4, m), math.inf)
     spans = Spans(np.abs(channels.values[:, 0]), np.zeros(m), table[0], table[1], table[2])
     for i in range(m):
-        strength = problem.strengths_m2[i]
+        strength = strengths_m2[i]
         least2, _ = square_range(problem.points_m[i], centre, half, 3)
         least_flat2, most_flat2 = square_range(problem.points_m[i], centre, half, 2)
         least, least_flat = math.sqrt(least2), math.sqrt(least_flat2)
@@ -181,8 +183,12 @@ def box_bound(problem, centre, half):
         half: (4,) its half widths.
     """
     nodes, m = problem.nodes, len(problem.points_m)
-    channels = channels_at(problem, centre)
-    spans = spans_over(problem, channels, centre, half)
+    strengths_m2 = problem.strengths_m2.copy()
+    for i in range(m):
+        low, high = excess_range(problem.ratios, problem.ratios.channels, i, centre[:3], half[:3])
+        strengths_m2[i] *= high if i < nodes else low
+    channels = channels_at(problem, strengths_m2, centre)
+    spans = spans_over(problem, strengths_m2, channels, centre, half)
     used, jammers = 0, np.empty(m - nodes, np.int64)
     for j in range(nodes, m):
         if spans.further[j] < math.inf:

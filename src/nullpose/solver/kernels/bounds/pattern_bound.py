@@ -3,7 +3,8 @@
 The ratios ``N_k / D_k`` are all below t wherever ``F = sum_k l_k (N_k - t D_k)`` is negative for
 multipliers l of sum one. F is a weighted sum of ``g(b_j) / |r_j|^2`` over the ground points: expanded
 to second order about the cell's middle with a bound on the third, and maximised over the cell coordinate
-by coordinate.
+by coordinate. A channel multiplies it by an end of its excess gain over the cell: the largest for a node and
+the least for an interferer.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from nullpose.solver.kernels.bounds.attitude import (
     rates,
     third,
 )
+from nullpose.solver.kernels.bounds.sight import excess_range
 from nullpose.solver.kernels.compiler.jit import inner_kernel
 from nullpose.solver.kernels.linear_algebra.harmonics import cap_bounds, gain_at, gain_jet
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
@@ -75,15 +77,20 @@ def fill_points(family, pattern, row, space):
         width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
         cap_bounds(pattern, unit(a), min(width, math.pi), space.caps)
         least, most = -space.caps[0], space.caps[1]
-        space.wide[j, LEAST] = max(0.0, least) / far if least >= 0.0 else least / near
-        space.wide[j, MOST] = most / near if most >= 0.0 else most / far
+        low, high = excess_range(family, family.channels, j, row[:3], row[HALF : HALF + 3])
+        end = space.excess[j] = high if space.is_numerator[j] > 0.0 else low
+        space.wide[j, LEAST] = low * least / far if least >= 0.0 else high * least / near
+        space.wide[j, MOST] = high * most / near if most >= 0.0 else low * most / far
         space.wide[j, REST] = math.inf
-        if width < _WIDEST and e < 0.5:  # in wider cells the third derivative's bound is of no use
+        is_sided = space.one_sided[j] > 0.0 or low == high  # one end of the excess bounds it
+        # in wider cells the third derivative's bound is of no use
+        if is_sided and width < _WIDEST and e < 0.5:
             turning = held if is_anchor else whole
             g0 = max(abs(least), abs(most))
             away = 0.0 if is_anchor else e
             rest = third(turning, width, e, away, g0, space.caps[2], space.caps[3], space.caps[4])
-            space.wide[j, REST] = (rest + pattern.rounding) / near
+            below = (high - low) * max(0.0, -least)  # where a gain is negative the other end counts
+            space.wide[j, REST] = (end * (rest + pattern.rounding) + below) / near
     return whole[0]
 
 
@@ -113,7 +120,7 @@ def middle(family, pattern, level, row, space):
         a = in_body(space.frame, vector_to(family.points_m, j, row))
         square = dot(a, a)
         x, y, z = over(a, math.sqrt(square))
-        space.value[j] = gain_at(pattern, x, y, z) / square
+        space.value[j] = space.excess[j] * gain_at(pattern, x, y, z) / square
     least, promising = math.inf, False  # an expansion costs ten times as much as this look
     for k in range(family.numerator_point.shape[0]):
         g, j = family.denominator_of[k], family.numerator_point[k]
@@ -137,10 +144,10 @@ def expand(family, pattern, row, space):
     for j in range(points.shape[0]):
         a = in_body(space.frame, vector_to(points, j, row))
         square = dot(a, a)
-        length = math.sqrt(square)
+        length, excess = math.sqrt(square), space.excess[j]
         move(space.frame, a, space.firsts, space.seconds)
-        space.value[j] = gain_jet(pattern, over(a, length), space.pull, stiff) / square
-        p1, p2 = 1.0 / (square * length), 1.0 / (square * square)
+        space.value[j] = excess * gain_jet(pattern, over(a, length), space.pull, stiff) / square
+        p1, p2 = excess / (square * length), excess / (square * square)
         pull = scaled(p1, space.pull)
         for m in range(6):
             i, f = (first + m) % 3 if m < 3 else m, row_of(space.firsts, m)

@@ -52,6 +52,8 @@ class Space(NamedTuple):
     sum_slope: FloatArray
     sum_bend: FloatArray
     one_sided: FloatArray
+    is_numerator: FloatArray
+    excess: FloatArray
 
 
 @inner_kernel
@@ -79,8 +81,9 @@ def choose(family, row, space):
 def space_of(family):
     """Return scratch space for a family."""
     m, n = family.points_m.shape[0], family.numerator_point.shape[0]
-    one_sided = np.ones(m)
+    one_sided, is_numerator = np.ones(m), np.zeros(m)
     for k in range(n):
+        is_numerator[family.numerator_point[k]] = 1.0
         for e in range(family.denominator_point.shape[0]):
             if family.denominator_point[e] == family.numerator_point[k]:
                 one_sided[family.numerator_point[k]] = 0.0
@@ -88,7 +91,7 @@ def space_of(family):
         np.empty(5), np.empty((m, 3)), np.empty(m), np.empty((m, 6)), np.empty((m, 6, 6)), np.empty((18, 3)),
         np.empty((6, 3)), np.empty((6, 6, 3)), np.empty(3), np.empty((3, 3)), np.empty(n), np.empty(n),
         np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m), np.empty(m), np.empty(6),
-        np.empty((6, 6)), one_sided,
+        np.empty((6, 6)), one_sided, is_numerator, np.empty(m),
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from nullpose.channel.model import BLOCKED
 from nullpose.objectives.ratios import Ratios
 from nullpose.solver.kernels.bounds.expansion import min_square
+from nullpose.solver.kernels.bounds.link_field import excess_end
 from nullpose.solver.kernels.bounds.node import CENTRE, HALF, LEVEL
 from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
@@ -35,6 +36,18 @@ def blocked_end(points, sides, start, row, is_above, centre, half):
             if inside or not is_above:
                 return row[BLOCKED]
     return 1.0
+
+
+@small_kernel
+def excess_range(family, channels, j, centre, half):
+    """Return the least and the largest excess gain of point j in a box, buildings included."""
+    low = excess_end(family, channels, j, False, centre, half)
+    high = excess_end(family, channels, j, True, centre, half)
+    if channels is not None and family.shadow_sides.shape[0] > 0:
+        shadows, sides, start = family.shadows_of_point[j : j + 2], family.shadow_sides, family.shadow_start
+        low *= blocked_end(shadows, sides, start, channels[j], False, centre, half)
+        high *= blocked_end(shadows, sides, start, channels[j], True, centre, half)
+    return low, high
 
 
 @inner_kernel

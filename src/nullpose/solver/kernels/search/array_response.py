@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.objectives import FloatArray
-from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, small_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch
+from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet
 from nullpose.solver.kernels.linear_algebra.vectors import minus, over, row, store
 from nullpose.solver.kernels.search.domain import contains
 
@@ -42,7 +44,7 @@ class Nulls(NamedTuple):
 
 
 @inner_heap_kernel
-def channels_at(problem, x):
+def channels_at(problem, strengths_m2, x):
     """Evaluate the channels; an amplitude is ``sqrt(strength) |flat| / |r|^2``, flat r's horizontal part."""
     m, k = problem.points_m.shape[0], problem.base.shape[0]
     elements, values = np.empty((k, 2)), np.empty((m, k), np.complex128)
@@ -57,13 +59,25 @@ def channels_at(problem, x):
         square = flat + r[2] * r[2]
         distances[i] = math.sqrt(square)
         store(over(r, distances[i]), ways[i])
-        amplitude = math.sqrt(problem.strengths_m2[i] * flat) / square
+        amplitude = math.sqrt(strengths_m2[i] * flat) / square
         lean = 1.0 / flat if flat > _TINY else 0.0  # straight above, the amplitude itself is zero
         store((r[0] * (2.0 / square - lean), r[1] * (2.0 / square - lean), 2.0 * r[2] / square), leans[i])
         for n in range(k):
             phase = _CYCLE * (elements[n, 0] * ways[i, 0] + elements[n, 1] * ways[i, 1])
             values[i, n] = amplitude * complex(math.cos(phase), math.sin(phase))
     return Channels(elements, values, leans, ways, distances)
+
+
+@small_kernel
+def add_excess(ratios, rows, x, strengths_m2, leans):
+    """Multiply strengths by the excess gains of their points at a state, and add the slopes to the leans."""
+    if rows is not None:
+        slopes, bends = scratch(3), scratch(3, 3)
+        for i in range(len(strengths_m2)):
+            strengths_m2[i] *= excess_at(ratios, rows, i, x)
+            excess_jet(rows[i], minus(row(ratios.points_m, i), x), slopes, bends)
+            for axis in range(3):
+                leans[i, axis] += 0.5 * slopes[axis]
 
 
 @inner_kernel
@@ -152,7 +166,10 @@ def respond(problem, x, logs, slopes):
         logs: output, (nodes,).
         slopes: output, (nodes, 4) or (0, 4).
     """
-    channels = channels_at(problem, x)
+    strengths_m2, leans = problem.strengths_m2.copy(), np.zeros((len(problem.points_m), 3))
+    add_excess(problem.ratios, problem.ratios.channels, x, strengths_m2, leans)
+    channels = channels_at(problem, strengths_m2, x)
+    channels.leans[:] += leans
     nulls = nulls_towards(channels.values, np.arange(problem.nodes, len(problem.points_m)))
     parts, none = np.empty(len(nulls.jammers), np.complex128), np.empty(0)
     worst = math.inf

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel, kernel
+from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.harmonics import gain_at
 from nullpose.solver.kernels.linear_algebra.vectors import cross, dot, norm, row, scaled, unit
 from nullpose.solver.kernels.search.domain import contains
@@ -36,7 +37,7 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
         a = (rotation[0, 0] * x + rotation[1, 0] * y + rotation[2, 0] * z) / length
         b = (rotation[0, 1] * x + rotation[1, 1] * y + rotation[2, 1] * z) / length
         c = (rotation[0, 2] * x + rotation[1, 2] * y + rotation[2, 2] * z) / length
-        links[j] = gain_at(pattern, a, b, c) / square
+        links[j] = excess_at(family, family.channels, j, position) * gain_at(pattern, a, b, c) / square
     least = math.inf
     for k in range(family.numerator_point.shape[0]):
         g = family.denominator_of[k]
