@@ -30,14 +30,14 @@ def test_ratios_are_rounded_outwards(value: float, gap: float, claim: Certificat
     """What is said of the bound is at least it, and of the value at most it, in decibels too."""
     bound = value * (1.0 + gap)
     words = sentence(replace(claim, value=value, upper_bound=bound), 7)
-    most, most_db = (float(x) for x in re.findall(r"above (\S+) \((\S+) dB\)", words)[0])
-    least, least_db = (float(x) for x in re.findall(r"every node (\S+) \((\S+) dB\) or more", words)[0])
+    most_db, most = (float(x) for x in re.findall(r"above (\S+) dB \((\S+)\)", words)[0])
+    least_db, least = (float(x) for x in re.findall(r"every node (\S+) dB \((\S+)\) or more", words)[0])
     assert least <= value <= bound <= most
     assert most <= bound * (1.0 + 1e-6) + 1e-9
     assert least >= value * (1.0 - 1e-6) - 1e-9
     assert least_db <= 10.0 * math.log10(value)
     assert most_db >= 10.0 * math.log10(bound)
-    near = float(re.findall(r"within a relative (\S+) of it", words)[0])
+    near = float(re.findall(r"within (\S+) \(relative\) of it", words)[0])
     assert bound <= value * (1.0 + near) * (1.0 + 1e-12)
     assert words.endswith("; 7 final boxes checked")
 
@@ -59,8 +59,8 @@ def test_rates_are_rounded_outwards(rate: float, gap: float, claim: Certificate)
 def test_small_numbers_are_not_lost(claim: Certificate) -> None:
     """A bound of next to nothing is written out."""
     words = sentence(replace(claim, value=1e-7, upper_bound=1.5e-7), 1)
-    assert "above 1.5e-07 (" in words
-    assert "within a relative 5.01e-01 of it" in words
+    assert "(1.5e-07), and" in words
+    assert "within 5.01e-01 (relative) of it" in words
 
 
 def test_antennas_with_a_pattern_are_compared(paper: Callable, claim: Certificate) -> None:

@@ -67,7 +67,7 @@ def test_a_comparison_shows_bounds_and_who_is_certified(paper: Scenario, field: 
 
     def shown(scenario: Scenario, place: int, **options: object) -> tuple[list[str], str]:
         text = text_of(comparison_view(compare_schemes(scenario, **options)))
-        return [line.split()[place] for line in text.splitlines()[6:10]], text
+        return [line.split()[place] for line in text.splitlines()[5:9]], text
 
     values, text = shown(paper, -3)
     assert values == ["0.9838", "0.8124", "-0.6998", "-2.1602"]

@@ -74,13 +74,19 @@ def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:
 
 def sentence(certificate: Certificate, leaves: int) -> str:
     """State the claim of a certificate that was proved by so many leaves."""
-    (most, least, near), quantity = _numbers(certificate), Quantity.of(certificate.scenario)
-    axes = RECORDS[certificate.scheme].sentence(certificate.scenario, certificate.null_jammer)
+    most, least, near = claim_numbers(certificate)
     return (
-        f"proved: in this scenario{_left_out(certificate)} no position{_places(certificate)} "
-        f"{axes} gives every node {quantity.with_article} above {most}, and the stated pose "
-        f"gives every node {least} or more, which is within {near} of it; {leaves} final boxes checked"
+        f"proved: {claim_words(certificate)} above {most}, and the stated pose gives every node {least} "
+        f"or more, which is within {near} of it; {leaves} final boxes checked"
     )
+
+
+def claim_words(certificate: Certificate) -> str:
+    """State what a certificate excludes, up to the number that is the bound."""
+    scenario = certificate.scenario
+    axes = RECORDS[certificate.scheme].sentence(scenario, certificate.null_jammer)
+    what = f"gives every node {Quantity.of(scenario).with_article}"
+    return f"in this scenario{_left_out(certificate)} no position{_places(certificate)} {axes} {what}"
 
 
 def _left_out(certificate: Certificate) -> str:
@@ -100,8 +106,8 @@ def _places(certificate: Certificate) -> str:
     return f" {' and '.join(words)}{margin}" if words else ""
 
 
-def _numbers(certificate: Certificate) -> tuple[str, ...]:
-    """Return bound, value and how near they are, in words."""
+def claim_numbers(certificate: Certificate) -> tuple[str, ...]:
+    """Write the bound, the value and how near they are, each rounded to the side that claims less."""
     bound, value = certificate.upper_bound, certificate.value
     least = value * (1.0 - VALUE_RTOL)
     if Quantity.of(certificate.scenario).is_rate:
@@ -111,9 +117,9 @@ def _numbers(certificate: Certificate) -> tuple[str, ...]:
     most_db = _rounded(10.0 * math.log10(bound) + 1e-12, ROUND_CEILING, digits=7)
     least_db = _rounded(10.0 * math.log10(value) - 1e-9, ROUND_FLOOR, digits=7)
     return (
-        f"{_rounded(bound, ROUND_CEILING)} ({most_db} dB)",
-        f"{_rounded(least, ROUND_FLOOR)} ({least_db} dB)",
-        f"a relative {_apart(bound / least - 1.0)}",
+        f"{most_db} dB ({_rounded(bound, ROUND_CEILING)})",
+        f"{least_db} dB ({_rounded(least, ROUND_FLOOR)})",
+        f"{_apart(bound / least - 1.0)} (relative)",
     )
 
 

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from nullpose.certificate import Certificate
+    from nullpose.report.document import View
 
 from nullpose.cli.faults import INTERNAL
 from nullpose.cli.options import AllowOutside, JsonOutput
@@ -28,6 +32,9 @@ def verify(
         ),
     ] = None,
     allow_outside: AllowOutside = False,
+    show_scenario: Annotated[
+        bool, typer.Option("--show", help="Print the certificate's scenario too, as check does.")
+    ] = False,
     json_output: JsonOutput = False,
 ) -> None:
     """Check a certificate.
@@ -47,10 +54,11 @@ def verify(
         checked = {"proved": verdict.proved, "message": verdict.message, "leaves": verdict.leaves}
         show_json(checked | about | subject(certificate))
     else:
-        say(verdict.message, err=not verdict.proved)
         if verdict.proved:
-            digest = subject(certificate)["scenario_sha256"]
-            say(f"scheme {certificate.scheme}, scenario SHA-256 {digest}\n")
+            show(_proved_view(certificate, verdict.leaves))
+        else:
+            say(verdict.message, err=True)
+        if show_scenario:
             show(scenario_view(certificate.scenario))
         if scenario is not None:
             words = (
@@ -59,3 +67,24 @@ def verify(
             say("\n  ".join([words, *unlike]), err=bool(unlike))
     if unlike or not verdict.proved:
         raise typer.Exit(INTERNAL)
+
+
+def _proved_view(certificate: Certificate, leaves: int) -> View:
+    from rich.text import Text
+
+    from nullpose.certificate.subject import claim_numbers, claim_words, subject
+    from nullpose.report.document import document, head, pairs
+    from nullpose.report.numbers import capitalised
+
+    most, least, near = claim_numbers(certificate)
+    rows = [
+        ("upper bound", most),
+        ("pose's value", least),
+        ("gap", near),
+        ("boxes checked", f"{leaves:,}"),
+        ("scheme", certificate.scheme),
+        ("SHA-256", subject(certificate)["scenario_sha256"]),
+    ]
+    claim = capitalised(f"{claim_words(certificate)} above the bound.")
+    proved = Text("PROVED", style="bold green")
+    return document(head(certificate.scenario.name), proved, pairs("", rows), claim)

@@ -1,6 +1,7 @@
 """A result as a document: a head, tables of rows, pairs of names and words, notes.
 
-Every text is shown as it is given: what looks like markup is none.
+Every text is shown as it is given: what looks like markup is none. Only minus signs become hyphens, so that
+numbers can be copied into files and commands.
 """
 
 from __future__ import annotations
@@ -8,8 +9,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
+from nullpose.report.numbers import MINUS
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
+    from rich.text import Text
 
 Row = Mapping[str, str]
 View: TypeAlias = "RenderableType"
@@ -21,26 +25,29 @@ _LONGEST_WORD = 20  # characters; longer ones, such as names, are broken where t
 def document(*parts: View | None) -> View:
     """Set texts, tables and heads one below the other; None is left out."""
     from rich.console import Group
+
+    return Group(*(_text(part) if isinstance(part, str) else part for part in parts if part is not None))
+
+
+def _text(words: str, style: str = "") -> Text:
     from rich.text import Text
 
-    return Group(*(Text(part) if isinstance(part, str) else part for part in parts if part is not None))
+    return Text(words.replace(MINUS, "-"), style=style)
 
 
 def head(name: str, label: str = "", value: str = "", lines: Sequence[str] = ()) -> View:
     """Write what stands above a result: the scenario, the result's label and value, and lines on it."""
-    from rich.text import Text
-
-    text = Text(name or "scenario", style="bold")
-    if label:
-        below = "\n".join(("", *filter(None, lines), ""))
-        text = Text.assemble(text, "\n", (label, "bold blue"), ": ", (value, "bold"), below)
-    return text
+    if not label:
+        return _text(name or "scenario", "bold")
+    below = _text("\n".join(("", *filter(None, lines), "")))
+    first = [_text(f"{name or 'scenario'}\n", "bold"), _text(label, "bold blue"), _text(": ")]
+    return _text("").join([*first, _text(value, "bold"), below])
 
 
 def table(
     title: str, rows: Sequence[Row], *, bold: Collection[str] = (), left: Collection[str] = ()
 ) -> View | None:
-    """Set rows as a table in which no number is broken, however narrow the terminal; None without rows.
+    """Set rows as a table and an empty line, no number broken in a narrow terminal; None without rows.
 
     Args:
         title: stands above it; may be empty.
@@ -52,30 +59,28 @@ def table(
         return None
     from rich import box
     from rich.table import Table
-    from rich.text import Text
 
     is_headed = any(map(str.strip, rows[0]))
-    rules = box.SIMPLE_HEAD if is_headed else box.SIMPLE if title else None
-    view = Table(box=rules, show_header=is_headed, pad_edge=False, title_justify="left")
-    view.title = Text(title, style="bold") if title else None
+    rules = box.SIMPLE_HEAD if is_headed else None
+    view = Table(box=rules, show_header=is_headed, show_edge=False, pad_edge=False)
     for index, heading in enumerate(rows[0]):
         cells = [row[heading] for row in rows if row]
         is_words = index == 0 or heading in left
         words = " ".join(cells).split() if is_words else "\n".join(cells).split("\n")
         longest = max(map(len, [*words, *heading.split()]), default=1)
         view.add_column(
-            Text(heading),
+            _text(heading),
             justify="left" if is_words else "right",
             overflow="fold",
             min_width=min(longest, _LONGEST_WORD) if is_words else longest,
         )
     for row in rows:
         if row:
-            texts = list(map(Text, row.values()))
+            texts = list(map(_text, row.values()))
             view.add_row(*texts, style="bold" if texts[0].plain in bold else "")
         else:
             view.add_section()
-    return view
+    return document(_text(title, "bold") if title else None, view, "")
 
 
 def pairs(title: str, rows: Iterable[tuple[str, str | None]]) -> View | None:

@@ -117,9 +117,9 @@ def _head(result: Result, label: str, *more: str) -> View:
         f"{work_words(stats.starts, stats.boxes)}; {stats.wall_s:.2g} s",
         *more,
     )
-    if isinstance(result.details, GivenDetails) and objective.upper_bound is not None:
+    if isinstance(result.details, GivenDetails):
         bound = f"{bound_text(result.details.best.objective)} {objective.quantity.unit}"
-        lines = (f"upper bound of every pose {bound}", sure, *more)
+        lines = (sure and f"upper bound of every pose {bound}", sure, *more)
     return head(result.scenario.name, label, f"{objective.quantity.smallest} {value_words(objective)}", lines)
 
 
@@ -141,7 +141,7 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
         "Guaranteed: holds for all errors within the stated limits. "
         "Lowest found: over the errors that were tried.",
         *(pairs(capitalised(name), frame_rows(scenario, pose.pose)) for name, pose in poses.items()),
-        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.",
+        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.\n",
         sensitivity_view(result),
     )
 
@@ -167,10 +167,11 @@ def _guarded_cells(objective: Objective, guarded: GuardedPose) -> dict[str, str]
 def _antenna_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:
     is_even = scenario.antenna_record.is_even
     tilt = f"{math.degrees(tilt_rad(pose, is_even)):z.3f} deg from vertical"
-    airframe = scenario.airframe
+    airframe, azimuth = scenario.airframe, azimuth_text(pose, is_even)
+    leans = "" if azimuth == "-" else f", azimuth {azimuth} deg (0 east, 90 north)"
     return [
         ("airframe", None if airframe is None else airframe_words(airframe, pose.tilt_rad)),
-        ("antenna axis", f"{tilt}, azimuth {azimuth_text(pose, is_even)} deg (0 east, 90 north)"),
+        ("antenna axis", f"{tilt}{leans}"),
         ("", _in_brackets(pose.antenna_axis)),
     ]
 

@@ -36,10 +36,10 @@ def sensitivity_view(result: Result) -> View | None:
     values = [quantity.in_unit(getattr(found, kind)) for kind in kinds]
     columns = {
         "error": list(kinds.values()),
-        f"lowest {quantity.noun} found ({quantity.unit})": [number(value, quantity) for value in values],
+        f"lowest {quantity.short} ({quantity.unit})": [number(value, quantity) for value in values],
         f"change ({quantity.unit})": [number(value - nominal, quantity) for value in values],
     }
-    title = "If things are off (by a search; the true lowest value can be lower)"
+    title = "If things are off (found by a search: the true lowest value can be lower)"
     return document(table(title, rows(columns)), sensitivity_words(result))
 
 
