@@ -1,7 +1,7 @@
 """Bring the page "The report of a study" up to date: `python docs/figures/study_report.py out/study`.
 
 From the folder of the study of ``examples/study.toml``: its pictures into ``docs/images/study-report-*.png``,
-its summary, its sentences and its table beside this script.
+its summary, its three numbers, its sentences and its table beside this script.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ REQUIREMENT_DB = 0.0
 
 
 def main(study: Path) -> None:
-    """Write pictures, summary, sentences and table of a study's report.
+    """Write pictures, summary, numbers, sentences and table of a study's report.
 
     Args:
         study: its folder.
@@ -32,7 +32,9 @@ def main(study: Path) -> None:
         shutil.copyfile(Path(folder) / "summary.csv", FOLDER / "study-report.csv")
         lines = (Path(folder) / "report.md").read_text(encoding="utf-8").splitlines()
     write_text(FOLDER / "study-report-answer.txt", " ".join([report.answer, *report.notes]) + "\n")
-    table = [line for line in lines if line.startswith("|")]
+    tables = [line for line in lines if line.startswith("|")]
+    numbers, table = tables[:3], tables[3:]
+    write_text(FOLDER / "study-report-numbers.txt", "\n".join(numbers) + "\n")
     last = table[:2] + table[-len(report.summary.cases) :]
     write_text(FOLDER / "study-report-table.txt", "\n".join(last) + "\n")
 

@@ -50,7 +50,8 @@ def test_files_of_a_report(make: Make, ladder: Ladder) -> None:
     assert {str(path.relative_to(folder / "report")) for path in report.files} == there
     text = (folder / "report" / "report.md").read_text(encoding="utf-8")
     assert text.splitlines()[0] == "# made up"
-    assert text.splitlines()[2] == report.answer
+    assert text.splitlines()[2].startswith("| **\N{MINUS SIGN}21.00 dB**")
+    assert text.splitlines()[6] == report.answer
     assert {f"figures/{name}.png" for name in ALL} == set(re.findall(r"\]\((figures/[a-z]+\.png)\)", text))
     page = _Page((folder / "report" / "report.html").read_text(encoding="utf-8"))
     assert len(page.addresses) == page.tags.count("img") == len(ALL)

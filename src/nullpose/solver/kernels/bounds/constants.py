@@ -1,4 +1,4 @@
-"""The numbers of the lemmas, rounded up. Each is derived in docs/certificate.md, and again in its test.
+"""The numbers of the lemmas, rounded up. Each is derived in docs/proofs.md, and again in its test.
 
 They bound derivatives along a unit direction, times powers of distances: a is the least distance of a point
 to the box, rho that of the point that a frame turns towards. The certificate has its own copy.

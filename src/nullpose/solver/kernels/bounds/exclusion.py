@@ -8,7 +8,7 @@ at the box's centre; with a bound on the remainder, and a margin for rounding, i
 corners. Where all axes are horizontal, it only needs to be negative definite in the horizontal plane.
 
 A form is six numbers: xx, yy, zz, xy, xz, yz. Forms stand in a frame that turns with the direction to one
-ground point, the anchor, whose null stands still in it (docs/certificate.md, lemma 2).
+ground point, the anchor, whose null stands still in it (docs/proofs.md, lemma 2).
 """
 
 from __future__ import annotations

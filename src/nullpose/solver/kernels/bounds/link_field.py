@@ -3,7 +3,7 @@
 A link is the squared length of something linear in the axis: ``|u x w|^2`` with ``w = h r / |r|^2``, h being
 the amplitude of the point's channel, the root of its excess gain. Four rules bound it along any unit
 direction: *invert* (``r / |r|^2``), *scale* by h, *turn* with a frame, and *square*. Proofs:
-docs/certificate.md, lemmas 1 and 2, and "Channels".
+docs/proofs.md, lemmas 1 and 2, and "Channels".
 """
 
 from __future__ import annotations
