@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
-from nullpose.report.figures.bars import draw_bars
+from nullpose.report.figures.dots import draw_dots
 from nullpose.report.figures.plan import draw_field, draw_plan
 from nullpose.report.figures.poses import draw_dipole
 from nullpose.report.figures.scene import draw_panel
@@ -72,8 +72,7 @@ def pose(result: Result, ax: Axes | None = None) -> Axes:
     if hasattr(result.details, "weights"):
         raise UsageError("pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
     with _axes(ax, ALONE.inches, solid=True) as axes:
-        stage = Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE)
-        draw_panel(axes, stage, result.pose, draw_dipole)
+        draw_panel(axes, Stage.of(result), result.pose, draw_dipole)
     return axes
 
 
@@ -93,7 +92,7 @@ def plan(result: Result, ax: Axes | None = None) -> Axes:
         'East x (m)'
     """
     with _axes(ax, (5.0, 5.0)) as axes:
-        draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE), result.pose)
+        draw_plan(axes, Stage.of(result), result.pose)
     return axes
 
 
@@ -145,7 +144,7 @@ def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False) -> A
 
 
 def comparison(found: ResultTable | Sequence[Result], ax: Axes | None = None) -> Axes:
-    """Draw a bar for each case or vehicle, and a mark at its bound.
+    """Draw a dot for each case or vehicle, and a tick at its bound.
 
     Args:
         found: by ``nullpose.compare`` or ``nullpose.compare_airframes``.
@@ -157,13 +156,13 @@ def comparison(found: ResultTable | Sequence[Result], ax: Axes | None = None) ->
     Example:
         >>> import nullpose
         >>> axes = nullpose.plot.comparison(nullpose.compare(nullpose.load("examples/paper.toml")))
-        >>> len(axes.patches)  # bars
-        4
+        >>> [text.get_text() for text in axes.texts]  # dB
+        ['0.98', '0.81', '−0.70', '−2.16']
     """
     if not isinstance(found, ResultTable):
         found = ResultTable("", tuple(ResultRow.of(math.nan, result) for result in found))
     with _axes(ax, (7.0, 3.6)) as axes:
-        draw_bars(axes, found)
+        draw_dots(axes, found)
         if axes.get_legend_handles_labels()[0]:
             axes.legend(loc="lower right", frameon=False, handlelength=1.0)
     return axes

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from nullpose import Scenario, compare_airframes, load, solve, sweep
-from nullpose.report.figures.bars import draw_comparison
+from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose, draw_result
 from nullpose.report.figures.style import WIDTHS_MM, write_figure_file
@@ -60,7 +60,8 @@ def test_the_plan_is_to_scale_and_has_every_name(paper: Scenario) -> None:
     """Beside the scene in 3-D there is one from above, a metre being as long to the east as to the north."""
     solid, plan = draw_pose(solve(paper, certify=False)).axes
     assert (solid.name, plan.name) == ("3d", "rectilinear")
-    assert {text.get_text() for text in plan.texts} == {"S1", "S2", "M"}
+    assert {text.get_text() for text in plan.texts} == {"S1 0.98 dB", "S2 0.98 dB", "M", "drone 8 m up"}
+    assert {text.get_text() for text in solid.texts} == {"S1", "S2", "M"}
     across, along = plan.transData.transform([[1.0, 0.0], [0.0, 1.0]]) - plan.transData.transform([0.0, 0.0])
     assert across[0] == pytest.approx(along[1], rel=1e-6)
 

@@ -42,7 +42,7 @@ def compare(
     with compiling_announced(), Ticker("comparing vehicles" if airframes else "solving") as ticker:
         found = solver(scenario, on_progress=ticker, **proof.keywords(fast))
     if figure is not None:
-        from nullpose.report.figures.bars import draw_comparison
+        from nullpose.report.figures.dots import draw_comparison
         from nullpose.report.figures.style import write_figure_file
 
         write_figure_file(draw_comparison(found, width), figure)

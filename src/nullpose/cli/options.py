@@ -23,6 +23,8 @@ class FigureWidth(StrEnum):
 
     COLUMN = "column"
     PAGE = "page"
+    COLUMN_SERIF = "column-serif"
+    PAGE_SERIF = "page-serif"
 
 
 ScenarioFile = Annotated[
@@ -133,7 +135,7 @@ Width = Annotated[
     FigureWidth | None,
     typer.Option(
         "--width",
-        help="Size of the figure in print: a column (88 mm) or a page (181 mm).",
+        help="Size of the figure in print: a column (88 mm) or a page (181 mm), perhaps in serif letters.",
         show_default="a size for screens",
     ),
 ]

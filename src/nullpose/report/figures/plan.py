@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import shapely
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.patches import PathPatch, Polygon
+from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
+from scipy.ndimage import distance_transform_edt
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_outlines, draw_shadows
-from nullpose.report.figures.scene import NULL_LINE, write_name
-from nullpose.report.figures.stage import ALONE, AXIS, Stage, limits_m
-from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, INK, MARKS, Look, house_style, inches
+from nullpose.report.figures.scene import NULL_LINE, lay_out, place_names, write_name
+from nullpose.report.figures.stage import AXIS, Stage, limits_m
+from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, MARKS, Look, house_style, inches
+from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import MINUS, capitalised
+from nullpose.scenario import Eavesdropper, Jammer, Node, Scenario
 from nullpose.solver import Result
 from nullpose.study import Field
 
 _MOST_SPAN, _LEAST_SPAN = 30.0, 1.0  # of the colours: what is farther below the best is as dark as it gets
 _LEVELS = 8
+_FAR_M = 1e7  # of an airspace without an end
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # for labels and the colour bar
 _TALLEST_INCH = 8.0
 
@@ -35,18 +43,19 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         pose: of the drone.
         box_m: low and high corner of what is shown, (2, 2), metres; the whole stage if left out.
     """
-    low, high = np.stack(limits_m(stage))[:, :2] if box_m is None else box_m
+    low, high = _filled(axes, np.stack(limits_m(stage))[:, :2]) if box_m is None else box_m
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="East x (m)", ylabel="North y (m)")
     axes.set_aspect("equal")
     if box_m is None:  # a map has its own colours
         draw_shadows(axes, stage, float(pose.position_m[2]), np.stack([low, high]))
     draw_outlines(axes, stage.scenario, is_filled=box_m is None)
-    names, zone_names = [], []
     for zone, corners_m in stage.zones:
         look: Look = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}
         if zone is not None:
             look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
-            zone_names.append((zone.name, corners_m.mean(axis=0), FORBIDDEN, "on"))
+            middle = corners_m.mean(axis=0)
+            if np.all((low <= middle) & (middle <= high)):
+                write_name(axes, zone.name, middle, is_area=True)
         axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
     x, y = pose.position_m[:2]
     rim: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 30}
@@ -56,17 +65,40 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         dashes, width = ("-", 0.8) if is_node else ((0, (3, 1.5)), 1.2)
         axes.plot([x, place[0]], [y, place[1]], color=colour, linestyle=dashes, linewidth=width, zorder=1.5)
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.0, label=kind, **rim)
-        names.append((point.name, place, INK, "above" if is_node else "right"))
+        words = " ".join(filter(None, (point.name, stage.numbers.get(point.name))))
+        is_worst = point.name in stage.worst
+        is_named = is_worst or not (is_node and stage.is_crowded and stage.view.is_small)
+        if is_named and np.all((low <= place) & (place <= high)):
+            write_name(axes, words, place, is_bold=is_worst)
+        if stage.uncertain and not isinstance(point, Node):
+            words = f"where the {kind} may be"
+            axes.plot(*_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=words)
     radius_m = stage.view.pattern * stage.extent_m
     reach = AXIS * radius_m * pose.antenna_axis[:2]
     ends = np.stack([pose.position_m[:2] - reach, pose.position_m[:2] + reach])
-    axes.plot(*ends.T, zorder=6.5, **NULL_LINE)
+    is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None
+    axes.plot(*ends.T, zorder=6.5, label="antenna axis (null)" if is_null else None, **NULL_LINE)
     axes.scatter(x, y, color=DRONE, zorder=7, label="drone", **rim)
+    write_name(axes, f"drone {pose.position_m[2]:.3g} m up", pose.position_m)
     axes.apply_aspect()
-    for name, place, colour, side in names + zone_names:
-        inner = 0.05 * (high - low) * (side == "on")  # the name of a zone is wide
-        if np.all((place >= low + inner) & (place <= high - inner)):
-            write_name(axes, name, place, colour, side)
+    place_names(axes)
+
+
+def _outline_of_set_m(point: Jammer | Eavesdropper) -> FloatArray:
+    """List places around the set that a point may be anywhere in, from above, (n, 2), metres."""
+    around = np.linspace(0.0, math.tau, 73)
+    half_m = point.uncertainty_matrix_m[:2]
+    away = np.stack([np.cos(around), np.sin(around)], axis=-1) @ half_m
+    away /= np.maximum(np.linalg.norm(away, axis=-1, keepdims=True), 1e-300)
+    return np.asarray(point.position_m[:2] + away @ half_m.T)
+
+
+def _filled(axes: Axes, box_m: FloatArray) -> FloatArray:
+    """Widen a box, (2, 2), to the shape of the axes."""
+    middle, sides = box_m.mean(axis=0), np.ptp(box_m, axis=0)
+    scale = float(np.max(sides / axes.bbox.size))
+    half = 0.5 * scale * np.asarray(axes.bbox.size)
+    return np.stack([middle - half, middle + half])
 
 
 def draw_value_map(result: Result, field: Field, width: str | None = None) -> Figure:
@@ -87,7 +119,28 @@ def draw_value_map(result: Result, field: Field, width: str | None = None) -> Fi
         if width is None:
             title = f"{result.scenario.name}\n{result.label}: {field.title}"
             axes.set_title(title, fontsize=9, parse_math=False)
+        lay_out(figure)
     return figure
+
+
+def _open_ground(scenario: Scenario, altitude_m: float) -> Path:
+    """Outline where the vehicle may be at an altitude: inside the fence and outside all zones and balls."""
+    airspace = scenario.airspace
+    (west, south, _), (east, north, _) = np.clip([airspace.lower_m, airspace.upper_m], -_FAR_M, _FAR_M)
+    ground = shapely.box(west, south, east, north)
+    if airspace.geofence_m is not None:
+        ground = ground.intersection(shapely.Polygon(airspace.geofence_outline_m))
+    zones = [zone for zone in airspace.no_fly if zone.floor_m < altitude_m < zone.ceiling_m]
+    walls = [each for each in scenario.buildings if each.floor_m < altitude_m < each.heights_m[1]]
+    closed = [shapely.Polygon(outline_m(zone)) for zone in zones]
+    closed += [shapely.Polygon(each.outline_m, each.courtyard_outlines_m) for each in walls]
+    for point in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers):
+        x, y, z = point.position_m
+        across_m = math.sqrt(max(airspace.keep_out_m**2 - (altitude_m - z) ** 2, 0.0))
+        closed.append(shapely.Point(x, y).buffer(across_m, 24))
+    parts = shapely.get_parts(ground.difference(shapely.union_all(closed)))
+    rings = [shapely.get_coordinates(ring) for part in parts for ring in (part.exterior, *part.interiors)]
+    return Path.make_compound_path(*(Path(ring, closed=True) for ring in rings))
 
 
 def draw_field(axes: Axes, result: Result, field: Field) -> None:
@@ -96,16 +149,24 @@ def draw_field(axes: Axes, result: Result, field: Field) -> None:
     high = field.best[0]
     lowest = float(np.percentile(values.compressed(), 2.0)) if values.count() else 0.0
     low = min(max(lowest, high - _MOST_SPAN), high - _LEAST_SPAN)
-    look: Look = {"cmap": "viridis", "vmin": low, "vmax": high, "shading": "nearest"}
-    mesh = axes.pcolormesh(east, north, values, zorder=0.5, rasterized=True, **look)
+    look: Look = {"cmap": "viridis", "vmin": low, "vmax": high, "shading": "gouraud"}
+    spread = values
+    if values.count():  # beyond the borders, at which it is cut
+        nearest = distance_transform_edt(np.isnan(field.values), return_distances=False, return_indices=True)
+        spread = field.values[tuple(nearest)]
+    mesh = axes.pcolormesh(east, north, spread, zorder=0.5, rasterized=True, **look)
     levels = MaxNLocator(_LEVELS, steps=[1, 2, 5, 10]).tick_values(low, high)[1:-1]
     white: Look = {"colors": "white", "linewidths": 0.6, "linestyles": "solid", "zorder": 0.8}
-    lines = axes.contour(east, north, values, levels, **white)
-    axes.clabel(lines, fontsize=6.5, fmt=lambda level: f"{level:g}".replace("-", MINUS))
+    lines = axes.contour(east, north, spread, levels, **white)
+    labels = axes.clabel(lines, fontsize=6.5, fmt=lambda level: f"{level:g}".replace("-", MINUS))
+    outline = PathPatch(_open_ground(result.scenario, field.altitude_m), transform=axes.transData)
+    mesh.set_clip_path(outline)
+    lines.set_clip_path(outline)
+    for label in labels:
+        label.set(clip_on=True, clip_path=outline)
     axes.grid(visible=False)
-    stage = Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE)
-    draw_plan(axes, stage, result.pose, np.array([[east[0], north[0]], [east[-1], north[-1]]]))
-    words = f"{capitalised(result.objective.quantity.smallest)} {field.altitude_m:.4g} m up  ({field.unit})"
+    draw_plan(axes, Stage.of(result), result.pose, np.array([[east[0], north[0]], [east[-1], north[-1]]]))
+    words = f"{capitalised(result.objective.quantity.smallest)} {field.altitude_m:.3g} m up ({field.unit})"
     beside = axes.inset_axes((1.03, 0.0, 0.045, 1.0))  # as high as the map, whatever its shape
     extend = "min" if float(values.min()) < low else "neither"
     axes.figure.colorbar(mesh, cax=beside, label=words, extend=extend)

@@ -6,10 +6,13 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d import Axes3D
@@ -21,9 +24,9 @@ from nullpose.physics.array import placed_elements
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.scene import NULL_LINE, draw_line, draw_panel
+from nullpose.report.figures.scene import NULL_LINE, draw_line, draw_panel, lay_out
 from nullpose.report.figures.stage import ALONE, AXIS, PAIR, PANELS, Stage
-from nullpose.report.figures.style import DRONE, INK, SURFACE, Look, house_style, inches
+from nullpose.report.figures.style import DRONE, INK, SURFACE, Look, house_style, inches, is_column
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
@@ -36,9 +39,11 @@ from nullpose.study import ResultRow
 
 _PLAN_INCH = 3.4  # width of a plan on a screen
 _PLAN_SHARE = 0.31 / 0.57  # width of a plan over that of the scene beside it
-_PANEL_INCH = {"column": 2.6, "page": 3.3}  # height of a panel in print
+_Place: TypeAlias = tuple[float, float, float, float]
+_PLAN: _Place = (0.165, 0.3, 0.435, 0.68)  # in a column, of the figure
+_SOLID: _Place = (0.625, 0.36, 0.29, 0.6)
 _LEGEND_COLUMN_INCH = 1.7
-_LEGEND_LETTERS = 28  # in a line of it, in a column
+_PANEL_INCH = (3.3, 2.5)  # height on a page and in a column
 
 
 def draw_panels(
@@ -62,48 +67,59 @@ def draw_panels(
         plan: whether the first pose is drawn from above too.
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
-    count = len(stage.poses)
+    count, is_narrow = len(stage.poses), is_column(width)
     shares = [1.0] * count + [_PLAN_SHARE] * plan
     wide, high = stage.view.inches[0] * count + _PLAN_INCH * plan, stage.view.inches[1]
-    across, down = len(shares), 1
     if width is not None:
-        wide, high = inches((0.0, 0.0), width, 0.0)[0], _PANEL_INCH[width]
-    if width == "column":
-        across, down, shares = 1, len(shares), [1.0]
+        wide, high = inches((0.0, 0.0), width, 0.0)[0], _PANEL_INCH[is_column(width)]
+    is_small = is_narrow and plan
+    stage = replace(stage, view=replace(stage.view, is_small=is_narrow))
     with house_style(width):
-        # the name of z is beyond its panel, that of y too where another panel is below
-        layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.98, 1.0), hspace=0.08)
-        figure = Figure(figsize=(wide, high * down), layout=layout)
-        grid = figure.add_gridspec(down, across, width_ratios=shares)
+        # the name of z is beyond its panel
+        layout = None if is_small else ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.98, 1.0))
+        figure = Figure(figsize=(wide, high), layout=layout)
+        grid = figure.add_gridspec(1, len(shares), width_ratios=shares)
         for index, pose in enumerate(stage.poses):
-            axes = figure.add_subplot(grid[index], projection="3d")
-            axes.patch.set_visible(False)  # it would cover what another panel has at its edge
-            draw_panel(axes, stage, pose, draw_vehicle)
-            axes.set_title(titles[index] if titles else "", fontsize="medium", y=0.96)
+            if is_narrow and not plan:
+                axes = figure.add_subplot(grid[index])
+                draw_plan(axes, stage, pose)
+            else:
+                axes = _axes(figure, _SOLID if is_small else grid[index], projection="3d")
+                axes.patch.set_visible(False)  # it would cover what another panel has at its edge
+                draw_panel(axes, stage, pose, draw_vehicle)
+            title = titles[index] if titles else ""
+            axes.set_title(title.replace(", ", "\n") if is_narrow else title, fontsize="medium", y=0.96)
         if plan:
-            draw_plan(figure.add_subplot(grid[-1]), stage, stage.poses[0])
+            draw_plan(_axes(figure, _PLAN if is_small else grid[-1]), stage, stage.poses[0])
         if width is None:
             figure.suptitle(head, fontsize=10, parse_math=False)
         once: dict[str, Artist] = {}
         for handles, names in (axes.get_legend_handles_labels() for axes in figure.axes):
             once = dict(zip(names, handles, strict=True)) | once
-        once[textwrap.fill(surface, _LEGEND_LETTERS) if width == "column" else surface] = Patch(
-            color=SURFACE, alpha=0.8
-        )
-        columns = min(len(once), int(wide / _LEGEND_COLUMN_INCH))
-        look: Look = {"handlelength": 1.8, "columnspacing": 1.2, "borderaxespad": 0.1}
-        legend = figure.legend(
-            once.values(), once.keys(), frameon=False, loc="outside lower center", ncols=columns, **look
-        )
+        if is_narrow:
+            del once["drone"]  # it has its name in the plan
+        else:
+            once[surface] = Patch(color=SURFACE, alpha=0.8)
+        look: Look = {"handlelength": 1.4, "columnspacing": 1.0, "borderaxespad": 0.1, "handletextpad": 0.5}
+        columns = 3 if is_small else min(len(once), int(wide / _LEGEND_COLUMN_INCH))
+        look["loc"] = "lower center" if is_small else "outside lower center"
+        legend = figure.legend(once.values(), once.keys(), frameon=False, ncols=columns, **look)
         for text in legend.get_texts():
             text.set_parse_math(False)
+        lay_out(figure)
     return figure
+
+
+def _axes(figure: Figure, place: SubplotSpec | _Place, projection: str | None = None) -> Axes:
+    """Add axes in a grid, or at a place of their own."""
+    if isinstance(place, tuple):
+        return figure.add_axes(place, projection=projection)
+    return figure.add_subplot(place, projection=projection)
 
 
 _LETTERS = 100  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
-_SURFACE = "radiation pattern, near side cut away"
-_WHOLE = "radiation pattern"
+_SURFACE = "radiation pattern"
 
 # Lengths drawn, as shares of the scene's extent.
 _ARRAY = 0.10  # from the middle to the outermost element
@@ -130,9 +146,9 @@ def draw_pose(result: Result, width: str | None = None) -> Figure:
     scenario, pose = result.scenario, result.pose
     words = filter(None, (_words(scenario, result.objective, pose), sensitivity_caption(result)))
     return draw_panels(
-        Stage(scenario=scenario, poses=(pose,), view=ALONE),
+        Stage.of(result),
         draw_dipole,
-        surface=_SURFACE if scenario.antenna_record.is_quadratic else _WHOLE,
+        surface=_SURFACE,
         head=f"{scenario.name}\n{textwrap.fill('; '.join(words), _LETTERS)}",
         plan=True,
         width=width,
@@ -200,7 +216,7 @@ def draw_array(result: Result, width: str | None = None) -> Figure:
     yaw = f"yaw {math.degrees(yaw_rad):.1f}°".replace("-", MINUS)
     view = replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM)
     return draw_panels(
-        Stage(scenario=result.scenario, poses=(result.pose,), view=view),
+        Stage.of(result, view),
         lambda axes, stage, pose: _draw_elements(axes, stage, pose, elements, weights),
         surface=f"gain of the beam for {result.binding_node}, horizontal cut as a line",
         head=f"{result.scenario.name}\n{result.label}: {quantity.smallest} {value}, {yaw}; "

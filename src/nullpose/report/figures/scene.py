@@ -8,8 +8,11 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import FixedLocator, MaxNLocator
+from matplotlib.text import Annotation
+from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
+from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import Axes3D, proj3d
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import ArrayLike
@@ -31,41 +34,76 @@ NULL_LINE: Look = {
 }
 """How the direction of the null is drawn: its rim is seen on any ground."""
 
-_SIDES = {
-    "above": (0.0, 7.0, "center", "bottom"),
-    "right": (7.0, 0.0, "left", "center"),
-    "left": (-7.0, 0.0, "right", "center"),
-    "below": (0.0, -7.0, "center", "top"),
-    "on": (0.0, 0.0, "center", "center"),
-}
+_SIDES = tuple(
+    (far * x, far * y, across, up)
+    for far in (6.0, 14.0)
+    for x, y, across, up in (
+        (0.0, 1.0, "center", "bottom"),
+        (1.0, 0.0, "left", "center"),
+        (-1.0, 0.0, "right", "center"),
+        (0.0, -1.0, "center", "top"),
+        (0.8, 0.8, "left", "bottom"),
+        (-0.8, 0.8, "right", "bottom"),
+        (0.8, -0.8, "left", "top"),
+        (-0.8, -0.8, "right", "top"),
+    )
+)
 """Where a name may stand: how far from its point, in points, and by which part of it it is held."""
+_ON = (0.0, 0.0, "center", "center")
 
 
-def write_name(axes: Axes | Axes3D, name: str, point_m: FloatArray, colour: str, side: str = "right") -> None:
-    """Write a name at its point, on the first side where it is whole and over no other name.
+def write_name(
+    axes: Axes | Axes3D, name: str, point_m: FloatArray, *, is_bold: bool = False, is_area: bool = False
+) -> None:
+    """Write a name at its point as it is, no part of it a formula, for ``place_names`` to move.
 
     Args:
-        axes: in 3-D or seen from above, with its limits, its view and its place in the figure set.
-        name: as it is; no part of it is a formula.
+        axes: in 3-D or seen from above, with its view set.
+        name: of the point or the area.
         point_m: shape ``(2,)`` or ``(3,)``, metres.
-        colour: of the letters.
-        side: a key of ``_SIDES``, tried before the others.
+        is_bold: whether it is that of the worst node.
+        is_area: whether it may stand on its point; it is slanted.
     """
     x, y = float(point_m[0]), float(point_m[1])
     if isinstance(axes, Axes3D):
         x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
-    look: Look = {"fontsize": rcParams["xtick.labelsize"], "color": colour, "zorder": 8}
+    look: Look = {"fontsize": rcParams["xtick.labelsize"], "color": INK, "zorder": 8}
+    look |= {"fontweight": "bold" if is_bold else "normal", "fontstyle": "italic" if is_area else "normal"}
     look |= {"textcoords": "offset points", "annotation_clip": False, "parse_math": False}
     halo = [withStroke(linewidth=2.0, foreground="white")]
-    others = [text.get_window_extent().shrunk(0.9, 0.7) for text in axes.texts]  # letters without rims
-    text = axes.annotate(name, (x, y), xytext=(0.0, 0.0), path_effects=halo, **look)
-    for place in (side, "above", "right", "left", "below"):
-        x_pt, y_pt, across, up = _SIDES[place]
-        text.set(position=(x_pt, y_pt), ha=across, va=up)
-        box = text.get_window_extent()
-        is_whole = isinstance(axes, Axes3D) or (axes.bbox.contains(*box.min) and axes.bbox.contains(*box.max))
-        if is_whole and not any(box.shrunk(0.9, 0.7).overlaps(other) for other in others):
-            break
+    axes.annotate(name, (x, y), xytext=(0.0, 0.0), ha="center", va="center", path_effects=halo, **look)
+
+
+def place_names(axes: Axes | Axes3D) -> None:
+    """Move each name to the first side of its point where it is in the frame and over nothing else."""
+    frame = axes.figure.bbox if isinstance(axes, Axes3D) else axes.bbox
+    half = 3.0 * axes.figure.dpi / 72.0
+    names = [text for text in axes.texts if isinstance(text, Annotation)]
+    areas = [name for name in names if name.get_fontstyle() == "italic"]
+    points = [name for name in names if name not in areas]
+    taken = [Bbox([at - half, at + half]) for at in axes.transData.transform([name.xy for name in points])]
+    for name in points + areas:
+        sides = (_ON, *_SIDES) if name in areas else _SIDES
+        costs = []
+        for side in sides:
+            box = _put(name, side)
+            is_outside = not (frame.contains(*box.min) and frame.contains(*box.max))
+            costs.append(100 * is_outside + sum(box.overlaps(other) for other in taken))
+        taken.append(_put(name, sides[int(np.argmin(costs))]))
+
+
+def lay_out(figure: Figure) -> None:
+    """Place names in the frames that the layout leaves, which depends on them: twice."""
+    for _ in range(2):
+        figure.draw_without_rendering()
+        for axes in figure.axes:
+            place_names(axes)
+
+
+def _put(text: Annotation, side: tuple[float, float, str, str]) -> Bbox:
+    """Put a name at a side of its point; return the box of its letters."""
+    text.set(position=side[:2], ha=side[2], va=side[3])
+    return text.get_window_extent().shrunk(0.96, 0.7)
 
 
 def draw_line(axes: Axes3D, start: ArrayLike, stop: ArrayLike, **style: object) -> None:
@@ -79,26 +117,37 @@ def draw_panel(
     """Draw the scene, the vehicle at a pose, and the names of points in axes whose place is set."""
     axes.computed_zorder = False
     _frame(axes, stage)
+    is_small = stage.view.is_small
     position, floor_m = pose.position_m, axes.get_zlim()[0]
     ground = np.array([*position[:2], floor_m])
     draw_line(axes, ground, position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
     for kind, point in stage.points:
         place, (colour, marker) = np.asarray(point.position_m), MARKS[kind]
         order = 3.0 if kind == "node" else 6.0
-        axes.scatter(*place, color=colour, marker=marker, s=38, zorder=order, depthshade=False, label=kind)
+        axes.scatter(
+            *place,
+            color=colour,
+            marker=marker,
+            s=18 if is_small else 38,
+            zorder=order,
+            depthshade=False,
+            label=kind,
+        )
         if isinstance(point, Node):
             draw_line(axes, place, position, color=colour, linewidth=0.8, alpha=0.7, zorder=2)
         else:
             line = {"linewidth": 1.5, "linestyle": (0, (3, 1.5)), "zorder": 6.6}
-            draw_line(axes, position, place, color=colour, label=f"line to the {kind}", **line)
+            draw_line(axes, position, place, color=colour, **line)
             draw_line(axes, place, [*place[:2], floor_m], color=colour, linewidth=0.8, linestyle=":")
             if stage.uncertain and point.uncertainty_reach_m > 0.0:
                 draw_set(axes, point, colour, f"where the {kind} may be")
-        write_name(axes, point.name, place, INK, "above" if kind == "node" else "right")
+        if not (is_small and stage.is_crowded and kind == "node" and point.name not in stage.worst):
+            write_name(axes, point.name, place)
     draw_bodies(axes, stage.scenario)
     for zone, corners_m in stage.zones:
         _draw_zone(axes, zone, corners_m)
     draw_vehicle(axes, stage, pose)
+    place_names(axes)
 
 
 def _frame(axes: Axes3D, stage: Stage) -> None:
@@ -106,17 +155,23 @@ def _frame(axes: Axes3D, stage: Stage) -> None:
     low, high = limits_m(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(tuple(high - low), zoom=stage.view.zoom)  # one metre is as long along every axis
-    axes.set_xlabel("East x (m)", labelpad=-3)
-    axes.set_ylabel("North y (m)", labelpad=-1)
-    axes.set_zlabel("Up z (m)", labelpad=-8)
-    axes.tick_params(pad=-2, labelsize=7.5)
-    sides = ((axes.xaxis, 5), (axes.yaxis, 7), (axes.zaxis, 3))
+    is_small = stage.view.is_small
+    if is_small:
+        axes.text2D(1.12, 0.1, "Up z (m)", transform=axes.transAxes, ha="right", fontsize="small")
+    else:
+        axes.set_zlabel("Up z (m)", labelpad=-8)
+        axes.set_xlabel("East x (m)", labelpad=-3)
+        axes.set_ylabel("North y (m)", labelpad=-1)
+    axes.tick_params(pad=-4 if is_small else -2, labelsize="small")
+    sides = ((axes.xaxis, 5), (axes.yaxis, 7), (axes.zaxis, 2 if is_small else 3))
     for index, (axis, most) in enumerate(sides):
         ticks = MaxNLocator(most, steps=(1, 2, 5, 10)).tick_values(low[index], high[index])
         edge = _EDGE * (high[index] - low[index]) if index < 2 else 0.0
         inside = [tick for tick in ticks if low[index] + edge <= tick <= high[index] - edge]
         axis.set_major_locator(FixedLocator(inside))
         axis.set_pane_color((0.97, 0.97, 0.97, 1.0))
+        if is_small and index < 2:
+            axis.set_major_formatter(NullFormatter())
     axes.view_init(elev=stage.view.elevation_deg, azim=stage.view.azimuth_deg)
 
 
@@ -136,7 +191,7 @@ def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray) -> N
         look = {"facecolor": (FORBIDDEN, 0.10), "edgecolor": edge, "linewidth": 0.8, "zorder": 1.0}
         axes.add_collection3d(Poly3DCollection(faces, **look))
     axes.plot([], [], [], color=FORBIDDEN, linewidth=0.8, label="no-fly zone")
-    write_name(axes, zone.name, np.append(corners_m.mean(axis=0), high_m), FORBIDDEN, "on")
+    write_name(axes, zone.name, np.append(corners_m.mean(axis=0), high_m), is_area=True)
 
 
 def draw_set(axes: Axes3D, point: Jammer | Eavesdropper, colour: str, label: str) -> None:

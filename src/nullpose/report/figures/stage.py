@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import outline_m
+from nullpose.report.links import binding_nodes
+from nullpose.report.numbers import with_unit
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
+from nullpose.solver import Result
 
 # Lengths drawn, as shares of the scene's extent.
 _MARGIN = 0.12  # free ground around the scene
+_MARGIN_OF_ZONES = 0.03
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
+_MOST_NUMBERS = 6  # nodes with a number beside their name
 AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 
 
@@ -30,6 +35,7 @@ class View:
         pattern: radius drawn where the gain is largest; a pattern has no size of its own.
         azimuth_deg: where the camera stands, from x (east) towards y (north).
         zoom: how much of its place a scene fills.
+        is_small: whether a plan beside it has the names and the numbers of the axes on the ground.
     """
 
     inches: tuple[float, float]
@@ -37,6 +43,7 @@ class View:
     pattern: float
     azimuth_deg: float = -32.0
     zoom: float = 1.12
+    is_small: bool = False
 
     @property
     def camera(self) -> FloatArray:
@@ -60,12 +67,29 @@ class Stage:
         poses: one for each panel; all show the same space.
         view: size, camera and lengths.
         uncertain: whether sets are drawn that jammers and eavesdroppers may be anywhere in.
+        numbers: what each node gets, by its name.
+        worst: nodes that get the least.
     """
 
     scenario: Scenario
     poses: tuple[Pose, ...]
     view: View
     uncertain: bool = False
+    numbers: Mapping[str, str] = field(default_factory=dict)
+    worst: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, result: Result, view: View = ALONE) -> Stage:
+        """Set the stage of a result with what each node gets, of many nodes the worst alone."""
+        quantity, worst = result.objective.quantity, binding_nodes(result)
+        links = [link for link in result.links if link.node in worst or len(result.links) <= _MOST_NUMBERS]
+        numbers = {link.node: with_unit(quantity.in_unit(quantity.at(link)), quantity) for link in links}
+        return cls(scenario=result.scenario, poses=(result.pose,), view=view, numbers=numbers, worst=worst)
+
+    @property
+    def is_crowded(self) -> bool:
+        """Whether there are too many nodes for a number beside each."""
+        return len(self.scenario.nodes) > _MOST_NUMBERS
 
     @property
     def points(self) -> list[tuple[str, Node | Jammer | Eavesdropper]]:
@@ -106,7 +130,8 @@ def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
     positions = np.array([pose.position_m[:2] for pose in stage.poses])
     around = ((points[:, :2], _MARGIN), (positions, AXIS * stage.view.pattern))  # the latter for the pattern
     flat = [middle + side * reach * extent_m for middle, reach in around for side in (-1.0, 1.0)]
-    flat += [corners_m for _, corners_m in stage.zones]
+    edge_m = _MARGIN_OF_ZONES * extent_m
+    flat += [corners_m + side * edge_m for _, corners_m in stage.zones for side in (-1.0, 1.0)]
     low, high = np.vstack(flat).min(axis=0), np.vstack(flat).max(axis=0)
     top_m = max(pose.position_m[2] for pose in stage.poses) + 1.3 * stage.view.pattern * extent_m
     return np.append(low, min(0.0, points[:, 2].min())), np.append(high, top_m)

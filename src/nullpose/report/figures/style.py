@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
 NODE, JAMMER, EAVESDROPPER, NULL = "#0072b2", "#d55e00", "#b04e94", "#e69f00"
-DRONE, SURFACE = INK, "#b9c2cc"
+DRONE, SURFACE = INK, "#dde2e8"
 FORBIDDEN = "#8c3b3b"
 MARKS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {"node": (NODE, "s"), "jammer": (JAMMER, "X"), "eavesdropper": (EAVESDROPPER, "D")}
@@ -120,7 +120,12 @@ _PRINT = {
     "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0,
     "legend.fontsize": 7.0,
+    "figure.titlesize": 8.0,
 }
+
+SERIF = "-serif"
+"""What a width ends in for letters as in the text of a paper."""
+_SERIF = {"font.family": ["STIXGeneral", "DejaVu Serif"], "mathtext.fontset": "stix"}
 
 WIDTHS_MM: Mapping[str, float] = MappingProxyType({"column": 88.0, "page": 181.0})
 """Widths of figures in print: one column, or both, of an IEEE page."""
@@ -130,8 +135,13 @@ def inches(usual: tuple[float, float], width: str | None, share: float) -> tuple
     """Choose the width and height of a figure: the usual, or in print its width and a share of it."""
     if width is None:
         return usual
-    wide = WIDTHS_MM[width] / 25.4
+    wide = WIDTHS_MM[width.removesuffix(SERIF)] / 25.4
     return wide, share * wide
+
+
+def is_column(width: str | None) -> bool:
+    """Tell whether a figure is as wide as a column."""
+    return width is not None and width.startswith("column")
 
 
 @contextmanager
@@ -139,7 +149,8 @@ def house_style(width: str | None = None) -> Iterator[None]:
     """Apply the shared look to every figure made inside, with the letters of a screen or of print."""
     import matplotlib
 
-    with matplotlib.rc_context(_RC if width is None else _RC | _PRINT):
+    look = _RC if width is None else _RC | _PRINT
+    with matplotlib.rc_context(look | _SERIF if (width or "").endswith(SERIF) else look):
         yield
 
 

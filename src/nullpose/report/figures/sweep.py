@@ -13,7 +13,16 @@ from matplotlib.figure import Figure
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
-from nullpose.report.figures.style import CURVES, GREY, Look, curve_of, draw_curve, house_style, inches
+from nullpose.report.figures.style import (
+    CURVES,
+    GREY,
+    Look,
+    curve_of,
+    draw_curve,
+    house_style,
+    inches,
+    is_column,
+)
 from nullpose.report.numbers import axis_label, capitalised
 from nullpose.study import ResultRow, ResultTable
 
@@ -82,11 +91,11 @@ def draw_sweep(table: ResultTable, *, log: bool = False, width: str | None = Non
     """Draw a sweep, its legend above the axes and, but in print (``WIDTHS_MM``), what is proved below."""
     lines = [f"{line}." for line in certainty_lines(table)]
     with house_style(width):
-        size = inches((7.0, 4.6), width, 0.8 if width == "column" else 0.5)
+        size = inches((7.0, 4.6), width, 0.8 if is_column(width) else 0.5)
         figure = Figure(figsize=size, layout="constrained")
         if draw_sweep_axes(figure.add_subplot(), table, log=log):
             lines.append("Each band ends at the upper bound, a small triangle.")
-        columns = 2 if width == "column" else 4
+        columns = 2 if is_column(width) else 4
         look: Look = {"handlelength": 3.2, "columnspacing": 1.4, "frameon": False}
         figure.legend(loc="outside upper center", ncols=columns, **look)
         if width is None:

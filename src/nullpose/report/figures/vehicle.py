@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from nullpose.objectives import FloatArray
-from nullpose.report.figures.style import GREY, INK, VEHICLES, Look, house_style, inches
+from nullpose.report.figures.style import GREY, INK, VEHICLES, Look, house_style, inches, is_column
 from nullpose.study.least_tilt import LeastTilt
 
 _TILTS_DEG, _MOUNTS_DEG = np.linspace(0.0, 90.0, 181), np.linspace(0.0, 90.0, 91)
@@ -36,10 +36,10 @@ def draw_least_tilt(
     """
     angles_deg, shares = values[0], values[1] / found.omnidirectional.objective.value
     with house_style(width):
-        is_column = width == "column"
-        size = inches((9.0, 4.0), width, 1.6 if is_column else 0.45)
+        is_narrow = is_column(width)
+        size = inches((9.0, 4.0), width, 1.6 if is_narrow else 0.45)
         figure = Figure(figsize=size, layout="constrained")
-        first, second = figure.subplots(2, 1) if is_column else figure.subplots(1, 2)
+        first, second = figure.subplots(2, 1) if is_narrow else figure.subplots(1, 2)
         _draw_shares(first, found, angles_deg, shares)
         _draw_losses(second, angles_deg, shares)
         if width is None:

@@ -1,0 +1,117 @@
+"""Figures of comparisons: a dot at the value of each case or vehicle, and a tick at its bound."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from nullpose.objectives import Quantity
+from nullpose.physics.types import FloatArray
+from nullpose.report.answer import answer_lines
+from nullpose.report.comparison import numbers_of
+from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, Look, house_style, inches
+from nullpose.report.figures.sweep import draw_caption
+from nullpose.report.numbers import capitalised, number
+from nullpose.study import ResultRow, ResultTable
+from nullpose.study.case import OMNIDIRECTIONAL
+
+_ROW_INCH, _SENTENCE_INCH = 0.33, 0.3
+_NAME_LETTERS = 60  # in a line of a scene's name
+_GAP = 0.6  # between dipoles and arrays, in rows
+_DEEPEST_DB = 25.0  # dots farther below the best are at the edge, as arrows
+_FREE, _BEFORE = 0.4, 0.08  # beside the dots, for their numbers, and before them, of the width drawn
+
+
+def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure:
+    """Draw cases or vehicles compared: dots and answer, in print (a key of ``WIDTHS_MM``) dots alone."""
+    lines = answer_lines(comparison) if OMNIDIRECTIONAL in comparison.names else []
+    with house_style(width):
+        height = 1.6 + _ROW_INCH * len(comparison.rows)
+        size = (7.0, height + _SENTENCE_INCH * len(lines))
+        if width is not None:
+            size = (inches(size, width, 0.0)[0], 0.66 * height)
+        figure = Figure(figsize=size, layout="constrained")
+        axes = figure.add_subplot()
+        draw_dots(axes, comparison)
+        figure.legend(loc="outside upper center", ncols=2, frameon=False, handlelength=1.2)
+        if width is None:
+            name = textwrap.fill(comparison.rows[0].scenario.name, _NAME_LETTERS)
+            axes.set_title(name, loc="left", fontweight="bold", parse_math=False)
+            draw_caption(figure, lines)
+    return figure
+
+
+def draw_dots(axes: Axes, comparison: ResultTable) -> None:
+    """Draw a dot for each row, a tick at its bound, and what it guarantees under errors.
+
+    Beside vehicles their difference from the omnidirectional one is written.
+    """
+    found, quantity = comparison.rows, comparison.rows[0].objective.quantity
+    places = np.arange(len(found)) + _GAP * np.array([row.case.array is not None for row in found])
+    values, bounds, nominal, robust, _ = numbers_of(comparison)
+    low = _frame(axes, quantity, places, np.array([values, bounds, nominal, robust]))
+    axes.hlines(places, *axes.get_xlim(), color="#cccccc", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.0)
+    axes.hlines(places, np.fmax(values, low), bounds, color=INK, linewidth=1.0, zorder=2.0)
+    dots: Look = {"linestyle": "", "clip_on": False, "zorder": 3.0}
+    axes.plot([], [], "o", color=GREY, label="value found")
+    for place, row, value in zip(places, found, values, strict=True):
+        is_seen = value >= low
+        axes.plot(max(value, low), place, "o" if is_seen else "<", color=_colour(row), **dots)
+    marks: dict[str, tuple[FloatArray, Look]] = {
+        "proved upper bound": (bounds, {"marker": "|", "color": INK, "markersize": 13.0}),
+        "guaranteed, robust pose": (robust, {"marker": "d", "color": INK, "markersize": 5.0}),
+        "guaranteed, pose shown": (
+            nominal,
+            {"marker": "d", "color": "white", "markeredgecolor": INK, "markersize": 5.0},
+        ),
+    }
+    for label, (numbers, look) in marks.items():
+        if np.any(np.isfinite(numbers)):
+            axes.plot(np.where(numbers >= low, numbers, math.nan), places, label=label, **look | dots)
+    whole = math.nan
+    if OMNIDIRECTIONAL in comparison.names:
+        whole = float(values[comparison.names.index(OMNIDIRECTIONAL)])
+        axes.axvline(whole, color=VEHICLES[OMNIDIRECTIONAL].colour, linewidth=0.9, zorder=1.5)
+    ends = np.fmax(np.fmax(np.nan_to_num(values, nan=low), low), bounds)
+    beside: Look = {"xytext": (7, 0), "textcoords": "offset points", "va": "center", "zorder": 4.0}
+    white = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+    for place, end, value in zip(places, ends, values.tolist(), strict=True):
+        axes.annotate(
+            _difference_words(value, whole, quantity), (end, place), fontsize="small", bbox=white, **beside
+        )
+    axes.set_yticks(places, [row.label for row in found])
+
+
+def _frame(axes: Axes, quantity: Quantity, places: FloatArray, numbers: FloatArray) -> float:
+    """Set limits and names of the axes, with space for all numbers; return the lowest value in view."""
+    finite = numbers[np.isfinite(numbers)]
+    low, high = float(finite.min(initial=0.0)), max(float(finite.max(initial=0.0)), 1e-3)
+    if not quantity.is_rate:  # decibels have no natural zero
+        high = float(finite.max())
+        low = max(float(finite.min()), high - _DEEPEST_DB)
+    span = max(high - low, 0.5 if not quantity.is_rate else 1e-3)
+    axes.tick_params(axis="y", length=0)
+    axes.set(xlim=(low - _BEFORE * span, high + _FREE * span), ylim=(places[-1] + 0.6, -0.6))
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel(f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})")
+    return low
+
+
+def _colour(row: ResultRow) -> str:
+    looks = {**CURVES, **VEHICLES}
+    name = "array" if row.case.array else row.name
+    return looks[name].colour if name in looks else INK
+
+
+def _difference_words(value: float, whole: float, quantity: Quantity) -> str:
+    """Write a value, and its difference from the omnidirectional vehicle's."""
+    if math.isnan(value):
+        return "no pose reaches every node"
+    difference = value - whole
+    if not math.isfinite(difference) or difference == 0.0:
+        return number(value, quantity)
+    return f"{number(value, quantity)}  ({'+' if difference > 0.0 else ''}{number(difference, quantity)})"
