@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-_PROVED = "/(certified|proved) to/.test(document.querySelector('[data-np=status-0]')?.innerText)"
+_PROVED = "/Proved|At most/.test(document.querySelector('[data-np=overlay-status-0]')?.innerText)"
 _FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 _VIEWPORT = {"width": 1280, "height": 800}
 
@@ -33,6 +33,7 @@ def opened(address: str, *, scale: float = 0.5, **more: Any) -> Iterator[Any]:
         browser = playwright.chromium.launch(executable_path=path, args=_FLAGS)
         page = browser.new_page(**{"viewport": _VIEWPORT, "device_scale_factor": scale} | more)
         page.set_default_timeout(120_000)
+        page.add_init_script("localStorage.setItem('np-explained', '1')")
         page.goto(address)
         page.wait_for_function(_PROVED)
         for button in page.locator("button.mantine-Notification-closeButton").all():

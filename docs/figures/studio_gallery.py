@@ -1,4 +1,4 @@
-"""Takes a picture of every example in the studio, at three sizes, light and dark, with contact sheets.
+"""Pictures of every example in the studio, at two sizes and on a touch phone, light and dark, and sheets.
 
 ``python docs/figures/studio_gallery.py [folder] [example ...]`` writes ``<size>-<scheme>/<example>.png`` and
 ``<size>-<scheme>.png`` into the folder, which is ``out/screens`` if none is given.
@@ -11,9 +11,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from benchmarks.chromium import opened
 from PIL import Image, ImageDraw
-from studio_screens import ROOT, at_rest  # which makes the benchmarks known too: hence the order
+from studio_screens import ROOT, at_rest, opened
 
 from nullpose import load
 from nullpose.studio.server import Studio, studio
@@ -34,10 +33,8 @@ def take(running: Studio, path: Path, size: tuple[int, int], scheme: str) -> Non
         scheme: light or dark.
     """
     viewport = dict(zip(("width", "height"), size, strict=True))
-    with opened(running.address, scale=1.0, viewport=viewport, color_scheme=scheme) as page:
-        close = page.get_by_role("button", name="Got it")
-        if close.is_visible():  # which it is not where the panel is folded
-            close.click()
+    touch = {"has_touch": True, "is_mobile": True} if size[0] < size[1] else {}
+    with opened(running.address, scale=1.0, viewport=viewport, color_scheme=scheme, **touch) as page:
         ours: Any = next(reversed(running.pages.values()))
         at_rest(page, ours.session)
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -103,7 +103,7 @@ def nearer(client: Any, size_m: float) -> None:
 def settle(page: Any, session: Any) -> None:
     """Wait for the proof and the maps of the present scene."""
     while session.state.field_map is None or not session.state.status(session.state.case).startswith(
-        "certified"
+        "Proved"
     ):
         page.wait_for_timeout(50)
 
@@ -114,7 +114,6 @@ def main() -> None:
         studio(load(ROOT / "examples" / "paper.toml"), port=0) as running,
         opened(running.address, scale=1.0, viewport=VIEWPORT, color_scheme="dark") as page,
     ):
-        page.get_by_role("button", name="Got it").click()
         ours: Any = next(iter(running.pages.values()))
         ours._client.gui.main_panel.minimize()
         page.wait_for_timeout(3000)

@@ -62,7 +62,6 @@ def take(name: str) -> None:
         studio(load(ROOT / "examples" / f"{example}.toml"), port=0) as running,
         opened(running.address, scale=1.0) as page,
     ):
-        page.get_by_role("button", name="Got it").click()
         ours: Any = next(iter(running.pages.values()))
         session: Any = ours.session
         change(session)

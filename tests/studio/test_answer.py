@@ -1,5 +1,7 @@
 """The words for how far a solve has come."""
 
+import re
+
 from nullpose.scenario import Scenario
 from nullpose.solver import Status, solve
 from nullpose.studio.answer import answer_of, signed, status_words, with_errors
@@ -13,10 +15,14 @@ def test_words_follow_what_is_proved(paper: Scenario) -> None:
     proved = answer_of(3, OPTIMUM, solve(paper))
     cut = answer_of(3, OPTIMUM, solve(paper, node_limit=1))
     assert status_words(None) == "solving"
-    assert status_words(searched) == "best so far"
-    assert status_words(proved) == "certified to 1e-6, verifiable"
+    assert status_words(searched) == "Best found so far"
+    assert status_words(proved) == "Proved optimal (gap 0.0001 %)"
     assert cut.result.status is Status.GAP_NOT_REACHED
-    assert status_words(cut).startswith("best so far, proved to ")
+    assert cut.result.objective.upper_bound is not None
+    below = 1.0 - cut.result.objective.value / cut.result.objective.upper_bound
+    words = re.fullmatch(r"At most ([\d.]+) % below the optimum", status_words(cut))
+    assert words is not None
+    assert 100.0 * below <= float(words[1]) <= 103.0 * below
     assert cut.note.startswith("The proof stopped")
 
 
@@ -26,7 +32,7 @@ def test_a_robust_answer_is_what_is_guaranteed(unsure: Scenario) -> None:
     answer = answer_of(1, case_named("Robust pose"), solution)
     assert answer.result.objective.value == solution.details.robust.guaranteed
     assert answer.result.objective.value <= min(link.sinr for link in answer.result.links) * (1.0 + 1e-9)
-    assert status_words(answer) == "best so far"
+    assert status_words(answer) == "Best found so far"
     assert with_errors(answer).errors == ()
 
 

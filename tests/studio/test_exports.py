@@ -19,7 +19,7 @@ STUDIO = Path(exports.__file__).parent
 
 
 def test_pose_and_figure_are_of_the_present_scene(paper: Scenario) -> None:
-    """The pose is the solver's JSON and the figure a picture; before there is an answer both say so."""
+    """The pose is the solver's JSON, the figure a picture; before there is an answer both say so."""
     session = Session(State(scenario=paper), rest_s=0.01)
     for export in (pose_json, figure_png):
         with pytest.raises(UsageError, match="try again"):

@@ -14,14 +14,14 @@ from nullpose.studio.state import State
 def test_buildings_stand_on_the_ground_at_their_highest(paper: Scenario) -> None:
     """All as one mesh, which stays the same one while points move; none without buildings."""
     state = State(scenario=load("examples/town.toml"))
-    shapes = ground_shapes(state, 100.0, LIGHT, has_arrows=False)
+    shapes = ground_shapes(state, 100.0, LIGHT)
     vertices = np.asarray(shapes["/buildings/bodies"].values["vertices"])
     assert vertices.min(axis=0).tolist() == [-80.0, -40.0, 0.0]
     assert vertices.max(axis=0).tolist() == [80.0, 80.0, 25.0]
     assert 11.0 in vertices[:, 2]  # of 9 to 11
-    moved = ground_shapes(state.moved(("nodes", 0), (-71, -3, 2)), 100.0, LIGHT, has_arrows=False)
+    moved = ground_shapes(state.moved(("nodes", 0), (-71, -3, 2)), 100.0, LIGHT)
     assert moved["/buildings/bodies"] is shapes["/buildings/bodies"]
-    bare = ground_shapes(State(scenario=paper), 100.0, LIGHT, has_arrows=False)
+    bare = ground_shapes(State(scenario=paper), 100.0, LIGHT)
     assert not any(name.startswith("/buildings") for name in bare)
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, seed, strategies as st
 
 from nullpose.report.figures.style import CURVES
-from nullpose.studio import plot, readout
+from nullpose.studio import plot
 from nullpose.studio.look import DARK, LIGHT, Look, css, linear_colours, lit, scale_colours, scale_range
 
 SCENES = {LIGHT.dark: "#ffffff", DARK.dark: "#141414"}
@@ -39,13 +39,13 @@ def _pair(colour: str) -> list[str]:
 @LOOKS
 def test_what_is_drawn_stands_out(look: Look) -> None:
     """Points, drones, airspace, zones, curves and ring have a contrast of 3 to 1, and letters 4.5."""
-    drawn = [*look.kinds.values(), *look.slots, *look.hulls, look.airspace, look.zone, look.wire, look.drop]
+    drawn = [*look.kinds.values(), *look.slots, look.sketch, look.airspace, look.zone, look.wire]
     for colour in map(css, drawn):
         assert _contrast(colour, SCENES[look.dark]) >= 3.0, colour
     assert len(set(look.kinds.values())) == 3
     for colour in (plot.RING, *(lit(curve.colour) for curve in CURVES.values())):
         assert _contrast(_pair(colour)[look.dark], PANELS[look.dark]) >= 3.0, colour
-    for colour in (*map(css, look.slots), *(_pair(tone.colour)[look.dark] for tone in readout.TONES)):
+    for colour in map(css, look.slots):
         assert _contrast(colour, PANELS[look.dark]) >= 4.5, colour
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from decimal import Decimal
 
 from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import MINUS, rounded_up
 from nullpose.report.sensitivity import sensitivity_words, sizes_words
-from nullpose.solver import Result, Status
+from nullpose.solver import Result, Rigour, Status
 from nullpose.solver.robust import GuardedPose, RobustDetails
 from nullpose.studio.case import Case
 from nullpose.study import ResultTable
@@ -104,14 +105,12 @@ class Progress:
         version: the version of the scene.
         case: the case that is proved.
         gap: the bound above the value, relative.
-        target: the gap that is aimed at.
         boxes: how many were examined.
     """
 
     version: int
     case: Case
     gap: float
-    target: float
     boxes: int
 
 
@@ -172,9 +171,18 @@ def status_words(answer: Answer | None) -> str:
     if answer is None:
         return "solving"
     result, gap = answer.result, answer.result.objective.relative_gap
-    if result.status is Status.BEST_FOUND or gap is None:
-        return "best so far"
-    reach = rounded_up(gap) if math.isfinite(gap) else "no gap that is finite"
+    if result.status is Status.BEST_FOUND or gap is None or not math.isfinite(gap):
+        return "Best found so far"
     if result.status is Status.CERTIFIED:
-        return f"certified to {reach}, {result.rigour.value}"
-    return f"best so far, proved to {reach}"
+        unsure = ", in floating point" if result.rigour is Rigour.FLOATING_POINT else ""
+        return f"Proved optimal (gap {per_cent(gap)}{unsure})"
+    return f"At most {per_cent(gap / (1.0 + gap))} below the optimum"
+
+
+def per_cent(share: float) -> str:
+    """Write a share in per cent, rounded up.
+
+    Args:
+        share: at least 0.
+    """
+    return f"{Decimal(rounded_up(100.0 * share)):f} %" if math.isfinite(share) else "not finite"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
@@ -25,6 +26,7 @@ _CANVAS_PX = (1000.0, 800.0)  # where none is known
 _AHEAD = -np.array([0.82, -0.52, 0.64]) / np.linalg.norm([0.82, -0.52, 0.64])  # the camera's view
 _MARGIN = 0.88  # of half the canvas, which leaves space for labels
 _ROUNDS = 6  # of centring
+_TURNS = 24  # directions from which a turning scene is seen whole
 _FAR = 100.0  # sizes of the scene that the camera sees, so that it can be moved away
 _TALL = 0.08  # of a point with its label, sizes of the scene
 _DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
@@ -41,8 +43,25 @@ def canvas_px(camera: CameraHandle | InitialCameraConfig | SimpleNamespace) -> F
     return np.array(size if all(size) else _CANVAS_PX, dtype=float)
 
 
+def ray(camera: CameraHandle, across: float, down: float) -> FloatArray:
+    """Find the direction from a camera through a place on its canvas, (3,).
+
+    Args:
+        camera: viser's.
+        across: from the left, widths of the canvas.
+        down: from the top, heights of the canvas.
+    """
+    (width, height), slope = canvas_px(camera), 2.0 * math.tan(0.5 * camera.fov)
+    seen = slope * np.array([(across - 0.5) * width / height, down - 0.5, 1.0 / slope])
+    return np.asarray(Rotation.from_quat(np.roll(camera.wxyz, -1)).apply(seen))  # real part first
+
+
 def aim(
-    camera: CameraHandle | InitialCameraConfig | SimpleNamespace, scenario: Scenario, pose: Pose | None = None
+    camera: CameraHandle | InitialCameraConfig | SimpleNamespace,
+    scenario: Scenario,
+    pose: Pose | None = None,
+    *,
+    turns: bool = False,
 ) -> None:
     """Point a camera at the whole of a scene: points, drone, and the ground between them.
 
@@ -53,8 +72,13 @@ def aim(
         camera: viser's.
         scenario: the scene.
         pose: of the drone, if there is one.
+        turns: whether all is to be seen too while the camera goes around the scene's centre.
     """
     matter, size_m = matter_m(scenario, pose), scene_size_m(scenario)
+    if turns:
+        centre_m = centre_of_m(scenario)
+        around = Rotation.from_rotvec(np.outer(np.linspace(0.0, math.tau, _TURNS), [0.0, 0.0, 1.0]))
+        matter = np.vstack([turn.apply(matter - centre_m) + centre_m for turn in around])
     canvas, (right_of, below) = canvas_px(camera), CARD_PX
     whole, *others = (
         _fit(canvas, camera.fov, matter, corner) for corner in ((0.0, 0.0), (right_of, 0.0), (0.0, below))
@@ -95,6 +119,15 @@ def _fit(canvas: FloatArray, fov_rad: float, points_m: FloatArray, corner_px: tu
         middle = middle + distance_m * off @ sides
     position = middle - distance_m * (_AHEAD + centre @ sides)
     return _Fit(position, distance_m, 0.5 * canvas + seen * [1.0, -1.0] / slope)
+
+
+def centre_of_m(scenario: Scenario) -> FloatArray:
+    """Find the centre of a scene on the ground, about which it is turned, (3,) metres.
+
+    Args:
+        scenario: the scene.
+    """
+    return np.append(np.mean(grid_m(scenario)[:2], axis=0), 0.0)
 
 
 def matter_m(scenario: Scenario, pose: Pose | None) -> FloatArray:

@@ -6,13 +6,15 @@ import math
 from functools import cache
 from typing import NamedTuple
 
-from nullpose.report.numbers import MINUS, rounded_up
+from nullpose.report.numbers import MINUS
+from nullpose.studio.answer import per_cent
+from nullpose.studio.camera import centre_of_m
 from nullpose.studio.field_map import Scale
 from nullpose.studio.look import css, scale_colours
 from nullpose.studio.readout import macros
 from nullpose.studio.state import State
 
-_WIDEST_GAP = 1.0
+_GAPS = 1e-6, 1.0  # at which the bar is closed, and as open as can be
 _CLOSED = 2.0  # per cent of the bar that stay, so that it can be seen
 
 
@@ -23,7 +25,8 @@ def card_html(state: State) -> str:
         state: of the page.
     """
     scale = None if state.scale is None else _scale(state, state.scale)
-    return str(macros().card(state, proof(state), scale))
+    centre = " ".join(f"{number:.3f}" for number in centre_of_m(state.scenario))
+    return str(macros().card(state, proof(state), scale, centre))
 
 
 def _scale(state: State, scale: Scale) -> dict[str, object]:
@@ -55,23 +58,18 @@ class Bar(NamedTuple):
 
     Args:
         gap: the bound above the value, relative.
-        target: the gap at which the bar is closed.
         words: what stands below.
-        bound: what stands above its right end.
     """
 
     gap: float
-    target: float
     words: str
-    bound: str = "bound"
 
     @property
     def share(self) -> float:
-        """How much of the bar is open, per cent, on a log scale from 100 % to the target."""
-        if self.gap >= _WIDEST_GAP:
-            return 100.0
-        open_part = math.log(self.gap / self.target) / math.log(1.0 / self.target)
-        return _CLOSED + (100.0 - _CLOSED) * max(0.0, open_part)
+        """How much of the bar is open, per cent, on a log scale between the ends."""
+        least, widest = _GAPS
+        gap = min(max(self.gap, least), widest)
+        return _CLOSED + (100.0 - _CLOSED) * (math.log(gap / least) / math.log(widest / least))
 
 
 def proof(state: State) -> Bar:
@@ -82,23 +80,8 @@ def proof(state: State) -> Bar:
     """
     answer, progress = state.current(state.case), state.progress(state.case)
     if answer is not None and (gap := answer.result.objective.relative_gap) is not None:
-        target = min(float(answer.result.provenance["gap"]), 0.5)
-        words = f"Gap {gap_words(gap)}: proved in {answer.result.stats.boxes:,} boxes"
-        return Bar(max(gap, target), target, words)
+        return Bar(gap, f"{answer.result.stats.boxes:,} boxes examined")
     if progress is not None:
-        words = f"Gap {gap_words(progress.gap)} so far: {progress.boxes:,} boxes examined"
-        return Bar(progress.gap, progress.target, words)
-    return Bar(math.inf, _WIDEST_GAP, "Not proved yet", "no bound yet")
-
-
-def gap_words(gap: float) -> str:
-    """Write a relative gap, rounded up: in per cent, or as a small number.
-
-    Args:
-        gap: at least 0.
-    """
-    if not math.isfinite(gap):
-        return "not finite"
-    if gap >= 1.0:
-        return f"{100.0 * gap:z.0f} %"
-    return f"{rounded_up(100.0 * gap)} %" if gap > 1e-3 else rounded_up(gap)
+        words = f"gap {per_cent(progress.gap)} so far, {progress.boxes:,} boxes examined"
+        return Bar(progress.gap, words)
+    return Bar(math.inf, "no bound yet")

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from nullpose.studio.edits import ADDED
 from nullpose.studio.field_map import MAPS
-from nullpose.studio.picking import FENCE
+from nullpose.studio.picking import FENCE, RULER
 from nullpose.studio.state import POWER_DB
 
 NO_CASE = "nothing"
 """In the choice of a second case: there is none."""
 
-TABS: dict[str, dict[str, tuple[str, str, str, dict[str, object]]]] = {
+_GREY: dict[str, object] = {"color": "gray"}
+Control = tuple[str, str, str, dict[str, object]]
+"""Kind, label, help, and more of viser's arguments."""
+
+TABS: dict[str, dict[str, Control | dict[str, Control]]] = {
     "Scene": {
         "power": (
             "multi_slider",  # of one handle: viser's other one has a field that takes every keystroke
@@ -37,24 +41,19 @@ TABS: dict[str, dict[str, tuple[str, str, str, dict[str, object]]]] = {
             {"options": (NO_CASE,)},
         ),
         "plot": ("html", "", "", {}),
-        "undo": ("button", "Undo", "Take back the last change.", {"disabled": True}),
-        "redo": ("button", "Redo", "Make the change again that was taken back.", {"disabled": True}),
+        # pressed by the icons in the panel's head, which the frame's script draws
+        "undo": ("button", "Undo", "", {"disabled": True, "visible": False}),
+        "redo": ("button", "Redo", "", {"disabled": True, "visible": False}),
     },
     "Edit": {
         "add": (
             "button_group",
             "Add",
-            "Then click on the ground. A point is selected with a click, and then dragged by its arrows.",
-            {"options": (*ADDED, FENCE)},
+            "Then click on the ground. The ruler measures from one click to the next.",
+            {"options": (*ADDED, FENCE, RULER)},
         ),
         "tool": ("html", "", "", {}),
         "vehicle_values": ("folder", "Vehicle and airspace", "", {}),
-        "new": (
-            "button",
-            "New scene",
-            "Begin with one node on an empty ground; Undo brings the last one back.",
-            {},
-        ),
     },
     "Map and view": {
         "map_name": (
@@ -75,42 +74,45 @@ TABS: dict[str, dict[str, tuple[str, str, str, dict[str, object]]]] = {
             "At the drone's altitude: where buildings hide nodes (filled) and jammers (hatched).",
             {"initial_value": True},
         ),
-        "lifts_points": (
-            "checkbox",
-            "Points leave the ground",
-            "Let points be dragged up and down too.",
-            {"initial_value": False},
-        ),
-        "aim": ("button", "Reset the camera", "Look at the whole scene again.", {}),
+        "aim": ("button", "Reset the camera", "Look at the whole scene again.", _GREY),
         "present": (
             "button",
             "Present",
-            "Fold the panel (key: P); again, or Escape: unfold it.",
-            {},
+            "Fold the panel and turn the scene (key: P); Escape ends it.",
+            _GREY,
         ),
     },
     "Files": {
-        "upload": (
-            "upload_button",
-            "Load scenario",
-            "Open a scenario file (TOML); faults are listed above.",
-            {"mime_type": ".toml"},
-        ),
-        "save": ("button", "Save scenario", "Download the scene as a scenario file (TOML).", {}),
-        "pose": ("button", "Export pose", "Download the pose and its values (JSON).", {}),
-        "figure": ("button", "Export figure", "Download the power plot (PNG).", {}),
-        "picture": (
-            "button",
-            "Export picture",
-            "Download what is seen of the scene as a picture (PNG), with value, bound and colours.",
-            {},
-        ),
-        "html": (
-            "button",
-            "Export scene",
-            "Download the 3-D scene as one HTML file that needs no server.",
-            {},
-        ),
+        "Open and save": {
+            "save": ("button", "Save scenario", "Download the scene as a scenario file (TOML).", {}),
+            "upload": (
+                "upload_button",
+                "Load scenario",
+                "Open a scenario file (TOML); faults are listed above.",
+                {"mime_type": ".toml"} | _GREY,
+            ),
+            "new": (
+                "button",
+                "New scene",
+                "Begin with one node on an empty ground; Undo brings the last one back.",
+                _GREY,
+            ),
+        },
+        "Export": {
+            "pose": ("button", "Export pose", "Download the pose and its values (JSON).", _GREY),
+            "figure": (
+                "button",
+                "Export figure",
+                "Download the scene and its pose as solve --figure draws them (PNG).",
+                _GREY,
+            ),
+            "html": (
+                "button",
+                "Export scene",
+                "Download the 3-D scene as one HTML file that needs no server.",
+                _GREY,
+            ),
+        },
     },
 }
-"""The controls of each tab, by name: kind, label, help, and more of viser's arguments."""
+"""The controls of each tab by name, some of them in groups."""

@@ -23,7 +23,7 @@ class Shape(NamedTuple):
     Args:
         kind: of viser's methods the one that adds it, without its ``add_``.
         values: its arguments.
-        key: of the point that it is, if a hand can drag it.
+        key: of the point that it is the body of, by which a hand can drag it.
     """
 
     kind: str

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import Antenna
-from nullpose.physics import rotation_world_from_body
+from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.solver import Result
+from nullpose.studio.answer import Answer
 from nullpose.studio.drawing import Shape, Shapes, coloured_mesh, frame, label, lines, mesh
 from nullpose.studio.look import Look, linear_colours, scale_colours
 from nullpose.studio.meshes import (
@@ -32,6 +33,7 @@ _TURN_RAD = math.radians(30.0)  # steps in which the opening of a pattern withou
 _RINGS, _MOST_RINGS = 24, 60  # of the pattern from pole to pole: without a graphics card triangles take long
 _FAINT = 0.01  # gain over the largest: along an axis with more there is no null to point
 _FULL = 0.13  # of the pattern's largest gain, sizes of the scene
+_SAME = 0.02  # sizes of the scene, and radians: less apart two cones are one
 _ABOVE, _BELOW = 0.16, 1.5  # of the null's line, at most, sizes of the scene
 _LABEL_AT = ((0.0, 0.0, 0.17), (0.0, 0.14, 0.0))  # above, and to the right, sizes of the scene
 _ANCHORS = ("bottom-center", "center-left")
@@ -61,33 +63,32 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
     mount = rotation_world_from_body(0.0, pose.mount_rad, 0.0)
     x, y, _ = (body @ mount).T @ np.subtract(eye_m, place_m)
     azimuth_rad = math.atan2(y, x)
+    ink = look.slots[slot]
     at_label_m = place_m + size_m * np.array(_LABEL_AT[slot])
     shapes = {
         "body": frame(place_m, body),
-        "body/hull": mesh(BODY, look.hulls[slot], flat_shading=True, scale=0.055 * size_m),
-        "body/rotors": mesh(ROTORS, look.slots[slot], opacity=0.45, scale=0.055 * size_m),
+        "body/hull": mesh(BODY, ink, flat_shading=True, scale=0.055 * size_m, opacity=(None, 0.5)[slot]),
+        "body/rotors": mesh(ROTORS, ink, opacity=0.45, scale=0.055 * size_m),
         "body/antenna": frame(rotation=mount),
         "body/antenna/rod": mesh(ROD, look.null, scale=0.2 * size_m),
-        "drop": lines([place_m * [[1.0, 1.0, 1.0], [1.0, 1.0, 0.0]]], look.drop, 1.2),
+        "drop": lines([place_m * [[1.0, 1.0, 1.0], [1.0, 1.0, 0.0]]], look.wire, 1.2),
         "label": label(drone_text(state, slot), at_label_m, 1.2, _ANCHORS[slot]),
     }
-    if state.has_pattern:
+    if state.has_pattern and slot == 0:
         turn_rad = 0.0 if antenna.is_axisymmetric else _TURN_RAD * round(azimuth_rad / _TURN_RAD)
         towards = turn_about_z(azimuth_rad if antenna.is_axisymmetric else 0.0)
-        surface = _pattern(antenna, turn_rad, look.slots[1] if slot else None)
+        surface = _pattern(antenna, turn_rad)
         sized = surface._replace(values={**surface.values, "scale": _FULL * size_m})
         shapes |= {"body/antenna/pattern": frame(rotation=towards), "body/antenna/pattern/surface": sized}
-    if _has_null(antenna):
+    if _has_null(antenna) and not (slot and _coincides(pose, state.answer(state.case), size_m)):
         shapes |= _null(result, body @ mount, size_m, look, has_angle=slot == 0)
     shapes |= _links(result, state.link_range_db, size_m, look)
     return {f"/drone-{'ab'[slot]}/{name}": shape for name, shape in shapes.items()}
 
 
 @lru_cache(8)
-def _pattern(antenna: Antenna, towards_rad: float, wires: tuple[int, int, int] | None) -> Shape:
-    """Draw a pattern of size one: a surface that is open towards the camera, or wires of a colour."""
-    if wires is not None:
-        return mesh(pattern_mesh(antenna, 18, 24)[0], wires, wireframe=True)
+def _pattern(antenna: Antenna, towards_rad: float) -> Shape:
+    """Draw a pattern of size one, open towards the camera."""
     degree = 0 if antenna.is_quadratic else antenna.harmonics.degree
     rings = min(_MOST_RINGS, _RINGS + 3 * degree)  # more where it may have more lobes
     surface, gain = pattern_mesh(antenna, rings, 3 * rings // 2, _OPEN_RAD, towards_rad)
@@ -103,7 +104,8 @@ def _null(
     below_m = min(_BELOW * size_m, place_m[2] / max(upwards[2, 2], 1e-6))
     ends = place_m + np.outer([_ABOVE * size_m, -below_m], upwards[:, 2])
     shapes = {
-        "null": lines(ends[None], look.null, 3.0),
+        "null": lines(ends[None], look.null, 0.006 * size_m, "world"),
+        "null-outline": mesh(_tubes(ends[None], np.array([0.0045 * size_m])), look.outline, side="back"),
         "beam": mesh(_BEAM.placed(below_m * upwards, place_m), look.null, opacity=0.3, side="back"),
     }
     if has_angle:
@@ -111,7 +113,8 @@ def _null(
         angles = [(axis_angle_rad(result.pose, jammer.position_m), jammer.name) for jammer in jammers]
         angle_rad, name = min(angles, default=(0.0, ""))
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""
-        shapes["angle"] = label(f"null{off}", 0.35 * place_m + 0.65 * ends[1], 0.9, "center-left")
+        shapes["angle"] = frame(0.35 * place_m + 0.65 * ends[1])
+        shapes["angle/label"] = label(f"null{off}", (0.0, 0.0, 0.0), 0.9, "center-left")
     return shapes
 
 
@@ -141,6 +144,15 @@ def _tubes(ends_m: NDArray[np.float64], radius_m: NDArray[np.float64]) -> Mesh:
     vertices = ends_m[:, :1] + _TUBE.vertices @ np.stack([across, other, along], axis=1)
     starts = len(_TUBE.vertices) * np.arange(len(ends_m))[:, None, None]
     return Mesh(vertices.reshape(-1, 3), (_TUBE.faces + starts).reshape(-1, 3))
+
+
+def _coincides(pose: Pose, first: Answer | None, size_m: float) -> bool:
+    """Tell whether a pose's cone would be drawn into that of the first drone."""
+    if first is None:
+        return False
+    away_m = np.linalg.norm(pose.position_m - first.result.pose.position_m)
+    along = abs(pose.antenna_axis @ first.result.pose.antenna_axis)
+    return bool(away_m < _SAME * size_m and along > math.cos(_SAME))
 
 
 def _has_null(antenna: Antenna) -> bool:

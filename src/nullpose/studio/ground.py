@@ -1,4 +1,4 @@
-"""A scenario in the scene of one page: grid, points with arrows on the selected one, airspace and zones."""
+"""A scenario in the scene of one page: grid, points with a halo on the selected one, airspace and zones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from nullpose.report.geometry import outline_m as zone_outline_m
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import Building, Eavesdropper, GroundPoint, Jammer, Scenario
 from nullpose.studio.answer import signed
-from nullpose.studio.drawing import Shape, Shapes, frame, label, lines, mesh
+from nullpose.studio.drawing import Shapes, frame, label, lines, mesh
 from nullpose.studio.look import Look, Rgb, round_steps
 from nullpose.studio.meshes import MARKS, building_mesh, floor_mesh, merged, prism_edges, sphere_mesh
 from nullpose.studio.state import POWER_DB, Key, State
@@ -21,11 +21,10 @@ from nullpose.study.value_map import map_extent_m
 
 FloatArray = NDArray[np.float64]
 
-_CROWD = 12  # of more nodes than this only the worst have their SINR in their labels
+_CROWD = 12  # of more nodes than this only the worst, the selected and the one pointed at have labels
 _RINGS = np.array([0.4, 0.7, 1.0])  # around a jammer, sizes of the largest
 _RING_LIFT_M = 0.1  # off the map on the ground
 _RING_SIZES = (0.02, 0.12)  # of the largest at the ends of the range of powers, sizes of the scene
-_SKETCH = (213, 94, 0)
 _CROSS = np.array([[[-1, 0, 0], [1, 0, 0]], [[0, -1, 0], [0, 1, 0]]])
 
 
@@ -52,39 +51,43 @@ def _extent_m(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
     return map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
 
 
-def ground_shapes(state: State, size_m: float, look: Look, *, has_arrows: bool) -> Shapes:
-    """Draw a scene: grid, airspace, buildings and points, and a fence as far as it is drawn by now.
+def ground_shapes(state: State, size_m: float, look: Look) -> Shapes:
+    """Draw a scene: grid, airspace, buildings and points, and what is fenced in or measured by now.
 
     Args:
         state: of the page.
         size_m: of the scene, from which the sizes of what is drawn follow.
         look: the page's colours.
-        has_arrows: whether the selected point can be dragged.
     """
     shapes = _grid(state.scenario, look) | _airspace(state.scenario, look)
     shapes |= _buildings(state.scenario.buildings, look.building)
     for key, point in state.points():
-        shapes |= _point(key, point, state, size_m, look, has_arrows=has_arrows)
+        shapes |= _point(key, point, state, size_m, look)
     if state.corners_m:
         corners = np.insert(np.array(state.corners_m), 2, 0.003 * size_m, axis=1)
         first = corners[0] + 0.012 * size_m * _CROSS
         sides = np.stack([corners[:-1], corners[1:]], axis=1)
-        shapes["/sketch"] = lines(np.concatenate([first, sides]), _SKETCH, 4.0)
+        shapes["/sketch"] = lines(np.concatenate([first, sides]), look.sketch, 4.0)
+        for i, (start, end) in enumerate(sides):
+            length = f"{np.linalg.norm(end - start):.1f} m"
+            shapes[f"/sketch/side-{i}"] = label(length, 0.5 * (start + end), 0.9, "center-center")
     return shapes
 
 
-def _point(
-    key: Key, point: GroundPoint, state: State, size_m: float, look: Look, *, has_arrows: bool
-) -> Shapes:
+def _point(key: Key, point: GroundPoint, state: State, size_m: float, look: Look) -> Shapes:
     kind, is_selected = key[0], key == state.selected
     name, colour = f"/points/{kind}-{key[1]}", look.kinds[kind]
     keep_out_m = state.scenario.airspace.keep_out_m
     text, is_large = _label(key, point, state)
     shapes = {
-        name: _arrows(key, point, state, size_m) if is_selected and has_arrows else frame(point.position_m),
-        f"{name}/mark": mesh(MARKS[kind], colour, flat_shading=True, scale=0.022 * size_m),
-        f"{name}/label": label(text, (0.0, 0.0, 0.062 * size_m), 1.1 if is_large else 0.9),
+        name: frame(point.position_m),
+        f"{name}/mark": mesh(MARKS[kind], colour, flat_shading=True, scale=0.022 * size_m)._replace(key=key),
     }
+    if text:
+        shapes[f"{name}/label"] = label(text, (0.0, 0.0, 0.062 * size_m), 1.1 if is_large else 0.9)
+    if is_selected or key == state.pointed:
+        halo = np.add(_circle(0.03 * size_m), [0.0, 0.0, 0.01 * size_m])
+        shapes[f"{name}/halo"] = lines(halo, look.outline, 5.0 if is_selected else 2.5)
     if keep_out_m > 0.0 and is_selected:  # wires: what is see-through below the map would be hidden by it
         ball = mesh(sphere_mesh(6, 10), look.wire, wireframe=True, scale=keep_out_m)
         shapes[f"{name}/keep-out"] = ball
@@ -92,26 +95,16 @@ def _point(
         near = sphere_mesh(10, 16).placed(point.uncertainty_matrix_m)
         shapes[f"{name}/uncertainty"] = mesh(near, colour, wireframe=True)
     if kind == "jammers" and (radius_m := _ring_radius_m(key, state, size_m)) > 0.0:
-        azimuth = np.linspace(0.0, math.tau, 49)
-        circle = radius_m * np.stack([np.cos(azimuth), np.sin(azimuth), 0.0 * azimuth], axis=-1)
-        rings = np.stack([circle[:-1], circle[1:]], axis=1) * _RINGS[:, None, None, None]
+        rings = _circle(radius_m) * _RINGS[:, None, None, None]
         rings[..., 2] = _RING_LIFT_M - point.position_m[2]
         shapes[f"{name}/rings"] = lines(rings.reshape(-1, 2, 3), colour, 2.0)
     return shapes
 
 
-def _arrows(key: Key, point: GroundPoint, state: State, size_m: float) -> Shape:
-    values = {
-        "scale": 0.1 * size_m,
-        "line_width": 3.0,
-        "active_axes": (True, True, state.lifts_points),
-        "disable_rotations": True,
-        "depth_test": False,
-        "opacity": 0.75,
-    }
-    if key != state.dragged:  # whose place the browser sets
-        values["position"] = np.array(point.position_m)
-    return Shape("transform_controls", values, key)
+def _circle(radius_m: float) -> FloatArray:
+    azimuth = np.linspace(0.0, math.tau, 49)
+    circle = radius_m * np.stack([np.cos(azimuth), np.sin(azimuth), 0.0 * azimuth], axis=-1)
+    return np.stack([circle[:-1], circle[1:]], axis=1)
 
 
 def _ring_radius_m(key: Key, state: State, size_m: float) -> float:
@@ -182,5 +175,7 @@ def _label(key: Key, point: GroundPoint, state: State) -> tuple[str, bool]:
         return point.name, key[0] == "jammers"
     nodes, worst = len(state.scenario.nodes), answer.worst_nodes
     is_worst = point.name in worst
-    sinr = f" {signed(answer.result.links[key[1]].sinr_db)} dB" if is_worst or nodes <= _CROWD else ""
+    if nodes > _CROWD and not is_worst and key not in (state.selected, state.pointed):
+        return "", False
+    sinr = f" {signed(answer.result.links[key[1]].sinr_db)} dB"
     return f"{point.name}{sinr}{', worst' if is_worst and len(worst) < nodes else ''}", is_worst

@@ -12,6 +12,8 @@ from matplotlib import colormaps
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.report.figures.style import DRONE, EAVESDROPPER, GREY, JAMMER, NODE, NULL
+
 Rgb = tuple[int, int, int]
 
 _LEAST_SPAN = 6.0
@@ -25,56 +27,56 @@ class Look:
 
     Args:
         dark: whether they are for a dark background.
-        kinds: of the points, by the scenario's lists; Okabe and Ito's, and the shapes differ too.
+        kinds: of the points, by the scenario's lists, as in figures; the shapes differ too.
         slots: of the chosen case's drone and of the compared one's, also in the panel.
-        hulls: of the same two drones' bodies.
+        null: of the line and the cone without reception.
         airspace: of its edges.
         zone: of no-fly zones.
         building: of buildings.
-        wire: of what surrounds a point.
-        drop: of the line from the drone down to the ground.
+        wire: of what surrounds a point, and of the line from the drone down to the ground.
         outline: of the links, whose colours are the scale's.
         grid: of the ground's lines, which only guide the eye.
         contour: of the map's contours, which lie on its colours.
+        sketch: of what is fenced in or measured.
         map_alpha: how opaque the map is, 0 to 255.
     """
 
     dark: bool
     kinds: Mapping[str, Rgb]
     slots: tuple[Rgb, Rgb]
-    hulls: tuple[Rgb, Rgb]
+    null: Rgb
     airspace: Rgb
     zone: Rgb
     building: Rgb
     wire: Rgb
-    drop: Rgb
     outline: Rgb
     grid: Rgb
     contour: Rgb
+    sketch: Rgb
     map_alpha: int
 
-    @property
-    def null(self) -> Rgb:
-        """The colour of the null, which is that of the jammers that it is for."""
-        return self.kinds["jammers"]
+
+def _rgb(colour: str) -> Rgb:
+    red, green, blue = bytes.fromhex(colour[1:])
+    return red, green, blue
 
 
 LIGHT = Look(
     dark=False,
     kinds=MappingProxyType(
-        {"nodes": (0, 114, 178), "jammers": (213, 94, 0), "eavesdroppers": (204, 121, 167)}
+        {"nodes": _rgb(NODE), "jammers": _rgb(JAMMER), "eavesdroppers": _rgb(EAVESDROPPER)}
     ),
-    slots=((30, 60, 200), (0, 0, 0)),
-    hulls=((60, 64, 72), (120, 124, 130)),
+    slots=(_rgb(DRONE), _rgb(GREY)),
+    null=_rgb(NULL),
     airspace=(74, 138, 178),
     zone=(160, 60, 60),
     building=(128, 128, 128),
-    wire=(140, 140, 140),
-    drop=(120, 120, 120),
+    wire=(120, 120, 120),
     outline=(20, 20, 20),
     grid=(190, 190, 190),
-    contour=(250, 250, 250),
-    map_alpha=105,
+    contour=(22, 25, 29),
+    sketch=(170, 30, 110),
+    map_alpha=200,
 )
 """For viser's white background."""
 
@@ -83,16 +85,16 @@ DARK = Look(
     kinds=MappingProxyType(
         {"nodes": (86, 180, 233), "jammers": (240, 110, 30), "eavesdroppers": (222, 145, 190)}
     ),
-    slots=((140, 170, 255), (235, 235, 235)),
-    hulls=((235, 235, 240), (150, 154, 162)),
+    slots=((241, 243, 245), (160, 165, 172)),
+    null=(240, 178, 40),
     airspace=(70, 120, 155),
     zone=(235, 105, 105),
     building=(136, 140, 148),
-    wire=(120, 124, 130),
-    drop=(150, 150, 150),
+    wire=(150, 150, 150),
     outline=(245, 245, 245),
     grid=(52, 64, 82),
     contour=(205, 215, 225),
+    sketch=(255, 120, 200),
     map_alpha=215,
 )
 """For viser's dark background, on which the map glows."""

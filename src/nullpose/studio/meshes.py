@@ -218,12 +218,16 @@ def _four(mesh: Mesh) -> list[Mesh]:
     return [mesh.placed(turn_about_z(math.radians(angle))) for angle in (45.0, 135.0, 225.0, 315.0)]
 
 
+_SLANT = np.array(
+    [[1.0, 0.0, math.sqrt(2.0)], [0.0, math.sqrt(3.0), 0.0], [-math.sqrt(2.0), 0.0, 1.0]]
+) / math.sqrt(3.0)
+
 MARKS = {
     "nodes": prism_mesh([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]], 0.0, 1.0),
-    "jammers": revolved_mesh([0.0, 0.75, 0.0], [0.0, 0.0, 2.0], 20),
+    "jammers": merged(_four(_tube(0.22, -1.15, 1.15, 8).placed(_SLANT, [0.0, 0.0, 0.8]))),
     "eavesdroppers": revolved_mesh([0.0, 0.8, 0.0], [0.0, 1.0, 2.0], 4),
 }
-"""A cube, a spike and an octahedron of size one that stand on the origin."""
+"""On the origin: a cube, a cross of four diagonals, which is an X from every side, an octahedron."""
 
 _ARM = prism_mesh([[0.0, -0.05], [1.0, -0.05], [1.0, 0.05], [0.0, 0.05]], -0.02, 0.06)
 

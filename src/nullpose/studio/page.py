@@ -18,16 +18,17 @@ from nullpose.errors import NullposeError, ScenarioError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio import exports
-from nullpose.studio.camera import aim, canvas_px
+from nullpose.studio.camera import aim, canvas_px, ray
 from nullpose.studio.case import case_named, cases_of, new_scenario
 from nullpose.studio.controls import NO_CASE
 from nullpose.studio.edits import Entry, with_typed, without
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.panel import Panel, by_hand
-from nullpose.studio.picking import clicked
-from nullpose.studio.readout import failure_html
+from nullpose.studio.picking import clicked, dragged_to_m
+from nullpose.studio.reading import reading
+from nullpose.studio.readout import failure_html, macros
 from nullpose.studio.session import History, Session
-from nullpose.studio.stage import Stage
+from nullpose.studio.stage import Drag, Stage
 from nullpose.studio.state import Key, State
 
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
@@ -54,8 +55,9 @@ class Page:
         self._lock, self._is_open = threading.RLock(), True
         self._gesture, self._slid_at = 0, 0.0
         self._late: threading.Timer | None = None
-        self._aimed: tuple[int, bool] | None = None  # at which scene, and whether with its drone
+        self._aimed = (-1, False)  # at which scene, and whether with its drone
         self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None  # canvas and position
+        self._grip_m = np.zeros(3)  # where a dragged point is held, from its position
         self._is_folded = False
         self._shown: History | None = None  # in the panel
         state = State(scenario=scenario, case=cases_of(scenario)[0], text=text)
@@ -94,7 +96,7 @@ class Page:
         state, camera = self.session.state, self._client.camera
         answer = state.current(state.case)
         with self._client.atomic():
-            aim(camera, state.scenario, answer.result.pose if answer else None)
+            aim(camera, state.scenario, answer.result.pose if answer else None, turns=state.is_presented)
         self._aimed, self.stage.eye_m = (state.opened, answer is not None), camera.position
         self._fit = canvas_px(camera), np.array(camera.position)
 
@@ -122,14 +124,14 @@ class Page:
 
     def _render_scene(self) -> None:
         state = self.session.state
-        at_scene = self._aimed is not None and self._aimed[0] == state.opened
-        if not at_scene or (self._aimed != (state.opened, True) and state.current(state.case) is not None):
+        if self._aimed < (state.opened, state.current(state.case) is not None):
             self.aim()  # first, since the pattern is open towards the camera
         self.stage.render(state)
         if state.is_presented != self._is_folded:
             self._is_folded = state.is_presented
             panel = self._client.gui.main_panel
             (panel.minimize if state.is_presented else panel.expand)()
+            self.aim()
 
     def _render_panel(self) -> None:
         history = self.session.history
@@ -153,7 +155,7 @@ class Page:
 
     def _listen(self) -> None:
         panel, session, client = self.panel, self.session, self._client
-        switches = ("map_name", "has_pattern", "has_shadows", "lifts_points")
+        switches = ("map_name", "has_pattern", "has_shadows")
         controls: dict[str, Callable[[Any], object]] = {
             name: partial(self._switch, name) for name in switches
         }
@@ -164,6 +166,7 @@ class Page:
             ),
             "power": self._slid,
             "power_text": self._power_typed,
+            "pointer": self._pointed,
         }
         buttons: dict[str, Callable[[], object]] = {
             "undo": session.undo,
@@ -175,9 +178,6 @@ class Page:
             "save": lambda: self._export("scenario.toml", exports.scenario_toml),
             "pose": lambda: self._export("pose.json", exports.pose_json),
             "figure": lambda: self._export("figure.png", exports.figure_png),
-            "picture": lambda: self._export(
-                "scene.png", lambda state: exports.scene_png(state, client, self._look)
-            ),
             "html": lambda: self._export(
                 "scene.html", lambda state: exports.scene_html(state, self._look, client.camera)
             ),
@@ -242,12 +242,36 @@ class Page:
         name = "The fence" if self.session.state.corners_m else "The new point"
         self.change(lambda state: clicked(state, self.stage.size_m, eye_m, direction), name=name)
 
-    def _dragged(self, key: Key, position_m: NDArray[np.float64], phase: str) -> None:
-        if phase == "start":
+    def _pointed(self, place: str) -> None:
+        state, camera, key, lines = self.session.state, self._client.camera, None, list[str]()
+        if place:
+            key, lines = reading(
+                state, self.stage.size_m, camera.position, ray(camera, *map(float, place.split()))
+            )
+        self.panel.tip.content = str(macros().tip(key, lines))
+        if key != state.pointed:
+            self.session.change(lambda state: replace(state, pointed=key))  # a refusal stays in sight
+
+    def _dragged(self, key: Key, step: Drag) -> None:
+        position_m, eye_m = (
+            np.array(dict(self.session.state.points())[key].position_m),
+            np.array(self._client.camera.position),
+        )
+        if step.phase == "start":
             self._gesture += 1
-            self._switch("dragged", key)
-        self.change(lambda state: state.moved(key, position_m), f"drag {self._gesture}", "The new place")
-        if phase == "end":
+            self._grip_m = step.start_position - position_m
+            self.change(lambda state: replace(state, dragged=key, selected=key))
+        place_m = dragged_to_m(
+            self.stage.size_m,
+            position_m + self._grip_m,
+            eye_m,
+            step.end_position - eye_m,
+            is_lifted=step.modifier == "shift",
+        )
+        if place_m is not None:
+            to_m, gesture = place_m - self._grip_m, f"drag {self._gesture}"
+            self.change(lambda state: state.moved(key, to_m), gesture, "The new place")
+        if step.phase == "end":
             # rendered at rest, which puts a point back whose new place was refused
             self.session.change(lambda state: replace(state, dragged=None))
 
@@ -256,7 +280,8 @@ class Page:
         camera = self._client.camera
         if self._fit is not None:
             is_resized = not np.array_equal(self._fit[0], canvas_px(camera))
-            if is_resized and np.allclose(self._fit[1], camera.position, rtol=1e-3):
+            is_as_aimed = np.allclose(self._fit[1], camera.position, rtol=1e-3)
+            if is_resized and (is_as_aimed or self._is_folded):
                 self.aim()
         self.stage.eye_m = camera.position
         self.render()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 from nullpose.objectives import Quantity
 from nullpose.studio.card import card_html
 from nullpose.studio.case import cases_of
-from nullpose.studio.controls import NO_CASE, TABS
+from nullpose.studio.controls import NO_CASE, TABS, Control
 from nullpose.studio.edits import Entry, entries_of
-from nullpose.studio.picking import FENCE
 from nullpose.studio.plot import power_plot_svg
 from nullpose.studio.readout import failure_html, macros, readout_html
 from nullpose.studio.session import History
@@ -21,17 +20,13 @@ from nullpose.studio.state import POWER_DB
 if TYPE_CHECKING:
     from viser import GuiApi, GuiDropdownHandle, GuiEvent, GuiFolderHandle, GuiTextHandle
 
-_HOW = "Click on the ground to place the {}. Escape ends it."
-_FENCE_HOW = (
-    "Click the corners of the fence on the ground; click the first one again to close it ({} so far)."
-)
 _Look = tuple[str, tuple[str, ...]]  # of a field: its label and its options
 
 
 class Panel(SimpleNamespace):
     """The controls of one page, by name: those of the tabs, and above them ``readout`` and ``faults``.
 
-    A text arrives whole, with Enter or when its field is left. ``overlay`` is not in the panel.
+    A text arrives whole, with Enter or when its field is left.
 
     Args:
         gui: the page's interface.
@@ -45,25 +40,32 @@ class Panel(SimpleNamespace):
         gui.configure_theme(control_width="large", dark_mode=dark, **shown)
         gui.main_panel.dock_right()
         gui.set_panel_label("nullpose studio")
-        folder = gui.add_folder("What am I looking at?")
-        with folder:
-            gui.add_html(str(macros().about()))
-            close = gui.add_button("Got it", hint="Close this explanation.")
-        close.on_click(lambda event: folder.remove())
-        self.overlay = gui.add_html("", visible=False)  # shown by the frame's script
+        # these three are not in the panel: the frame's script shows two, and tells where the pointer is
+        self.overlay = gui.add_html("", visible=False)
+        self.tip = gui.add_html("", visible=False)
+        self.pointer = gui.add_text("Pointer", "", visible=False)
         self.readout = gui.add_html("")
         self.faults = gui.add_html(failure_html(None))
         self.selected_values = gui.add_folder("Selected", visible=False)
         with self.selected_values:
-            self.delete = gui.add_button("Delete", order=1e6, hint="Take it out of the scene (key: Delete).")
+            hint = "Take it out of the scene (key: Delete)."
+            self.delete = gui.add_button("Delete", order=1e6, hint=hint, color="gray")
         tabs = gui.add_tab_group()
         for tab, controls in TABS.items():
             with tabs.add_tab(tab):
-                for name, (kind, label, hint, more) in controls.items():
-                    options = more | ({"hint": hint} if hint else {})
-                    setattr(self, name, getattr(gui, f"add_{kind}")(label, **options))
+                self._add(gui, controls)
         self._selected = _Fields(gui, self.selected_values, on_typed)
         self._vehicle = _Fields(gui, self.vehicle_values, on_typed)
+
+    def _add(self, gui: GuiApi, controls: Mapping[str, Control | dict[str, Control]]) -> None:
+        for name, control in controls.items():
+            if isinstance(control, dict):
+                with gui.add_folder(name):
+                    self._add(gui, control)
+                continue
+            kind, label, hint, more = control
+            options = more | ({"hint": hint} if hint else {})
+            setattr(self, name, getattr(gui, f"add_{kind}")(label, **options))
 
     def render(self, history: History) -> None:
         """Show the present state, and whether there is a step to undo or to redo.
@@ -81,7 +83,7 @@ class Panel(SimpleNamespace):
         put(self.power_text, disabled=power_db is None, value=state.power_text)
         if power_db is not None:
             put(self.power, value=(round(min(max(power_db, POWER_DB[0]), POWER_DB[1]), 6),))
-        for name in ("map_name", "has_pattern", "has_shadows", "lifts_points"):
+        for name in ("map_name", "has_pattern", "has_shadows"):
             put(getattr(self, name), value=getattr(state, name))
         put(self.has_shadows, visible=state.scenario.prisms is not None)
         put(self.undo, disabled=not history.past)
@@ -92,8 +94,7 @@ class Panel(SimpleNamespace):
             put(self.selected_values, label=f"Selected: {entries[0].text}")
         self._selected.render(entries)
         self._vehicle.render(entries_of(state, None))
-        how = _FENCE_HOW.format(len(state.corners_m)) if state.tool == FENCE else _HOW.format(state.tool)
-        put(self.tool, content=str(macros().tool(how if state.tool else "")))
+        put(self.tool, content=str(macros().tool(state)))
         put(self.faults, content=state.faults or failure_html(None))
         put(self.readout, content=readout_html(state))
         put(self.overlay, content=card_html(state))

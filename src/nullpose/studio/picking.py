@@ -1,4 +1,4 @@
-"""Clicks in the scene: they select a point or a zone, or place what is added on the ground."""
+"""Clicks and drags in the scene: they select a point or a zone, move it, or place what is added."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from nullpose.studio.state import Key, State
 
 FENCE = "fence"
 """The tool that draws a fence, whose corners are clicked one after the other."""
+RULER = "ruler"
+"""The tool that measures from one click to the next."""
 
 _NEAR_RAD = 0.025  # a point is hit within so much: about a finger's breadth on a screen
 _TALL = 0.06  # of the scene's size: a point's mark with its label
@@ -37,12 +39,13 @@ def clicked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike)
     place_m = ground_place_m(size_m, eye_m, direction)
     if place_m is None:
         return state
-    if state.tool != FENCE:
+    if state.tool not in (FENCE, RULER):
         kind = ADDED[state.tool]
         added = with_added(state, state.tool, place_m, size_m)
         return replace(added, tool="", selected=(kind, len(added.members(kind)) - 1))
     corners = state.corners_m
-    if len(corners) >= _LEAST_CORNERS and np.linalg.norm(place_m - corners[0]) < _CLOSE * size_m:
+    is_fence = state.tool == FENCE and len(corners) >= _LEAST_CORNERS
+    if is_fence and np.linalg.norm(place_m - corners[0]) < _CLOSE * size_m:
         return replace(with_fence(state, corners), tool="", corners_m=())
     east_m, north_m = place_m.tolist()
     return replace(state, corners_m=(*corners, (east_m, north_m)))
@@ -75,18 +78,42 @@ def picked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) 
     return None
 
 
-def ground_place_m(size_m: float, eye_m: ArrayLike, direction: ArrayLike) -> NDArray[np.float64] | None:
+def ground_place_m(
+    size_m: float, eye_m: ArrayLike, direction: ArrayLike, altitude_m: float = 0.0
+) -> NDArray[np.float64] | None:
     """Intersect a click with the ground: east and north, (2,); None if it goes past it.
 
     Args:
         size_m: of the scene.
         eye_m: (3,) where the camera is, metres.
         direction: (3,) of the click.
+        altitude_m: of another level plane in place of the ground, metres.
     """
     eye, ahead = np.asarray(eye_m, dtype=float), np.asarray(direction, dtype=float)
-    if eye[2] * ahead[2] >= 0.0:
+    below_m = eye[2] - altitude_m
+    if below_m * ahead[2] >= 0.0:
         return None
-    reach = -eye[2] / ahead[2]
+    reach = -below_m / ahead[2]
     if reach * float(np.linalg.norm(ahead)) > _MOST_SIZES * size_m:
         return None
     return np.asarray((eye + reach * ahead)[:2])
+
+
+def dragged_to_m(
+    size_m: float, grip_m: ArrayLike, eye_m: ArrayLike, direction: ArrayLike, *, is_lifted: bool
+) -> NDArray[np.float64] | None:
+    """Find where a hand has drawn what it holds, (3,) metres; None if that is past the horizon.
+
+    Args:
+        size_m: of the scene.
+        grip_m: (3,) where it is held now, metres.
+        eye_m: (3,) where the camera is, metres.
+        direction: (3,) from there to the hand.
+        is_lifted: whether it goes up and down, and not about at its altitude.
+    """
+    grip, eye, ahead = (np.asarray(each, dtype=float) for each in (grip_m, eye_m, direction))
+    if is_lifted:
+        reach = (grip - eye)[:2] @ ahead[:2] / max(ahead[:2] @ ahead[:2], 1e-12)
+        return np.array([*grip[:2], eye[2] + reach * ahead[2]])
+    place_m = ground_place_m(size_m, eye, ahead, grip[2])
+    return None if place_m is None else np.append(place_m, grip[2])

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nullpose.errors import ScenarioError
 from nullpose.physics import Pose
-from nullpose.report.geometry import axis_angle_rad
-from nullpose.solver import Result
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.look import DARK, LIGHT, css, either
 from nullpose.studio.state import State
@@ -20,32 +17,24 @@ from nullpose.studio.state import State
 if TYPE_CHECKING:
     from jinja2.environment import TemplateModule
 
-_MOST_NULLS = 4
+
+_TONES = {
+    "no pose": "\N{BALLOT X}",
+    "Proved": "\N{CHECK MARK}",
+    "Best found": "\N{BLACK CIRCLE}",
+    "At most": "\N{BLACK CIRCLE}",
+    "": "\N{WHITE CIRCLE}",
+}
+"""The mark of each verdict, by how its words begin."""
 
 
-class Tone(NamedTuple):
-    """How far a case has come, by how its status begins, with its colour and mark."""
-
-    start: str
-    colour: str
-    mark: str
-
-
-TONES = (
-    Tone("no pose", either("#a02000", "#ff9b80"), "\N{BALLOT X}"),
-    Tone("certified", either("#00684a", "#4fd6a6"), "\N{CHECK MARK}"),
-    Tone("best so far", either("#005a8c", "#7cc4f5"), "\N{BLACK CIRCLE}"),
-    Tone("", either("#8a5a00", "#f0b64a"), "\N{WHITE CIRCLE}"),
-)
-
-
-def tone(status: str) -> Tone:
-    """Look up how a status looks.
+def tone(status: str) -> tuple[str, str]:
+    """Look up how a status begins, by which the card has its colour, and its mark.
 
     Args:
         status: in words.
     """
-    return next(tone for tone in TONES if status.startswith(tone.start))
+    return next(pair for pair in _TONES.items() if status.startswith(pair[0]))
 
 
 def letter(state: State, slot: int) -> str:
@@ -59,7 +48,7 @@ def letter(state: State, slot: int) -> str:
 
 
 def drone_text(state: State, slot: int) -> str:
-    """Write a drone's label: its letter, its value and how well it is known.
+    """Write a drone's label: its letter and its value, or that it is not known yet.
 
     Args:
         state: of the page.
@@ -67,8 +56,8 @@ def drone_text(state: State, slot: int) -> str:
     """
     case = state.cases[slot]
     answer = state.current(case)
-    value = "" if answer is None else f"{signed(answer.shown_value)} {answer.unit}, "
-    return f"{letter(state, slot)}{value}{state.status(case)}"
+    value = state.status(case) if answer is None else f"{signed(answer.shown_value)} {answer.unit}"
+    return f"{letter(state, slot)}{value}"
 
 
 def node_rows(answer: Answer) -> Iterator[tuple[str, list[str], bool]]:
@@ -101,19 +90,6 @@ def attitude_words(pose: Pose) -> str:
     angles = np.degrees([pose.roll_rad, pose.pitch_rad, pose.yaw_rad, pose.tilt_rad])
     words = "roll {}\u00b0, pitch {}\u00b0, yaw {}\u00b0 (tilt {}\u00b0)"
     return words.format(*(signed(angle, 1) for angle in angles))
-
-
-def null_words(result: Result) -> str:
-    """Write the angles from the null to the jammers; nothing for a pattern that has its nulls elsewhere.
-
-    Args:
-        result: of a case.
-    """
-    angles = ", ".join(
-        f"{math.degrees(axis_angle_rad(result.pose, jammer.position_m)):.1f}\u00b0 off {jammer.name}"
-        for jammer in result.scenario.jammers[:_MOST_NULLS]
-    )
-    return f"null {angles}" if angles and result.scenario.antenna_record.is_quadratic else ""
 
 
 def readout_html(state: State) -> str:
@@ -163,7 +139,7 @@ def macros(template: str = "page.html.jinja") -> TemplateModule:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    filters = (signed, tone, letter, node_rows, attitude_words, null_words)
+    filters = (signed, tone, letter, node_rows, attitude_words)
     environment.filters |= {function.__name__: function for function in filters}
     environment.globals["slot_colours"] = [either(css(LIGHT.slots[i]), css(DARK.slots[i])) for i in (0, 1)]
     environment.globals["kind_colours"] = {

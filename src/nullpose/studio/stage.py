@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from viser import SceneApi, SceneNodeHandle, TransformControlsEvent
+from viser import MeshHandle, SceneApi, SceneNodeDragEvent, SceneNodeHandle
 
 from nullpose.report.numbers import MINUS
 from nullpose.studio.drawing import FLAT, Shape, Shapes, label, lines
@@ -19,8 +20,9 @@ from nullpose.studio.shadows import shadow_shapes
 from nullpose.studio.state import Key, State
 from nullpose.study import Field
 
-OnDrag = Callable[[Key, NDArray[np.float64], str], None]
-"""Called with a point's key, its new position and the phase of the drag."""
+Drag: TypeAlias = "SceneNodeDragEvent[MeshHandle]"
+OnDrag = Callable[[Key, Drag], None]
+"""Called with a point's key and each step of a drag of its body."""
 
 _OTHER_SIZE = (0.6, 1.7)  # marks keep their size until the scene is that much smaller or larger
 _LIFT_M = 0.05  # of the map off the grid on the ground
@@ -60,7 +62,7 @@ class Stage:
         size_m = scene_size_m(state.scenario)
         if not _OTHER_SIZE[0] < size_m / self.size_m < _OTHER_SIZE[1]:
             self.size_m = size_m
-        shapes = ground_shapes(state, self.size_m, self._look, has_arrows=self._on_drag is not None)
+        shapes = ground_shapes(state, self.size_m, self._look)
         shapes |= shadow_shapes(state, self.size_m, self._look)
         for slot in range(len(state.cases)):
             shapes |= drone_shapes(state, slot, self.size_m, self.eye_m, self._look)
@@ -87,12 +89,11 @@ class Stage:
         handle = self._handles[name] = getattr(self._scene, f"add_{shape.kind}")(name, **shape.values)
         if shape.key is not None and self._on_drag is not None:
 
-            async def on_update(
-                event: TransformControlsEvent, key: Key = shape.key, on_drag: OnDrag = self._on_drag
-            ) -> None:
-                on_drag(key, np.array(event.target.position, dtype=float), event.phase)
+            async def dragged(event: Drag, key: Key = shape.key, on_drag: OnDrag = self._on_drag) -> None:
+                on_drag(key, event)
 
-            handle.on_update(on_update)
+            handle.on_drag("left")(dragged)
+            handle.on_drag("left", modifier="shift")(dragged)
 
 
 def _same(before: object, value: object) -> bool:

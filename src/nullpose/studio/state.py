@@ -52,14 +52,14 @@ class State:
         version: of the scene; every change of the fields above makes another.
         events: the latest found of each kind and case, of this version or an earlier one.
         selected: the point or zone whose values are shown, or None.
+        pointed: the point under the pointer, or None.
         dragged: the point that a hand moves now, or None.
-        tool: what the next click on the ground adds; empty for nothing.
-        corners_m: (n, 2) of a fence that is being drawn, metres.
+        tool: what the next click on the ground adds or measures; empty for nothing.
+        corners_m: (n, 2) of a fence that is being drawn, or of what is measured, metres.
         map_name: the map that is shown, one of ``MAPS``, or any other text for none.
         has_pattern: whether the radiation patterns are shown.
         has_shadows: whether it is shown where buildings hide points from the drone.
-        lifts_points: whether points can be dragged off their altitude.
-        is_presented: whether the panel is folded.
+        is_presented: whether the panel is folded and the scene turns.
         faults: what of the last change was refused, as HTML.
     """
 
@@ -71,13 +71,13 @@ class State:
     version: int = 1
     events: Mapping[tuple[type, Case | None], Event] = field(default_factory=dict)
     selected: Key | None = None
+    pointed: Key | None = None
     dragged: Key | None = None
     tool: str = ""
     corners_m: tuple[tuple[float, float], ...] = ()
     map_name: str = MAPS[1]
     has_pattern: bool = True
     has_shadows: bool = True
-    lifts_points: bool = False
     is_presented: bool = False
     faults: str = ""
 

@@ -11,12 +11,13 @@ from functools import partial
 from typing import TypeVar
 
 from nullpose.errors import NullposeError
+from nullpose.objectives import Quantity
 from nullpose.solver import announce_compiling
 from nullpose.studio.answer import Answer, Notice, Progress
 from nullpose.studio.case import Case
 from nullpose.studio.field_map import field_map, map_kernel_is_ready
 from nullpose.studio.state import Event, State
-from nullpose.studio.steps import power_curves, proved_answers, quick_answers, target_gap
+from nullpose.studio.steps import power_curves, proved_answers, quick_answers
 
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
@@ -125,14 +126,15 @@ class Worker:
 
     def _progress(self, state: State, case: Case) -> Callable[[float, int], None]:
         """Return a callback for a proof, which publishes its progress ten times a second at most."""
-        published_at, target = time.monotonic(), target_gap(state, case)
+        # the proof of a rate tells the gap of the ratio
+        published_at, is_rate = time.monotonic(), Quantity.of(state.scenario).is_rate
 
         def on_progress(gap: float, boxes: int) -> None:
             nonlocal published_at
             self._go_on()
-            if target is not None and math.isfinite(gap) and time.monotonic() - published_at > _PROGRESS_S:
+            if not is_rate and math.isfinite(gap) and time.monotonic() - published_at > _PROGRESS_S:
                 published_at = time.monotonic()
-                progress = Progress(version=state.version, case=case, gap=gap, target=target, boxes=boxes)
+                progress = Progress(version=state.version, case=case, gap=gap, boxes=boxes)
                 self._publish(progress)
 
         return on_progress

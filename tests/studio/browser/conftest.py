@@ -21,7 +21,8 @@ from nullpose.studio.state import State
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 NOT_OURS = re.compile(
-    r"THREE\.Clock: This module has been deprecated|GL Driver Message|software WebGL|swiftshader",
+    r"THREE\.Clock: This module has been deprecated|GL Driver Message|software WebGL|swiftshader"
+    r"|inside passive event listener",
     re.IGNORECASE,
 )
 """What viser and a Chromium without a graphics card say by themselves."""

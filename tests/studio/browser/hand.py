@@ -21,7 +21,7 @@ from nullpose.studio.session import Session
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 PAPER = load(EXAMPLES / "paper.toml")
-CERTIFIED = "document.querySelector('[data-np=overlay-status-0]')?.innerText.includes('certified to')"
+CERTIFIED = "document.querySelector('[data-np=overlay-status-0]')?.innerText.includes('Proved optimal')"
 DESK: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}, "device_scale_factor": 0.5}
 PHONE: dict[str, Any] = {
     "viewport": {"width": 390, "height": 844},
@@ -77,7 +77,7 @@ class Hand:
         self.page.wait_for_function(
             f"+document.querySelector('[data-np=readout]')?.dataset.version >= {version} && {CERTIFIED}"
         )
-        return self.shown("value-0")
+        return self.shown("overlay-value-0")
 
     def solved(self, before: int) -> float:
         """Wait for the proof of a later version than one, and return the value that the page shows."""
@@ -172,7 +172,7 @@ def opened(browser: Browser, running: Studio, script: str = "", **more: Any) -> 
     context = browser.new_context(**DESK | more)
     page = context.new_page()
     page.set_default_timeout(90_000)
-    page.add_init_script(script)
+    page.add_init_script(f"localStorage.setItem('np-explained', '1'); {script}")
     page.goto(running.address)
     page.wait_for_function(CERTIFIED)
     for button in page.locator("button.mantine-Notification-closeButton").all():

@@ -99,7 +99,9 @@ def test_a_touch_phone_shows_the_scene_first(browser: Browser, alone: Studio) ->
         assert (card["x"] + card["width"], card["y"] + card["height"]) < (CARD_PX[0], CARD_PX[1] + 16)
         title.tap()
         readout.wait_for(state="visible")
-        assert hand.shown("value-0") == hand.shown("overlay-value-0")
+        sheet = hand.page.locator(".mantine-Paper-root", has=readout).bounding_box()
+        assert sheet is not None
+        assert (sheet["x"], sheet["width"]) == (0.0, 390.0)
         title.tap()
         readout.wait_for(state="hidden")
         hand.ours._notify("A title", "A text")

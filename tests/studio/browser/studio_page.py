@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from base64 import b64decode
 from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
+from benchmarks.chromium import pixels
+from numpy.typing import ArrayLike, NDArray
 from playwright.sync_api import Browser
-from tests.studio.browser.hand import EXAMPLES, PAPER, Hand, drawn_share, opened
+from tests.studio.browser.hand import CERTIFIED, EXAMPLES, PAPER, Hand, drawn_share, opened
 from zstandard import ZstdDecompressor
 
 from nullpose import load, solve
+from nullpose.physics import evaluate
 from nullpose.solver import Scheme
+from nullpose.studio.camera import CARD_PX
 
 ZSTD = b"\x28\xb5\x2f\xfd"  # how what zstd has compressed begins
 PATTERN = """() => {
@@ -51,31 +55,36 @@ def test_the_slider_changes_the_value_to_the_solvers(hand: Hand) -> None:
     assert hand.certified() == pytest.approx(solve(hand.scenario).objective.value, rel=1e-9)
 
 
-def test_a_dragged_handle_moves_the_jammer(hand: Hand) -> None:
-    """A click selects the jammer; its arrows drag it along the ground; the value is the solver's there."""
-    version, size_m, mouse = hand.session.state.version, hand.ours.stage.size_m, hand.page.mouse
+def test_a_dragged_body_moves_the_jammer(hand: Hand) -> None:
+    """Along the ground, and with Shift up; it is selected; the value is the solver's there; undone in one."""
+    size_m, mouse, keyboard = hand.ours.stage.size_m, hand.page.mouse, hand.page.keyboard
     start = np.array(PAPER.jammers[0].position_m)
-    hand.page.wait_for_timeout(500)
-    hand.click(*np.add(start, (0.0, 0.0, 0.01 * size_m)))
+
+    def drag(step_m: ArrayLike) -> NDArray[np.float64]:
+        version, body_m = hand.session.state.version, (*hand.scenario.jammers[0].position_m,)
+        held_m = np.add(body_m, (0.0, 0.0, 0.018 * size_m))
+        (x, y), to = hand.screen(held_m), hand.screen(held_m + step_m)
+        mouse.move(x, y)
+        hand.page.wait_for_timeout(500)
+        mouse.down()
+        for share in np.linspace(0.1, 1.0, 12):
+            mouse.move(x + share * (to[0] - x), y + share * (to[1] - y))
+            hand.page.wait_for_timeout(60)
+        mouse.up()
+        hand.solved(version)
+        hand.until(lambda: hand.session.state.dragged is None)
+        assert hand.certified() == pytest.approx(solve(hand.scenario).objective.value, rel=1e-9)
+        return np.subtract(hand.scenario.jammers[0].position_m, body_m)
+
+    assert drag([8.0, 0.0, 0.0]) == pytest.approx([8.0, 0.0, 0.0], abs=1.0)
     hand.page.get_by_text("Selected: M").wait_for()
-    hand.page.wait_for_timeout(1000)
-    x, y = hand.screen(np.add(start, (0.06 * size_m, 0.0, 0.0)))
-    to = hand.screen(np.add(start, (0.06 * size_m + 12.0, 0.0, 0.0)))
-    mouse.move(x, y)
-    hand.page.wait_for_timeout(500)
-    mouse.down()
-    for share in np.linspace(0.1, 1.0, 12):
-        mouse.move(x + share * (to[0] - x), y + share * (to[1] - y))
-        hand.page.wait_for_timeout(60)
-    mouse.up()
-    hand.solved(version)
-    hand.until(lambda: hand.session.state.dragged is None)
-    moved = np.array(hand.scenario.jammers[0].position_m)
-    assert np.linalg.norm(moved - start) > 4.0
-    assert moved[2] == start[2]
-    assert hand.certified() == pytest.approx(solve(hand.scenario).objective.value, rel=1e-9)
-    hand.page.keyboard.press("Control+z")
+    hand.press("Undo")
     hand.until(lambda: hand.scenario == PAPER)  # the whole drag is one step
+    keyboard.down("Shift")
+    moved = drag([0.0, 0.0, 3.0])
+    keyboard.up("Shift")
+    assert moved == pytest.approx([0.0, 0.0, 3.0], abs=0.5)
+    assert start[2] + moved[2] == hand.scenario.jammers[0].position_m[2]
 
 
 def test_two_browsers_keep_their_own_state(browser: Browser, hand: Hand) -> None:
@@ -87,7 +96,7 @@ def test_two_browsers_keep_their_own_state(browser: Browser, hand: Hand) -> None
         hand.type("typed (dB)", "30")
         assert hand.solved(version) != pytest.approx(value, rel=1e-3)
         assert second.scenario == PAPER
-        assert second.shown("value-0") == value
+        assert second.shown("overlay-value-0") == value
 
 
 def test_cases_are_chosen_and_compared(hand: Hand) -> None:
@@ -98,7 +107,7 @@ def test_cases_are_chosen_and_compared(hand: Hand) -> None:
     assert vertical == pytest.approx(solve(PAPER, Scheme.VERTICAL).objective.value, rel=1e-9)
     hand.choose(1, "Optimum pose")
     hand.page.wait_for_selector("[data-np=difference]")
-    assert hand.shown("value-1") > vertical
+    assert hand.shown("overlay-value-1") > vertical
 
 
 def test_files_go_out_and_come_back(hand: Hand, tmp_path: Path) -> None:
@@ -186,16 +195,31 @@ def test_shadows_of_buildings_are_a_layer(hand: Hand) -> None:
     hand.until(lambda: np.mean(np.abs(hand.picture() - shown).max(axis=-1) > 0.05) > 0.05)
 
 
-def test_presenting_folds_the_panel(hand: Hand) -> None:
-    """P begins it and Escape ends it; the card stays, goes on telling what is solved, and takes no click."""
+def test_presenting_turns_the_scene_in_the_frame(hand: Hand) -> None:
+    """P folds the panel; drone and points stay in sight, clear of the card, all around; Escape ends it."""
     page, readout = hand.page, hand.page.locator("[data-np=readout]")
     before = hand.shown("overlay-value-0")
-    assert before == hand.shown("value-0")
     page.mouse.click(400, 20)
     page.keyboard.press("p")
     readout.wait_for(state="hidden")
     hand.session.change(lambda view: view.with_power_db(20.0))
     hand.until(lambda: hand.shown("overlay-value-0") != before)
+    page.wait_for_function(CERTIFIED)
+    pose = hand.session.state.current(hand.session.state.case).result.pose
+    points = [pose.position_m, *(point.position_m for _, point in hand.session.state.points())]
+    azimuths: set[float] = set()
+    hand.until(lambda: hand.camera.image_width > 1200)
+
+    def is_seen() -> bool:
+        camera = hand.camera
+        seen = pixels(camera, points)[:, :2]
+        assert np.all((seen > 0.0) & (seen < [camera.image_width, camera.image_height]))
+        assert not np.any(np.all(seen < CARD_PX, axis=1)), "the card covers a point"
+        x, y, _ = np.subtract(camera.position, camera.look_at)
+        azimuths.add(round(float(np.arctan2(y, x)), 1))
+        return len(azimuths) > 12  # a fifth of the way around
+
+    hand.until(is_seen, 120.0)
     card = page.locator("#np-overlay").bounding_box()
     assert card is not None
     assert card["width"] <= 340
@@ -204,16 +228,38 @@ def test_presenting_folds_the_panel(hand: Hand) -> None:
     readout.wait_for()
 
 
-def test_a_picture_of_the_scene_is_exported(hand: Hand, tmp_path: Path) -> None:
-    """As the canvas shows it, at twice its size, with the answer below; a camera too far away is told."""
-    hand.page.wait_for_selector("[data-np=plot][data-state=current]")
-    camera, near_m = hand.camera, np.array(hand.camera.position)
-    picture = imread(hand.download("Export picture", tmp_path / "scene.png"))
-    assert picture.shape[1] == 2 * camera.image_width
-    drawn, below = np.split(picture, [2 * camera.image_height])
-    assert drawn_share(drawn[..., :3]) > 0.03
-    assert below[..., :3].min() < 0.2  # text
-    assert np.array_equal(picture[..., 3], np.ones(picture.shape[:2]))
-    camera.position = near_m * 2000.0 / np.linalg.norm(near_m)
-    hand.press("Export picture")
-    hand.noticed("a picture holds 1000 m")
+def test_what_is_pointed_at_is_read(hand: Hand) -> None:
+    """A node's numbers are those of evaluate, it has a halo; on the map the value has its place."""
+    tip, mouse = hand.page.locator("#np-tip"), hand.page.mouse
+    state = hand.session.state
+    pose = state.current(state.case).result.pose
+    (link, _), node = evaluate(PAPER, pose), PAPER.nodes[0]
+    mouse.move(*hand.screen(node.position_m))
+    tip.get_by_text("SINR").wait_for()
+    words = tip.inner_text().replace("\u2212", "-").split("\n")
+    away_m = np.subtract(node.position_m, pose.position_m)
+    sine = np.linalg.norm(np.cross(away_m, pose.antenna_axis)) / np.linalg.norm(away_m)
+    assert words == [
+        node.name,
+        f"SINR {link.sinr_db:.2f} dB",
+        f"{np.linalg.norm(away_m):.1f} m from the drone",
+        f"{np.degrees(np.arcsin(sine)):.1f}\u00b0 off the null",
+        f"gain {20.0 * np.log10(sine):.2f} dB",
+    ]
+    assert hand.session.state.pointed == ("nodes", 0)
+    hand.until(lambda: hand.session.state.field_map)
+    field, (east_m, north_m) = hand.session.state.scale.field, (10.0, 40.0)
+    mouse.move(*hand.screen((east_m, north_m, 0.0)))
+    tip.get_by_text("m east").wait_for()
+    value, east, north = map(float, re.findall(r"-?\d+\.\d+", tip.inner_text().replace("\u2212", "-")))
+    assert (east, north) == pytest.approx((east_m, north_m), abs=0.3)
+    (nearest,) = [field.values[np.abs(field.north_m - north).argmin(), np.abs(field.east_m - east).argmin()]]
+    assert value == pytest.approx(nearest, abs=1.0)
+    assert hand.session.state.pointed is None
+    hand.tab("Edit")
+    hand.press("ruler")
+    for place in ((10.0, 40.0, 0.0), (10.0, 30.0, 0.0)):
+        hand.click(*place)
+    hand.until(lambda: "/sketch/side-0" in hand.ours._client.scene._handle_from_node_name)
+    side = hand.ours._client.scene._handle_from_node_name["/sketch/side-0"]
+    assert float(side.text.removesuffix(" m")) == pytest.approx(10.0, abs=0.4)

@@ -27,7 +27,7 @@ def _value(browser: Browser, path: Path) -> float:
     frame = page.frames[-1]
     frame.wait_for_selector("canvas")
     value = frame.locator("[data-np=overlay-value-0]").get_attribute("data-value")
-    assert "certified to 1e-6" in frame.locator("#np-overlay").inner_text()
+    assert "Proved optimal (gap 0.0001 %)" in frame.locator("#np-overlay").inner_text()
     assert [url for url in asked if url.startswith(("http", "ws"))] == []
     page.close()
     return float(value or "nan")
