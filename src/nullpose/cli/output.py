@@ -38,6 +38,7 @@ def tell(
     *,
     files: Sequence[Path] = (),
     fault: str = "",
+    broken: bool = False,
     **more: object,
 ) -> None:
     """Print a result as JSON or as tables; end with the code of interrupts if an interrupt ended the work.
@@ -48,6 +49,7 @@ def tell(
         json_output: whether JSON is printed in place of these.
         files: the files that were written, to be named.
         fault: what is wrong with the result; empty for nothing.
+        broken: whether the lines of a text may be broken between words on a terminal.
         more: further keys of the JSON object.
 
     Raises:
@@ -58,7 +60,7 @@ def tell(
         show_json(found.to_dict() | more | paths)
     else:
         shown = view(found)
-        show(shown)
+        show(shown, broken=broken)
         for path in files:
             say(f"Wrote {path}", err=isinstance(shown, str))  # a text may go to a file of its own
     if fault:
@@ -67,10 +69,10 @@ def tell(
         raise typer.Exit(INTERRUPTED)
 
 
-def show(view: View) -> None:
-    """Print a text as it is, or tables, on standard output."""
+def show(view: View, *, broken: bool = False) -> None:
+    """Print a text or tables on standard output; the lines of a text stay whole unless they may be broken."""
     if isinstance(view, str):
-        say(view, broken=False)
+        say(view, broken=broken)
         return
     from rich.console import Console
 

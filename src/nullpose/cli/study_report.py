@@ -63,7 +63,7 @@ def report(
         requirement_bps_hz=requirement_bps_hz,
         against=against,
     )
-    tell(written, _words, json_output)
+    tell(written, _words, json_output, broken=True)
 
 
 def _words(written: StudyReport) -> str:

@@ -85,6 +85,9 @@ def _proved_view(certificate: Certificate, leaves: int) -> View:
         ("scheme", certificate.scheme),
         ("SHA-256", subject(certificate)["scenario_sha256"]),
     ]
-    claim = capitalised(f"{claim_words(certificate)} above the bound.")
-    proved = Text("PROVED", style="bold green")
-    return document(head(certificate.scenario.name), proved, pairs("", rows), claim)
+    return document(
+        head(certificate.scenario.name),
+        Text("PROVED", style="bold green"),
+        pairs("", rows),
+        capitalised(f"{claim_words(certificate)} above the bound."),
+    )

@@ -6,6 +6,7 @@ numbers can be copied into files and commands.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -66,7 +67,7 @@ def table(
     for index, heading in enumerate(rows[0]):
         cells = [row[heading] for row in rows if row]
         is_words = index == 0 or heading in left
-        words = " ".join(cells).split() if is_words else "\n".join(cells).split("\n")
+        words = [word for text in cells for word in re.findall(r"^ *\S+|\S+" if is_words else ".+", text)]
         longest = max(map(len, [*words, *heading.split()]), default=1)
         view.add_column(
             _text(heading),

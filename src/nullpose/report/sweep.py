@@ -13,10 +13,7 @@ from nullpose.report.numbers import bound_text, capitalised
 from nullpose.solver import Status
 from nullpose.study import ResultRow, ResultTable
 
-_SHARED = (
-    "Points without a certificate reuse the bound of another point, which is valid there too. "
-    "Solved alone, each of them has a certificate."
-)
+_SHARED = "{} of {} points reuse another's valid bound. Solved alone, each has a certificate."
 _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file
 
 
@@ -38,17 +35,15 @@ def sweep_view(sweep: ResultTable) -> View:
     quantity = quantity_of(sweep)
     step = -(-len(sweep.values) // _SHOWN)
     labelled = [(row.label, row) for row in sweep.rows]
+    is_shared = [row.objective.upper_bound is not None and not row.stats.boxes for row in sweep.rows]
+    apart = [pair for pair, shared in zip(labelled, is_shared, strict=True) if not shared]
     absent = [(Scheme(name).label, f"not applicable: {reason}") for name, reason in sweep.left_out.items()]
     lines = [
         *grouped([*absent, *((label, "") for label, _ in labelled)]),
         *([f"One row in {step} is shown."] if step > 1 else []),
         *(f"{line}." for line in certainty_lines(sweep)),
-        *rigour_lines((label, row.objective.rigour) for label, row in labelled),
-        *(
-            [_SHARED]
-            if any(row.objective.upper_bound is not None and not row.stats.boxes for row in sweep.rows)
-            else []
-        ),
+        *map(capitalised, rigour_lines((label, row.objective.rigour) for label, row in apart)),
+        *([_SHARED.format(sum(is_shared), len(is_shared))] if any(is_shared) else []),
         *grouped((label, row.reason) for label, row in labelled),
     ]
     title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
