@@ -118,13 +118,14 @@ def heat_map(result: Result, ax: Axes | None = None, *, field: Field | None = No
     return axes
 
 
-def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False) -> Axes:
-    """Draw a curve for each scheme of a sweep, and its bounds where they can be seen.
+def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False, bounds: bool = False) -> Axes:
+    """Draw a curve for each scheme of a sweep.
 
     Args:
         table: what the sweep found.
         ax: axes to draw on; new ones if left out.
         log: draw the swept setting on a logarithmic axis.
+        bounds: draw a band from each curve up to its upper bounds.
 
     Raises:
         UsageError: the axes are in 3-D.
@@ -138,7 +139,7 @@ def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False) -> A
         'log'
     """
     with _axes(ax, (7.0, 4.2)) as axes:
-        draw_sweep_axes(axes, table, log=log)
+        draw_sweep_axes(axes, table, log=log, bounds=bounds)
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False, handlelength=3.2)
     return axes
 

@@ -12,7 +12,16 @@ import nullpose.paper.reproduce
 
 Run = Callable[..., Result]
 
-FILES = ["figure2-printed.csv", "figure2.csv", "figure2.png", "figure2.svg", "poses.png", "poses.svg"]
+FILES = [
+    "figure2-printed.csv",
+    "figure2-printed.png",
+    "figure2-printed.svg",
+    "figure2.csv",
+    "figure2.png",
+    "figure2.svg",
+    "poses.png",
+    "poses.svg",
+]
 
 
 @pytest.fixture

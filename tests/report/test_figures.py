@@ -40,15 +40,16 @@ def bands_of(figure: Figure) -> list[PolyCollection]:
     return [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
 
 
-def test_visible_bounds_are_drawn(paper: Scenario) -> None:
-    """A bound farther off than the width of a line is a mark above its value, and the caption explains it."""
-    near = draw_sweep(sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], schemes=["optimum"]))
-    assert [len(near.axes[0].lines), len(bands_of(near))] == [1, 1]
-    assert near.get_supxlabel().startswith("Each point is certified optimal within 1e-6")
+def test_bounds_are_drawn_if_asked_for(paper: Scenario) -> None:
+    """A mark at each bound that can be seen and a band up to it; else the curve and what is proved."""
     far = sweep(paper, "jammers.M.power_w", [0.5, 1.0, 2.0], schemes=["optimum"], gap=0.5)
     assert all(row.objective.relative_gap > 0.1 for row in far.rows)
-    figure = draw_sweep(far)
+    plain = draw_sweep(far)
+    assert [len(plain.axes[0].lines), len(bands_of(plain))] == [1, 0]
+    assert plain.get_supxlabel().startswith("Each point is certified optimal within")
+    figure = draw_sweep(far, bounds=True)
     _, marks = figure.axes[0].lines
+    assert len(bands_of(figure)) == 1
     assert list(marks.get_ydata()) == pytest.approx([row.upper_bound_db for row in far.rows])
     assert figure.axes[0].get_ylim()[1] > max(row.upper_bound_db for row in far.rows)
     assert "Each band ends" in figure.get_supxlabel()
@@ -63,7 +64,7 @@ def test_hopeless_bounds_leave_the_curves_readable(paper: Scenario) -> None:
         replace(row, objective=replace(row.objective, upper_bound=1e6, relative_gap=1e6))
         for row in table.rows
     ]
-    low, high = draw_sweep(ResultTable(table.path, tuple(rows))).axes[0].get_ylim()
+    low, high = draw_sweep(ResultTable(table.path, tuple(rows)), bounds=True).axes[0].get_ylim()
     values = [row.min_sinr_db for row in rows]
     assert low < min(values)
     assert max(values) < high < max(values) + 10.0

@@ -56,6 +56,7 @@ def sweep(
     proof: ProofOptions,
     fast: Fast = False,
     width: Width = None,
+    bounds: Annotated[bool, typer.Option("--bounds", help="Draw the upper bounds as bands.")] = False,
     json_output: JsonOutput = False,
 ) -> None:
     """Solve at many values of one setting.
@@ -87,4 +88,5 @@ def sweep(
         say("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep
 
-    tell(found, sweep_view, json_output, files=write_sweep(found, out, log=log, width=width))
+    written = write_sweep(found, out, log=log, width=width, bounds=bounds)
+    tell(found, sweep_view, json_output, files=written)

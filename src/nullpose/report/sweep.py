@@ -18,14 +18,14 @@ _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the 
 
 
 def write_sweep(
-    sweep: ResultTable, folder: Path, *, log: bool = False, width: str | None = None
+    sweep: ResultTable, folder: Path, *, log: bool = False, width: str | None = None, bounds: bool = False
 ) -> tuple[Path, ...]:
     """Write a sweep as CSV, PNG, SVG and PDF to an existing folder; return the paths.
 
     Raises:
         OutputError: a file cannot be written.
     """
-    figure = draw_sweep(sweep, log=log, width=width)
+    figure = draw_sweep(sweep, log=log, width=width, bounds=bounds)
     pictures = write_figure(figure, folder, "sweep", ("png", "svg", "pdf"))
     return (sweep.write_csv(folder / "sweep.csv"), *pictures)
 

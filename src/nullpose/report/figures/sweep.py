@@ -14,7 +14,6 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import (
-    CURVES,
     GREY,
     Look,
     curve_of,
@@ -46,35 +45,29 @@ def _numbers(rows: Iterable[ResultRow]) -> FloatArray:
     return np.where(np.isfinite(found), found, math.nan).T
 
 
-def draw_curves(axes: Axes, table: ResultTable) -> bool:
-    """Draw curves and bounds; return whether bounds can be seen apart from their values."""
+def draw_curves(axes: Axes, table: ResultTable, *, bounds: bool = False) -> None:
+    """Draw a curve for each scheme, with a band up to its upper bounds if they are asked for."""
     apart = _VISIBLE
     if quantity_of(table).is_rate:
         apart = 0.01 * float(np.max(_numbers(table.rows)[0]))
-    seen = [_draw_scheme(axes, table, scheme, apart) for scheme in table.names]
-    return any(seen)
+    for index, scheme in enumerate(table.names):
+        rows, look = table.of(scheme), curve_of(scheme)
+        values, highest = _numbers(rows)
+        levels = [row.value for row in rows]
+        step = max(len(table.names), math.ceil(len(rows) / _MARKERS))
+        every = 1 if len(rows) <= _MARKERS else (index, step)  # staggered: curves that coincide stay visible
+        draw_curve(axes, look, levels, values, (values, highest) if bounds else None, every=every)
+        if bounds:  # no line: between two points nothing is proved
+            marks: Look = {"marker": _CARET_DOWN, "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
+            seen = np.where(highest - values > apart, highest, math.nan)
+            axes.plot(levels, seen, color=look.colour, linestyle="", **marks)
 
 
-def _draw_scheme(axes: Axes, table: ResultTable, scheme: str, apart: float) -> bool:
-    """Draw a curve with a band up to its bounds; return whether they can be seen apart."""
-    look, rows = curve_of(scheme), table.of(scheme)
-    values, bounds = _numbers(rows)
-    levels = [row.value for row in rows]
-    first = [*CURVES, scheme].index(scheme)  # staggered, so that curves which coincide both stay visible
-    step = math.ceil(len(rows) / _MARKERS)
-    every = 1 if step == 1 else (first, max(len(CURVES), step))
-    draw_curve(axes, look, levels, values, (values, bounds), every=every)
-    seen = bounds - values > apart
-    marks: Look = {"marker": _CARET_DOWN, "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
-    if np.any(seen):  # no line: between two points nothing is proved
-        axes.plot(levels, np.where(seen, bounds, math.nan), color=look.colour, linestyle="", **marks)
-    return bool(np.any(seen))
-
-
-def draw_caption(figure: Figure, lines: Iterable[str]) -> None:
+def draw_caption(figure: Figure, lines: Iterable[str], width: str | None = None) -> None:
     """Write sentences in small letters under the axes, broken into lines."""
-    text = "\n".join(wrapped for line in lines for wrapped in textwrap.wrap(line, _CAPTION_LETTERS))
-    figure.supxlabel(text, x=0.01, ha="left", fontsize=7.5, color=GREY, linespacing=1.35)
+    letters, size = (_CAPTION_LETTERS, 7.5) if width is None else (int(18.0 * figure.get_figwidth()), 6.5)
+    text = "\n".join(wrapped for line in lines for wrapped in textwrap.wrap(line, letters))
+    figure.supxlabel(text, x=0.01, ha="left", fontsize=size, color=GREY, linespacing=1.35)
 
 
 def _keep_curves_large(axes: Axes, table: ResultTable) -> None:
@@ -87,28 +80,37 @@ def _keep_curves_large(axes: Axes, table: ResultTable) -> None:
         axes.set_ylim(low - 0.05 * free, high + free)
 
 
-def draw_sweep(table: ResultTable, *, log: bool = False, width: str | None = None) -> Figure:
-    """Draw a sweep, its legend above the axes and, but in print (``WIDTHS_MM``), what is proved below."""
+def draw_sweep(
+    table: ResultTable, *, log: bool = False, width: str | None = None, bounds: bool = False
+) -> Figure:
+    """Draw a sweep, its legend above the axes and what is proved below.
+
+    Args:
+        table: of at least one row.
+        log: draw the swept setting on a logarithmic axis.
+        width: in print, a key of ``WIDTHS_MM``; None for a screen.
+        bounds: draw a band from each curve up to its upper bounds.
+    """
     lines = [f"{line}." for line in certainty_lines(table)]
+    if bounds:
+        lines.append("Each band ends at the upper bound, a small triangle.")
     with house_style(width):
         size = inches((7.0, 4.6), width, 0.8 if is_column(width) else 0.5)
         figure = Figure(figsize=size, layout="constrained")
-        if draw_sweep_axes(figure.add_subplot(), table, log=log):
-            lines.append("Each band ends at the upper bound, a small triangle.")
+        draw_sweep_axes(figure.add_subplot(), table, log=log, bounds=bounds)
         columns = 2 if is_column(width) else 4
         look: Look = {"handlelength": 3.2, "columnspacing": 1.4, "frameon": False}
         figure.legend(loc="outside upper center", ncols=columns, **look)
-        if width is None:
-            draw_caption(figure, lines)
+        draw_caption(figure, lines, width)
     return figure
 
 
-def draw_sweep_axes(axes: Axes, table: ResultTable, *, log: bool = False) -> bool:
-    """Draw a sweep with the names of its axes; return whether bounds can be seen apart."""
+def draw_sweep_axes(axes: Axes, table: ResultTable, *, log: bool = False, bounds: bool = False) -> None:
+    """Draw a sweep with the names of its axes."""
     quantity = quantity_of(table)
-    seen = draw_curves(axes, table)
-    _keep_curves_large(axes, table)
+    draw_curves(axes, table, bounds=bounds)
+    if bounds:
+        _keep_curves_large(axes, table)
     axes.set(xlabel=axis_label(table.path), xscale="log" if log else "linear")
-    axes.set_ylabel(f"{capitalised(quantity.smallest)} over the nodes  ({quantity.unit})")
+    axes.set_ylabel(f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})")
     axes.margins(x=0.02)
-    return seen
