@@ -11,6 +11,8 @@ from nullpose.report.numbers import capitalised, rounded_up
 from nullpose.solver import Rigour, Status
 from nullpose.study import ResultRow, ResultTable
 
+_ORDER = (Status.CERTIFIED, Status.GAP_NOT_REACHED, Status.BEST_FOUND)
+
 
 def counted(rows: Iterable[ResultRow]) -> PlainTable:
     """Count values by status, with the widest gap of those with a bound; None if there are none."""
@@ -26,21 +28,17 @@ def counted(rows: Iterable[ResultRow]) -> PlainTable:
     }
 
 
-def _weakest(counts: PlainTable) -> str:
-    """Name the status that every value has at least."""
-    return next((key for key in ("best_found", "gap_not_reached") if counts[key]), "certified")
-
-
-def _sentence(counts: PlainTable) -> str:
-    """Write what is true of every value, with the widest gap."""
+def _sentence(status: Status, rows: Iterable[ResultRow]) -> str:
+    """Write what is true of every value of a status at least, with the widest gap."""
+    counts = counted(rows)
     gap = "none" if counts["largest_relative_gap"] is None else rounded_up(counts["largest_relative_gap"])
     sentences = {
-        "best_found": "best found by search, no upper bound",
-        "certified": f"each point is certified optimal within {gap} (relative)",
-        "gap_not_reached": "all bounds are valid, but the requested gap is not reached at "
+        Status.CERTIFIED: f"each point is certified optimal within {gap} (relative)",
+        Status.GAP_NOT_REACHED: "all bounds are valid, but the requested gap is not reached at "
         f"{counts['gap_not_reached']} of {counts['values']} points; relative gap up to {gap}",
+        Status.BEST_FOUND: "best found by search, no upper bound",
     }
-    return sentences[_weakest(counts)]
+    return sentences[status]
 
 
 def certainty_lines(table: ResultTable) -> list[str]:
@@ -50,13 +48,12 @@ def certainty_lines(table: ResultTable) -> list[str]:
 
 def labelled_certainty(table: ResultTable) -> list[tuple[str, str]]:
     """Pair the label of each curve of a sweep with how certain it is, curves of one status together."""
-    weakest = {name: _weakest(counted(table.of(name))) for name in table.names}
+    weakest = {name: max((row.status for row in table.of(name)), key=_ORDER.index) for name in table.names}
     sentences = {
-        status: _sentence(counted(row for row in table.rows if weakest[row.name] == status))
+        status: _sentence(status, (row for row in table.rows if weakest[row.name] is status))
         for status in weakest.values()
     }
-    order = ("certified", "gap_not_reached", "best_found")
-    names = sorted(weakest, key=lambda name: order.index(weakest[name]))
+    names = sorted(weakest, key=lambda name: _ORDER.index(weakest[name]))
     return [(table.of(name)[0].label, sentences[weakest[name]]) for name in names]
 
 

@@ -65,16 +65,16 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
 
 def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
     """Set how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
-    noun, heading, points = "eavesdropper", "SNR (dB)", scenario.eavesdropper_positions_m
-    names, orientation = scenario.eavesdropper_names, pose.orientation(scenario.antenna_record)
+    noun, heading = scenario.objective_record.interferers.removesuffix("s"), "SNR (dB)"
+    names, points = getattr(scenario, f"{noun}_names"), getattr(scenario, f"{noun}_positions_m")
+    orientation = pose.orientation(scenario.antenna_record)
     if scenario.eavesdroppers:
         ratios = eavesdropper_snr(scenario, pose.position_m, orientation)
     else:
-        noun, heading, points = "jammer", "jamming to noise (dB)", scenario.jammer_positions_m
-        names, powers_w = scenario.jammer_names, scenario.jammer_powers_w
-        link = (pose.position_m, orientation, points, powers_w, scenario.reference_gain)
+        heading, link = "jamming to noise (dB)", (points, scenario.jammer_powers_w, scenario.reference_gain)
         antennas = (scenario.antenna_record, scenario.jammer_antennas, scenario.jammer_channels)
-        ratios = received_power_w(*link, *antennas) / scenario.receiver.noise_power_w
+        power_w = received_power_w(pose.position_m, orientation, *link, *antennas)
+        ratios = power_w / scenario.receiver.noise_power_w
     is_even = scenario.antenna_record.is_even
     angles_deg = [math.degrees(axis_angle_rad(pose, point_m, is_even)) for point_m in points]
     columns = {

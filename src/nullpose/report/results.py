@@ -62,7 +62,7 @@ def result_view(result: Result) -> View:
     position = ", ".join(f"{axis} {x:z.4f} m" for axis, x in place)
     at = [("position", position), ("attitude", _attitude_words(pose))]
     return document(
-        _head(result, capitalised(result.label), *more),
+        result_head(result, *more),
         pairs("", [*at, *antenna, *frame_rows(scenario, pose)]),
         links_table(result, gain_columns(scenario, pose) if array is None else {}),
         nulls_table(scenario, pose) if array is None else None,
@@ -103,7 +103,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
     )
 
 
-def _head(result: Result, label: str, *more: str) -> View:
+def result_head(result: Result, *more: str) -> View:
     """Write what stands above any result: value, bound, how sure it is, the work behind it, and more."""
     objective, stats = result.objective, result.stats
     sure = "" if objective.upper_bound is None else objective.rigour.message
@@ -120,7 +120,11 @@ def _head(result: Result, label: str, *more: str) -> View:
     if isinstance(result.details, GivenDetails):
         bound = f"{bound_text(result.details.best.objective)} {objective.quantity.unit}"
         lines = (sure and f"upper bound of every pose {bound}", sure, *more)
-    return head(result.scenario.name, label, f"{objective.quantity.smallest} {value_words(objective)}", lines)
+    label = (
+        f"{capitalised(result.label)}{', guaranteed' if isinstance(result.details, RobustDetails) else ''}"
+    )
+    value = f"{objective.quantity.smallest} {value_words(objective)}"
+    return head(result.scenario.name, label, value, lines)
 
 
 def _robust_view(result: Result, details: RobustDetails) -> View:
@@ -135,7 +139,7 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
     errors = f"errors: {error_words(scenario)}; {bound}"
     cells = {name: _guarded_cells(objective, pose) for name, pose in poses.items()}
     return document(
-        _head(result, "Robust, guaranteed", errors, result.note),
+        result_head(result, errors, result.note),
         table("", beside(cells), bold=[f"guaranteed ({quantity.unit})"]),
         *(f"worst for the {name}: {pose.worst_case}" for name, pose in poses.items()),
         "Guaranteed: holds for all errors within the stated limits. "

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from nullpose.report.document import View, head
+from nullpose.report.document import View
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.style import write_figure
-from nullpose.report.numbers import bound_words, value_words
+from nullpose.report.results import result_head
 from nullpose.solver import Result
 from nullpose.study import Field
 
@@ -24,15 +24,11 @@ def write_map(result: Result, field: Field, folder: Path, width: str | None = No
 
 def map_view(result: Result, field: Field) -> View:
     """Write the best value of a result's map, where it is, and what is proved of the best pose."""
-    objective = result.objective
     value, position_m = field.best
     place = ", ".join(f"{x:z.3f}" for x in position_m)
     rows, columns = field.values.shape
-    lines = (
-        bound_words(objective),
-        result.status.message,
+    return result_head(
+        result,
         f"map: {rows * columns:,} places {field.altitude_m:.4g} m up, "
         f"{field.east_m[1] - field.east_m[0]:.3g} m apart; best {value:.7g} {field.unit} at ({place}) m",
     )
-    words = f"{objective.quantity.smallest} {value_words(objective)}"
-    return head(result.scenario.name, result.label, words, lines)
