@@ -43,7 +43,8 @@ def robust() -> ResultTable:
 def test_known_answers(paper: Scenario, row: dict[str, float]) -> None:
     """Each vehicle reaches what independent searches found, certified to 1e-6."""
     level = row["jamming_ratio"]
-    found = compare_airframes(apply_overrides(paper, [f"jammers.M.power_w={level}"]), cases=AIRFRAME_CASES)
+    varied = apply_overrides(paper, [f"jammers.M.power_w={level}"])
+    found = compare_airframes(varied, cases=AIRFRAME_CASES, gap=1e-6)
     for result in found.rows:
         assert result.status is Status.CERTIFIED
         assert result.objective.value <= result.objective.upper_bound <= result.objective.value * (1.0 + 1e-6)
@@ -81,9 +82,39 @@ def test_the_least_vehicle_that_suffices(paper: Scenario) -> None:
 
 def test_an_upright_dipole_can_need_the_least_tilt() -> None:
     """With whips on the ground the dipole has to stand: with it flat no tilt compared suffices."""
-    found = compare_airframes(load(ROOT / "examples" / "whips.toml"))
+    found = compare_airframes(load(ROOT / "examples" / "whips.toml"), cases=AIRFRAME_CASES)
     assert least_sufficient(found).name == "tilt-30-vertical"
     assert verdict_on(found, found.of("tilt-30-horizontal")[0]) is Verdict.FALLS_SHORT
+
+
+@pytest.mark.parametrize("name", ["paper", "whips", "eavesdropper"])
+def test_the_best_mount_leaves_nothing_to_tilt_for(name: str) -> None:
+    """At each tilt it reaches what the omnidirectional vehicle does; its poses keep to mount and tilt."""
+    found = compare_airframes(load(ROOT / "examples" / f"{name}.toml"))
+    (whole,) = found.of("omnidirectional")
+    for level in ("level", "tilt-10", "tilt-20", "tilt-30"):
+        (row,) = found.of(f"{level}-best")
+        assert verdict_on(found, row) is Verdict.SUFFICES
+        assert row.label == f"{level.replace('-', ' ')}, best ({row.case.airframe.mount_deg:.4g})"
+        assert row.pose.tilt_rad <= row.case.airframe.tilt_max_rad + 1e-9
+        assert row.pose.mount_rad == row.case.airframe.mount_rad
+    assert row.objective.value == pytest.approx(whole.objective.value, rel=1e-9)
+
+
+def test_proofs_are_as_near_as_the_verdict_needs(paper: Scenario) -> None:
+    """Every bound holds for the vehicle, none exceeds the omnidirectional one, and few boxes tell."""
+    near, quick = (
+        compare_airframes(paper, cases=AIRFRAME_CASES, **options)
+        for options in ({"gap": 1e-6}, dict[str, float]())
+    )
+    for row in near.rows:
+        (wide,) = quick.of(row.name)
+        assert wide.objective.value == pytest.approx(row.objective.value, rel=1e-5)
+        assert row.objective.value <= wide.objective.upper_bound
+        assert wide.objective.upper_bound <= quick.of("omnidirectional")[0].objective.upper_bound
+        assert verdict_on(near, row) is verdict_on(quick, wide) is not Verdict.NOT_PROVED
+    boxes = [sum(row.stats.boxes for row in table.rows) for table in (near, quick)]
+    assert boxes[1] < 0.5 * boxes[0]
 
 
 def test_a_verdict_is_proved_or_left_open(paper: Scenario) -> None:

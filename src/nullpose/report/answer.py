@@ -7,9 +7,16 @@ from collections.abc import Sequence
 
 from nullpose.objectives import Quantity
 from nullpose.report.numbers import capitalised, with_unit
-from nullpose.study import ResultRow, ResultTable
+from nullpose.study import ResultRow, ResultTable, Verdict
 from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
-from nullpose.study.vehicles import TOLERANCE, Verdict, arrays, difference, dipoles, verdict_on
+from nullpose.study.vehicles import (
+    BEST_MOUNT,
+    TOLERANCE,
+    arrays,
+    difference,
+    dipoles,
+    verdict_on,
+)
 
 _VERDICTS = {
     Verdict.SUFFICES: "is proved to suffice",
@@ -21,44 +28,54 @@ _VERDICTS = {
 def answer_lines(comparison: ResultTable) -> list[str]:
     """Answer which of the vehicles compared can stand in for the omnidirectional one, so far as it is proved.
 
-    Of those with one dipole and of those with an array: the least that suffices, or the nearest.
+    Of each kind the least that suffices, or the nearest.
     """
-    whole = comparison.of(OMNIDIRECTIONAL)[0]
     if all(row.objective.value <= 0.0 for row in dipoles(comparison)):
         return ["Of the vehicles compared, none with one dipole was found to reach every node."]
-    lesser = [row for row in dipoles(comparison) if row is not whole]
-    lines = [_least_line(comparison, kind) for kind in (lesser, arrays(comparison)) if kind]
-    for row in lesser:
+    ends = {"the best mount": (BEST_MOUNT,), "a vertical or horizontal dipole": ("-vertical", "-horizontal")}
+    kinds = {
+        kind: [row for row in dipoles(comparison) if row.name.endswith(end)] for kind, end in ends.items()
+    }
+    kinds["an array"] = list(arrays(comparison))
+    lines = [_least_line(comparison, kind, found) for kind, found in kinds.items() if found]
+    for row in comparison.rows:
         if row.name == FILE_VEHICLE:
             phrase, verdict = capitalised(row.case.phrase), _VERDICTS[verdict_on(comparison, row)]
             lines.append(f"{phrase} {verdict}: it {_reach(comparison, row)}.")
     return [*lines, "The least tilt for each mount of the dipole: nullpose vehicle FILE"]
 
 
-def sufficing(quantity: Quantity) -> str:
+def sufficing(quantity: Quantity) -> list[str]:
     """Say what a vehicle has to reach to suffice, and how either answer is proved."""
     loss = "" if quantity.is_rate else f" ({-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB less)"
-    return (
-        f"Suffices: reaches {100.0 * (1.0 - TOLERANCE):g} %{loss} of the omnidirectional vehicle's bound. "
-        "No: its own bound is below that share of the omnidirectional vehicle's value."
-    )
+    share = f"{100.0 * (1.0 - TOLERANCE):g} %"
+    return [
+        f"yes: the value is at least {share}{loss} of the omnidirectional bound.",
+        f"no: the bound, rounded up, is below {share} of the omnidirectional value.",
+    ]
 
 
-def _least_line(comparison: ResultTable, found: Sequence[ResultRow]) -> str:
+def _least_line(comparison: ResultTable, kind: str, found: Sequence[ResultRow]) -> str:
     """Name the least of a kind's vehicles, in the order of what they take, that suffices or is nearest."""
-    kind, less = ("an array", "fewer elements") if found[0].case.array else ("one dipole", "less tilt")
     enough = (1.0 - TOLERANCE) * comparison.of(OMNIDIRECTIONAL)[0].objective.value
     close = [row for row in found if row.objective.value >= enough]
     proved = [row for row in close if verdict_on(comparison, row) is Verdict.SUFFICES]
     if close:
         row, how = (proved or close)[0], "proved" if proved else "found (not proved)"
-        reach = f"{capitalised(row.case.phrase)} {_reach(comparison, row)}."
-        return f"{reach} It is {how} to suffice; of the vehicles compared with {kind}, none with {less} is."
+        less, (size, least) = "less tilt", (_tilt_rad(row), _tilt_rad(found[0]))
+        if row.case.array and found[0].case.array:
+            less, size, least = "fewer elements", row.case.array.elements, found[0].case.array.elements
+        others = f"; of the vehicles compared with {kind}, none with {less} is" if least < size else ""
+        return f"{capitalised(row.case.phrase)} {_reach(comparison, row)}. It is {how} to suffice{others}."
     nearest = max(found, key=lambda row: row.objective.value)
     are_short = all(verdict_on(comparison, row) is Verdict.FALLS_SHORT for row in found)
     reach = f"{nearest.case.phrase} comes nearest: it {_reach(comparison, nearest)}"
     all_of = "All" if are_short else "Not all"
     return f"Of the lesser vehicles compared with {kind}, {reach}. {all_of} are proved not to suffice."
+
+
+def _tilt_rad(row: ResultRow) -> float:
+    return row.case.airframe.tilt_max_rad if row.case.airframe else 0.0
 
 
 def _reach(comparison: ResultTable, row: ResultRow) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,9 +17,10 @@ from nullpose.report.numbers import bound_text, capitalised
 from nullpose.report.results import pose_cells, work_words
 from nullpose.report.words import requirement_words
 from nullpose.scenario import Eavesdropper, Jammer
-from nullpose.solver import Status
+from nullpose.solver import Rigour, Status
 from nullpose.study import ResultRow, ResultTable
 from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
+from nullpose.study.vehicle_search import AS_NEEDED
 from nullpose.study.vehicles import dipoles, verdict_on
 
 _STATUS = {
@@ -67,23 +68,18 @@ def airframes_view(comparison: ResultTable) -> View:
     labels = [row.label for row in found]
     bold = [row.label for row in found if row.name == FILE_VEHICLE]
     verdicts = [verdict_on(comparison, row).value for row in found]
-    nominal, robust, most = numbers_of(comparison)[2:, :count]
+    with_errors = [index for index, row in enumerate(found) if row.guaranteed is not None]
+    nominal, robust, most = numbers_of(comparison)[2:]
     guaranteed = rows(
         {
-            "vehicle, dipole": labels[:count],
-            "pose above": _texts(nominal, 3),
-            "robust pose": _texts(robust, 3),
-            "bound": _texts(most, 3),
-            "difference": _texts(robust - robust[found.index(whole)], 3),
+            "vehicle, dipole": [labels[index] for index in with_errors],
+            "pose above": _texts(nominal[with_errors], 3),
+            "robust pose": _texts(robust[with_errors], 3),
+            "bound": _texts(most[with_errors], 3),
+            "difference": _texts(robust[with_errors] - robust[found.index(whole)], 3),
         }
     )
-    lines = [
-        "Omnidirectional: it can take any attitude. Difference: from that vehicle.",
-        "Vertical, horizontal: the dipole while the vehicle is level. Yaw is free.",
-        sufficing(quantity),
-        *_absent(comparison),
-        *_proof_lines(comparison, lambda row: "arrays" if row.case.array else "one dipole"),
-    ]
+    lines = [*sufficing(quantity), *_vehicle_proof_lines(found), *_absent(comparison)]
     if scenario.is_uncertain:
         lines.append("Guaranteed: proved for every error within the stated limits, but not for arrays.")
         lines.append("The answer is about the values without errors.")
@@ -218,9 +214,20 @@ def _absent(comparison: ResultTable) -> list[str]:
     return grouped([*((name, f"left out: {why}") for name, why in comparison.left_out.items()), *present])
 
 
-def _proof_lines(
-    comparison: ResultTable, kind_of: Callable[[ResultRow], str] = lambda row: row.label
-) -> list[str]:
+def _vehicle_proof_lines(found: Sequence[ResultRow]) -> list[str]:
+    """Write what is proved of vehicles in a line, and below it what kept proofs short."""
+    kinds = [("arrays" if row.case.array else "dipoles", row.rigour) for row in found]
+    rigours = grouped((kind, "" if rigour is Rigour.NONE else rigour.value) for kind, rigour in kinds)
+    needed = "bounded: as near as needed. " if any(row.reason == AS_NEEDED for row in found) else ""
+    searched = [Status.BEST_FOUND.message for row in found if row.status is Status.BEST_FOUND]
+    return [
+        *([f"{needed}Bounds: {', '.join(rigours)}."] if rigours else []),
+        *(f"{_STATUS[Status.BEST_FOUND]}: {message}." for message in dict.fromkeys(searched)),
+        *grouped((row.label, "" if row.reason == AS_NEEDED else row.reason) for row in found),
+    ]
+
+
+def _proof_lines(comparison: ResultTable) -> list[str]:
     """Write what is proved of a table's values, of poses that were given apart."""
     solved = [row for row in comparison.rows if row.status is not Status.GIVEN]
     statuses = dict.fromkeys(row.status for row in solved)
@@ -228,5 +235,5 @@ def _proof_lines(
         "Bounds are rounded up.",
         *(f"{_STATUS[status]}: {status.message.removeprefix('certified ')}" for status in statuses),
         *grouped((row.label, row.reason) for row in solved),
-        *rigour_lines((kind_of(row), row.objective.rigour) for row in solved),
+        *rigour_lines((row.label, row.objective.rigour) for row in solved),
     ]

@@ -23,13 +23,15 @@ def vehicle_view(found: LeastTilt) -> View:
         }
     )
     whole = found.omnidirectional.objective.value
-    kind = "" if quantity.is_rate else ", a power ratio,"
+    kind = "" if quantity.is_rate else " (as a power ratio)"
     lines = [
-        f"Target: {100.0 * found.share:.6g} % of the {quantity.smallest}{kind} of a vehicle that takes any "
-        f"attitude: {quantity.in_unit(found.target):.4f} of {quantity.in_unit(whole):.4f} {quantity.unit}.",
+        f"Target: {_value(quantity, found.target)} {quantity.unit}, {100.0 * found.share:.6g} %{kind} of the bound "
+        f"on the {quantity.smallest} with any attitude, where {_value(quantity, whole)} {quantity.unit} are "
+        "reached.",
         "Mount: angle between the antenna and the body's vertical, 0 upright, 90 flat. Yaw is free, and each "
         "mount has its own best position.",
-        "Least tilt: a pose with it reaches the target. Too little: with that tilt no pose does.",
+        "Least tilt: a pose with it reaches the target. Too little: no pose with it reaches that share of "
+        "the value.",
         *(
             ["The errors that the file states are not considered."]
             if found.omnidirectional.scenario.is_uncertain

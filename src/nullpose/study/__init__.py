@@ -9,8 +9,8 @@ from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.sweep import spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import value_map
+from nullpose.study.vehicle_search import Verdict
 from nullpose.study.vehicles import (
-    Verdict,
     cases_of,
     compare_airframes,
     compare_schemes,

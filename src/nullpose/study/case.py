@@ -23,12 +23,12 @@ from nullpose.study.fixed_pose import FixedPose
 OMNIDIRECTIONAL = "omnidirectional"  # the case that other vehicles are compared with
 FILE_VEHICLE = "stated"  # the case of the scenario's own vehicle, if it is none of the others
 
-_TILTS_DEG, _MOUNTS_DEG = (0, 10, 20, 30), {"vertical": 0.0, "horizontal": 90.0}
+TILTS_DEG, _MOUNTS_DEG = (0, 10, 20, 30), {"vertical": 0.0, "horizontal": 90.0}
 _AIRFRAMES = {
     f"{f'tilt-{tilt_deg}' if tilt_deg else 'level'}-{dipole}": Airframe(
         tilt_max_deg=tilt_deg, mount_deg=mount_deg
     )
-    for tilt_deg, (dipole, mount_deg) in product(_TILTS_DEG, _MOUNTS_DEG.items())
+    for tilt_deg, (dipole, mount_deg) in product(TILTS_DEG, _MOUNTS_DEG.items())
 } | {OMNIDIRECTIONAL: Airframe(tilt_max_deg=180.0)}
 """The vehicles of every comparison, by the tilt that they take; every tilt with either mount."""
 LEVEL = "level-vertical"  # the case that studies compare others with
@@ -185,7 +185,9 @@ class Case(Section):
         if self.scheme is not None:
             return self.scheme.label
         level_or_tilt, _, dipole = self.name.rpartition("-")
-        return f"{level_or_tilt.replace('-', ' ')}, {dipole}" if dipole in _MOUNTS_DEG else self.name
+        mount = f"best ({self.airframe.mount_deg:.4g})" if dipole == "best" and self.airframe else dipole
+        is_usual = dipole in (*_MOUNTS_DEG, "best")
+        return f"{level_or_tilt.replace('-', ' ')}, {mount}" if is_usual else self.name
 
     @property
     def phrase(self) -> str:
@@ -202,7 +204,7 @@ class Case(Section):
         if airframe is not None and self.usual != OMNIDIRECTIONAL:
             tilt, mount_deg = _degrees(airframe.tilt_max_rad), airframe.mount_deg
             words = {usual_deg: f"a {word} dipole" for word, usual_deg in _MOUNTS_DEG.items()}
-            dipole = words.get(mount_deg, f"the dipole mounted at {mount_deg:g} degrees")
+            dipole = words.get(mount_deg, f"the dipole mounted at {mount_deg:.4g} degrees")
             phrase = f"{'a level vehicle' if tilt == '0' else f'a {tilt} degree tilt'} with {dipole}"
         if self.name == FILE_VEHICLE:
             phrase = f"the file's vehicle ({phrase})"

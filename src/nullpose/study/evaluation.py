@@ -104,10 +104,12 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
     return Evaluation(best=best, results=tuple(replace(result, error_sizes=sizes) for result in results))
 
 
-def evaluated(result: Result, scenario: Scenario, pose: Pose) -> Result:
-    """Evaluate a pose in a scenario, without a bound; what says how it was found is that of a result."""
-    links = tuple(evaluate(scenario, pose))
-    objective = objective_of(scenario, Quantity.of(scenario).least(links), None)
+def evaluated(result: Result, scenario: Scenario, pose: Pose, upper_bound: float | None = None) -> Result:
+    """Evaluate a pose in a scenario, with a bound if one holds; how it was found is that of a result."""
+    links, quantity = tuple(evaluate(scenario, pose)), Quantity.of(scenario)
+    ratio_bound = 2.0**upper_bound if upper_bound is not None and quantity.is_rate else upper_bound
+    rigour = None if upper_bound is None else result.rigour
+    objective = objective_of(scenario, quantity.least(links), ratio_bound, rigour)
     return replace(
         result,
         scenario=scenario,
@@ -124,13 +126,10 @@ def evaluated(result: Result, scenario: Scenario, pose: Pose) -> Result:
 
 def _against(best: Result, pose: Pose) -> Result:
     scenario, quantity = best.scenario, Quantity.of(best.scenario)
-    not_allowed, bound = tuple(pose_faults(scenario, pose)), best.objective.upper_bound
-    result, below = evaluated(best, scenario, pose), None
-    if not not_allowed and bound is not None:
-        value = result.objective.value
-        ratio_bound = 2.0**bound if quantity.is_rate else bound
-        result = replace(result, objective=objective_of(scenario, value, ratio_bound, best.rigour))
-        below = quantity.in_unit(bound) - quantity.in_unit(value)
+    not_allowed = tuple(pose_faults(scenario, pose))
+    bound = None if not_allowed else best.objective.upper_bound
+    result = evaluated(best, scenario, pose, bound)
+    below = None if bound is None else quantity.in_unit(bound) - quantity.in_unit(result.objective.value)
     place = ", ".join(f"{x:z.3f}" for x in best.pose.position_m)
     notes = [
         *(f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed),

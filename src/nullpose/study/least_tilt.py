@@ -16,11 +16,12 @@ import numpy as np
 
 from nullpose.errors import SolveError, UsageError
 from nullpose.files import PlainTable
-from nullpose.objectives import FloatArray, Quantity
-from nullpose.physics import Pose, evaluate
+from nullpose.objectives import FloatArray
+from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Scenario, require_scenario
-from nullpose.solver import Result, SolveKeywords, Status, solve
+from nullpose.solver import Result, SolveKeywords, solve
 from nullpose.solver.rigour import Rigour
+from nullpose.study.vehicle_search import LEAST_GAP, VehicleSearch, Verdict, required
 
 MOUNTS_DEG = (0.0, 45.0, 90.0)
 """The mounts that are looked at unless others are stated."""
@@ -28,11 +29,9 @@ STEP_DEG = 0.1
 """How near a tilt that suffices and one that does not come to each other."""
 _MOST_STEPS = 1800
 _GRID_DEG = 5.0  # of the best mount, where one on it needs no more tilt than any other
-_GAPS = 1e-8, 1e-3  # least and widest gap of a solve
-_WIDEST_GAP, _SHARES = 10.0, (0.9, 0.5, 0.1)  # of what is missing to the target: the gaps of proofs
+_GAP = 1e-3  # of the omnidirectional vehicle, and of values by angle
 _ANGLES = 46  # of a figure, every 2 degrees
-_ROUNDING = 1e-12  # relative, of a value that is evaluated twice
-_SAME_TILT = 1e-6  # of a step, likewise
+_SAME_TILT = 1e-6  # of a step, by rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -41,19 +40,27 @@ class MountTilt:
 
     Args:
         mount_deg: angle between the antenna and the body's vertical.
-        suffices_deg: a tilt with which a pose reaches the target; None if none was found.
-        value: of that pose.
-        pose: that pose.
-        fails_deg: a tilt with which no pose reaches the target; None where a level vehicle suffices.
+        suffices_deg: a tilt with which a pose is proved to reach the share; None if none was found.
+        result: the pose with that tilt; its bound is that of the omnidirectional vehicle.
+        fails_deg: a tilt with which no pose reaches the share; None where a level vehicle suffices.
         upper_bound: that no pose with that tilt exceeds.
     """
 
     mount_deg: float
     suffices_deg: float | None = None
-    value: float | None = None
-    pose: Pose | None = None
+    result: Result | None = None
     fails_deg: float | None = None
     upper_bound: float | None = None
+
+    @property
+    def value(self) -> float | None:
+        """The value with the tilt that suffices."""
+        return None if self.result is None else self.result.objective.value
+
+    @property
+    def pose(self) -> Pose | None:
+        """The pose with the tilt that suffices."""
+        return None if self.result is None else self.result.pose
 
     def to_dict(self) -> PlainTable:
         """Write the two sides as plain data."""
@@ -83,8 +90,8 @@ class LeastTilt:
 
     @property
     def target(self) -> float:
-        """The value that is to be reached."""
-        return self.share * self.omnidirectional.objective.value
+        """The value that suffices: the share of the omnidirectional vehicle's upper bound."""
+        return required(self.omnidirectional.objective, self.share)
 
     def to_dict(self) -> PlainTable:
         """Write everything but the poses as plain data for JSON."""
@@ -106,14 +113,15 @@ def least_tilt(
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> LeastTilt:
-    """Find the least tilt with which a vehicle reaches a share of the omnidirectional value.
+    """Find the least tilt with which a vehicle reaches a share of what any pose can.
 
     Of every mount, and of the best one. A level vehicle with free yaw reaches every axis at the angle of its
     mount, so the mount of the best pose needs no tilt at all.
 
     Args:
         scenario: what is asked for; its airframe and its array are left out.
-        share: of the value (a power ratio or a rate) of the vehicle that takes any attitude, at most 1.
+        share: of the value (a power ratio or a rate) of the vehicle that takes any attitude, at most 1;
+            proofs come as near as 1e-7.
         mounts_deg: angles between the antenna and the body's vertical, 0 to 90; none for the best one alone.
         on_progress: called with how many mounts are done and how many there are.
         options: as for :func:`nullpose.solver.solve`; the gap is chosen by the share unless it is stated.
@@ -143,8 +151,9 @@ def least_tilt(
         )
     began, total = time.perf_counter(), len(mounts_deg) + 1
     if options.get("gap") is None:
-        options["gap"] = min(max(0.1 * (1.0 - share), _GAPS[0]), _GAPS[1])
-    search = _Search(scenario.without_array.model_copy(update={"airframe": None}), share, options)
+        options["gap"] = min(max(0.1 * (1.0 - share), LEAST_GAP), _GAP)
+    search = TiltSearch(scenario.without_array.model_copy(update={"airframe": None}), share, options)
+    _uninterrupted(search.whole)
     mounts = []
     for done, mount_deg in enumerate(mounts_deg, start=1):
         mounts.append(search.sides(mount_deg))
@@ -158,7 +167,7 @@ def least_tilt(
         omnidirectional=search.whole,
         mounts=tuple(mounts),
         best=best,
-        rigour=max(search.rigours, key=list(Rigour).index),
+        rigour=search.rigour,
         seconds=time.perf_counter() - began,
     )
 
@@ -194,9 +203,9 @@ def values_by_angle(
     angles_deg, values = np.linspace(0.0, 90.0, _ANGLES), []
     for done, angle_deg in enumerate(angles_deg.tolist(), start=1):
         level = Airframe(tilt_max_deg=0.0, mount_deg=angle_deg)
-        options.setdefault("gap", _GAPS[1])
+        options.setdefault("gap", _GAP)
         try:
-            result = _uninterrupted(scenario.model_copy(update={"airframe": level}), options)
+            result = _uninterrupted(solve(scenario.model_copy(update={"airframe": level}), **options))
             values.append(result.objective.value)
         except SolveError:  # no pose at that angle reaches every node
             values.append(0.0)
@@ -213,90 +222,43 @@ def angle_from_vertical_deg(result: Result) -> float:
     return math.degrees(math.acos(min(1.0, max(-1.0, upwards))))
 
 
-def _uninterrupted(scenario: Scenario, options: SolveKeywords) -> Result:
-    """Solve, and go on with an interrupt that ended a proof."""
-    result = solve(scenario, **options)
-    if result.interrupted:
-        raise KeyboardInterrupt
-    return result
-
-
-class _Search:
-    """The solves of one scenario without an airframe."""
-
-    def __init__(self, scenario: Scenario, share: float, options: SolveKeywords) -> None:
-        self.scenario, self.options = scenario, options
-        self.whole = _uninterrupted(scenario, options)
-        self.target = share * self.whole.objective.value
-        self.rigours = {self.whole.objective.rigour}
-
-    def on(self, steps: int, mount_deg: float) -> Scenario:
-        """Put a vehicle of so much tilt into the scenario."""
-        airframe = Airframe(tilt_max_deg=round(steps * STEP_DEG, 6), mount_deg=mount_deg)
-        return self.scenario.model_copy(update={"airframe": airframe})
+class TiltSearch(VehicleSearch):
+    """The solves of one scenario, at tilts in steps."""
 
     def sides(self, mount_deg: float) -> MountTilt:
-        """Find a tilt that suffices and one that does not, as near to each other as may be."""
-        good = self.reused(self.whole, mount_deg)
-        least, most, bound, steps = _MOST_STEPS if good is None else good[0], -1, None, 0
+        """Find a tilt that suffices and one that does not, as near to each other as may be.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C ended a proof.
+        """
+        good, bad = self._at_least_tilt(self.whole, mount_deg), None
+        least, most, steps = _MOST_STEPS if good is None else _steps(good), -1, 0
         while least - most > 1:
-            result = self.solved(steps, mount_deg)
-            other = None if result is None else self.reused(result, mount_deg)
+            tilt = Airframe(tilt_max_deg=_degrees(steps), mount_deg=mount_deg)
+            try:
+                result = _uninterrupted(self.solved(tilt))
+            except SolveError:  # no pose was found that reaches every node, which proves nothing
+                break
+            other = self._at_least_tilt(result, mount_deg)
             if other is not None:
-                least, good = min(other[0], steps), other
-            elif result is not None and self.is_below(result):
-                most, bound = steps, result.objective.upper_bound
+                least, good = min(_steps(other), steps), other
+            elif self.judge(result) is Verdict.FALLS_SHORT:
+                most, bad = steps, result
             else:
                 break
             steps = (least + most) // 2
         return MountTilt(
             mount_deg=mount_deg,
-            suffices_deg=None if good is None else round(least * STEP_DEG, 6),
-            value=None if good is None else good[1],
-            pose=None if good is None else good[2],
-            fails_deg=None if most < 0 else round(most * STEP_DEG, 6),
-            upper_bound=bound,
+            suffices_deg=None if good is None else _degrees(least),
+            result=good,
+            fails_deg=None if bad is None else _degrees(most),
+            upper_bound=None if bad is None else bad.objective.upper_bound,
         )
 
-    def solved(self, steps: int, mount_deg: float) -> Result | None:
-        """Search with a tilt, and where that misses the target prove that all do; None if nothing is found.
-
-        Where the value is far below the target a wide gap proves it, which takes few boxes.
-        """
-        scenario = self.on(steps, mount_deg)
-        try:
-            result = _uninterrupted(scenario, self.options | {"certify": False})
-            for share in _SHARES:
-                value = result.objective.value
-                if value >= self.target or self.is_below(result):
-                    break
-                missing = self.target / value - 1.0 if value > 0.0 else math.inf
-                gap = min(max(share * missing, _GAPS[0]), _WIDEST_GAP)
-                result = _uninterrupted(scenario, self.options | {"gap": gap})
-                self.rigours.add(result.objective.rigour)
-                if result.status is not Status.CERTIFIED:
-                    break
-        except SolveError:  # no pose was found that reaches every node, which proves nothing
-            return None
-        return result
-
-    def is_below(self, result: Result) -> bool:
-        """Check that a bound is proved and is below the target."""
-        return result.objective.upper_bound is not None and result.objective.upper_bound < self.target
-
-    def reused(self, result: Result, mount_deg: float) -> tuple[int, float, Pose] | None:
-        """Take a result's pose at the least tilt that it needs; None where it misses the target.
-
-        Returns:
-            That tilt in steps, the value and the pose.
-        """
-        free = self.on(_MOST_STEPS, mount_deg)
-        orientation = result.pose.orientation(free.antenna_record)
-        pose = Pose.of_airframe(free, result.pose.position_m, orientation)
-        value = Quantity.of(free).least(evaluate(free, pose))
-        if value < self.target * (1.0 - _ROUNDING):
-            return None
-        return math.ceil(math.degrees(pose.tilt_rad) / STEP_DEG - _SAME_TILT), value, pose
+    def _at_least_tilt(self, result: Result, mount_deg: float) -> Result | None:
+        """Fly a result's pose by the least tilt; None where it does not suffice."""
+        flown = self.flown(result, Airframe(tilt_max_deg=180.0, mount_deg=mount_deg))
+        return flown if self.judge(flown) is Verdict.SUFFICES else None
 
     def best(self) -> MountTilt:
         """Find the mount that needs least tilt: on a grid, or else that of the best pose."""
@@ -307,3 +269,18 @@ class _Search:
             if found[-1].suffices_deg == 0.0:
                 break
         return min(found, key=lambda each: math.inf if each.suffices_deg is None else each.suffices_deg)
+
+
+def _steps(result: Result) -> int:
+    return math.ceil(math.degrees(result.pose.tilt_rad) / STEP_DEG - _SAME_TILT)
+
+
+def _degrees(steps: int) -> float:
+    return round(steps * STEP_DEG, 6)
+
+
+def _uninterrupted(result: Result) -> Result:
+    """Go on with an interrupt that ended a proof."""
+    if result.interrupted:
+        raise KeyboardInterrupt
+    return result

@@ -16,13 +16,13 @@ import numpy as np
 
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.objectives import Quantity
-from nullpose.physics import evaluate
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
 from nullpose.solver import Result, Rigour, SolveKeywords, SolveOptions, Status, solve
-from nullpose.solver.objective import objective_of, status_of
+from nullpose.solver.objective import status_of
 from nullpose.solver.result import Stats
 from nullpose.study.case import Case
+from nullpose.study.evaluation import evaluated
 from nullpose.study.table import ResultRow, ResultTable
 
 _FREER = {
@@ -68,24 +68,13 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
     airframe = scenario.airframe
     if airframe is not None and best.pose.tilt_rad > airframe.tilt_max_rad:
         return None
-    links = tuple(evaluate(scenario, best.pose))
-    quantity = Quantity.of(scenario)
-    value = quantity.least(links)
-    ratio_bound = 2.0**bound if quantity.is_rate else bound
-    objective = objective_of(scenario, value, ratio_bound, Rigour.FLOATING_POINT)
+    here = evaluated(best, scenario, best.pose, bound)
+    objective = replace(here.objective, rigour=Rigour.FLOATING_POINT)
     status, _ = status_of(objective, solve_options.target, "not solved by itself")
+    stats = Stats(wall_s=time.perf_counter() - began, starts=0, evaluations=1, boxes=0)
     if status is not Status.CERTIFIED:
         return None
-    return replace(
-        best,
-        scenario=scenario,
-        status=status,
-        reason="",
-        objective=objective,
-        links=links,
-        proofs=(),
-        stats=Stats(wall_s=time.perf_counter() - began, starts=0, evaluations=1, boxes=0),
-    )
+    return replace(here, scheme=best.scheme, note=best.note, status=status, objective=objective, stats=stats)
 
 
 _DIGITS = 12  # significant digits kept, so that a decade lands on 0.01 and not on 0.009999999999999998

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from enum import StrEnum
 from types import MappingProxyType
 from typing import Unpack
 
@@ -13,13 +12,16 @@ from nullpose.errors import SolveError
 from nullpose.files import PlainTable
 from nullpose.objectives import USUAL, Quantity
 from nullpose.problem.schemes import Scheme
-from nullpose.scenario import Array, Scenario, require_scenario
+from nullpose.scenario import Airframe, Array, Scenario, require_scenario
 from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
 from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
-from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, Case
+from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, TILTS_DEG, Case
+from nullpose.study.least_tilt import TiltSearch
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
+from nullpose.study.vehicle_search import Verdict, judged
 
+BEST_MOUNT = "-best"  # how the names of vehicles with the best mount end
 TOLERANCE = 0.01  # a vehicle suffices if it reaches what the omnidirectional one can, but for this share
 _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
 
@@ -29,7 +31,7 @@ ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries
 _ARRAY = Array(elements=ARRAY_SIZES[0], layout="linear", spacing_wavelengths=0.5)
 
 
-def cases_of(scenario: Scenario) -> tuple[Case, ...]:
+def cases_of(scenario: Scenario) -> Sequence[Case]:
     """List the vehicles to try for a scenario: its own among the usual ones, if it is none of them.
 
     Two vehicles are the same if they reach the same axes. Arrays are for hearing nodes only, with the paper's
@@ -39,12 +41,11 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     Args:
         scenario: with or without an airframe or an array.
     """
-    vehicles, array = AIRFRAME_CASES, scenario.array or _ARRAY
+    vehicles: Sequence[Case] = AIRFRAME_CASES
+    array = scenario.array or _ARRAY
     of_file = Case(name=FILE_VEHICLE, airframe=scenario.airframe)
     if of_file.airframe is not None and not of_file.usual:
-        tilts_rad = [case.airframe.tilt_max_rad for case in vehicles if case.airframe]
-        place = bisect_right(tilts_rad, of_file.airframe.tilt_max_rad)
-        vehicles = (*vehicles[:place], of_file, *vehicles[place:])
+        vehicles = _placed(vehicles, of_file)
     if scenario.objective != USUAL or scenario.states_antennas or scenario.has_channels:
         return vehicles
     sized = (array.model_copy(update={"elements": size}) for size in sorted({*ARRAY_SIZES, array.elements}))
@@ -75,7 +76,12 @@ def compare_schemes(
     reasons = {scheme: scheme.not_applicable(scenario) for scheme in Scheme}
     cases = [Case(name=scheme.value, scheme=scheme) for scheme in Scheme if not reasons[scheme]]
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
-    return _solved(scenario, cases, options, on_progress, left_out)
+    options["gap"] = SolveOptions(**options).of(scenario).target
+
+    def solve_case(case: Case, options: SolveKeywords) -> Result:
+        return solve(scenario, case.name, **options)
+
+    return _table(scenario, cases, solve_case, options, on_progress, left_out)
 
 
 def compare_airframes(
@@ -87,14 +93,16 @@ def compare_airframes(
 ) -> ResultTable:
     """Solve a scenario for vehicles that differ in tilt and in the dipole's mount, and for arrays.
 
-    The scenario's own airframe is tried as well if it states one that is none of the others. Where it states
-    errors, what each dipole guarantees is worked out at the pose that is best without them, and at the pose
-    that guarantees most. After an interrupt during a proof the remaining vehicles are solved without one.
+    The scenario's own airframe is tried as well if it states one that is none of the others. The best mount
+    of the dipole is that of :func:`nullpose.least_tilt`. Unless a gap is stated, lesser vehicles are proved
+    only as near as it takes to tell whether they suffice. Where the scenario states errors, what each
+    dipole guarantees is worked out at the pose that is best without them, and at the pose that guarantees
+    most. After an interrupt during a proof the remaining vehicles are solved without one.
 
     Args:
         scenario: what to solve.
         cases: the vehicles, by the tilt that they take, the omnidirectional one among them; without it
-            those of :func:`cases_of`.
+            those of :func:`cases_of`, and those with the best mount where an antenna has an axis.
         on_progress: called after each vehicle with how many are done and how many there are.
         options: as for :func:`nullpose.solver.solve`.
 
@@ -107,33 +115,67 @@ def compare_airframes(
         >>> scenario = nullpose.load("examples/paper.toml")
         >>> found = nullpose.compare_airframes(scenario)
         >>> nullpose.study.least_sufficient(found).name
-        'tilt-10-horizontal'
+        'level-best'
     """
-    vehicles = cases_of(scenario) if cases is None else cases
-    return _solved(scenario, vehicles, options, on_progress, {})
+    require_scenario(scenario)
+    is_stated = options.get("gap") is not None
+    options["gap"] = SolveOptions(**options).of(scenario).target
+    whole = AIRFRAME_CASES[-1].on(scenario)
+    search = TiltSearch(whole, 1.0 - TOLERANCE, options)
+    if cases is None:
+        cases = cases_of(scenario)
+        if scenario.antenna_record.is_axisymmetric:
+            cases = _with_best_mount(cases, search.best().mount_deg)
+
+    def solve_case(case: Case, options: SolveKeywords) -> Result:
+        search.options["certify"] = options.get("certify", True)
+        if case.name == OMNIDIRECTIONAL:
+            return search.whole
+        if case.airframe is None or is_stated:
+            return solve(case.on(scenario), **options)
+        return search.solved(case.airframe)
+
+    return _table(scenario, cases, solve_case, options, on_progress, {})
 
 
-def _solved(
+def _with_best_mount(cases: Sequence[Case], mount_deg: float) -> Sequence[Case]:
+    """Add each tilt with the dipole at a mount, unless that is upright or flat."""
+    for tilt_deg in TILTS_DEG if 0.0 < mount_deg < 90.0 else ():
+        airframe = Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
+        case = Case(name=f"{f'tilt-{tilt_deg}' if tilt_deg else 'level'}{BEST_MOUNT}", airframe=airframe)
+        cases = _placed(cases, case)
+    return cases
+
+
+def _placed(cases: Sequence[Case], case: Case) -> Sequence[Case]:
+    """Put a vehicle behind those that take no more tilt."""
+    tilts_rad = [math.inf if each.airframe is None else each.airframe.tilt_max_rad for each in cases]
+    place = bisect_right(tilts_rad, case.airframe.tilt_max_rad if case.airframe else math.inf)
+    return (*cases[:place], case, *cases[place:])
+
+
+def _table(
     scenario: Scenario,
     cases: Sequence[Case],
+    solve_case: Callable[[Case, SolveKeywords], Result],
     options: SolveKeywords,
     on_progress: Callable[[int, int], None] | None,
     left_out: dict[str, str],
 ) -> ResultTable:
     """Solve a scenario in each case; leave out vehicles without a pose, but for the omnidirectional one."""
     chosen = SolveOptions(**options).of(scenario)
-    options["gap"] = chosen.target
     rows: list[ResultRow] = []
     for done, case in enumerate(cases, start=1):
         try:
-            result = solve(case.on(scenario), case.scheme or Scheme.OPTIMUM, **options)
+            result = solve_case(case, options)
         except SolveError as error:
             if case.airframe is None or case.name == OMNIDIRECTIONAL:
                 raise
             left_out[case.name] = str(error)
         else:
             options["certify"] = options.get("certify", True) and not result.interrupted
-            has_guarantee = case.airframe is not None and scenario.is_uncertain
+            is_usual = case.airframe is not None and not case.name.endswith(BEST_MOUNT)
+            has_guarantee = is_usual and scenario.is_uncertain
             is_interrupted = any(row.interrupted for row in (*rows, result))
             kept = _guaranteed(result, None if is_interrupted else options) if has_guarantee else None
             rows.append(ResultRow.of(math.nan, result, case, kept))
@@ -159,27 +201,12 @@ def difference(table: ResultTable, row: ResultRow) -> float:
     return quantity.in_unit(row.objective.value) - quantity.in_unit(whole.objective.value)
 
 
-class Verdict(StrEnum):
-    """Whether a vehicle suffices in place of the omnidirectional one, so far as the bounds prove it."""
-
-    SUFFICES = "yes"
-    FALLS_SHORT = "no"
-    NOT_PROVED = "not proved"
-
-
 def verdict_on(table: ResultTable, row: ResultRow, tolerance: float = TOLERANCE) -> Verdict:
-    """Decide whether a vehicle reaches what the omnidirectional one can, but for a relative tolerance.
-
-    It suffices if its value is close to the omnidirectional vehicle's upper bound, and falls short if its own
-    upper bound is below the value that the omnidirectional one needs at least.
-    """
-    whole, stated, share = table.of(OMNIDIRECTIONAL)[0], row.objective, 1.0 - tolerance
-    best, ceiling = whole.objective.value, whole.objective.upper_bound
-    if best > 0.0 and ceiling is not None and (row is whole or stated.value >= share * ceiling):
+    """Decide whether a vehicle reaches what the omnidirectional one can, but for a relative tolerance."""
+    whole = table.of(OMNIDIRECTIONAL)[0]
+    if row is whole and row.objective.value > 0.0 and row.objective.upper_bound is not None:
         return Verdict.SUFFICES
-    if stated.upper_bound is not None and stated.upper_bound < share * best:
-        return Verdict.FALLS_SHORT
-    return Verdict.NOT_PROVED
+    return judged(row.objective, whole.objective, 1.0 - tolerance)
 
 
 def least_sufficient(table: ResultTable) -> ResultRow | None:
