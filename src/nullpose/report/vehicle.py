@@ -22,12 +22,11 @@ def vehicle_view(found: LeastTilt) -> View:
             f"bound there ({quantity.unit})": [_value(quantity, each.upper_bound) for each in mounts],
         }
     )
-    whole = found.omnidirectional.objective.value
+    whole, target = (_value(quantity, each) for each in (found.omnidirectional.objective.value, found.target))
     kind = "" if quantity.is_rate else " (as a power ratio)"
     lines = [
-        f"Target: {_value(quantity, found.target)} {quantity.unit}, {100.0 * found.share:.6g} %{kind} of the bound "
-        f"on the {quantity.smallest} with any attitude, where {_value(quantity, whole)} {quantity.unit} are "
-        "reached.",
+        f"Target: {target} {quantity.unit}, {100.0 * found.share:.6g} %{kind} of the bound on the "
+        f"{quantity.smallest} with any attitude, where {whole} {quantity.unit} are reached.",
         "Mount: angle between the antenna and the body's vertical, 0 upright, 90 flat. Yaw is free, and each "
         "mount has its own best position.",
         "Least tilt: a pose with it reaches the target. Too little: no pose with it reaches that share of "
