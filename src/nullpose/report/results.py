@@ -39,13 +39,18 @@ def azimuth_text(pose: Pose, is_even: bool = True) -> str:
 def pose_cells(scenario: Scenario, pose: Pose) -> dict[str, str]:
     """Write position, attitude and axis of a pose as cells of a column."""
     is_even = scenario.antenna_record.is_even
-    angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
-    angles |= {"vehicle's tilt": pose.tilt_rad, "axis tilt": tilt_rad(pose, is_even)}
+    tilts = {"vehicle's tilt": pose.tilt_rad, "axis tilt": tilt_rad(pose, is_even)}
     return {
         **{f"{axis} (m)": f"{x:z.3f}" for axis, x in zip("xyz", pose.position_m, strict=True)},
-        **{f"{name} (deg)": f"{math.degrees(angle_rad):z.2f}" for name, angle_rad in angles.items()},
+        **{f"{name} (deg)": f"{angle_deg:z.2f}" for name, angle_deg in _angles_deg(pose).items()},
+        **{f"{name} (deg)": f"{math.degrees(angle_rad):z.2f}" for name, angle_rad in tilts.items()},
         "axis azimuth (deg)": azimuth_text(pose, is_even),
     }
+
+
+def _angles_deg(pose: Pose | FramePose) -> dict[str, float]:
+    angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
+    return {name: math.degrees(angle_rad) for name, angle_rad in angles.items()}
 
 
 def result_view(result: Result) -> View:
@@ -80,11 +85,10 @@ def evaluation_view(evaluation: Evaluation) -> View:
     step = -(-len(results) // _SHOWN)
     details = [result.details for result in results if isinstance(result.details, GivenDetails)]
     shown, poses = results[::step], [result.pose for result in results[::step]]
-    attitudes = [(pose.roll_rad, pose.pitch_rad, pose.yaw_rad) for pose in poses]
     columns: dict[str, list[str | None]] = {
         "pose": [str(index) for index in range(1, len(results) + 1, step)],
         "position (m)": [" ".join(f"{x:z.2f}" for x in pose.position_m) for pose in poses],
-        "attitude (deg)": [" ".join(f"{math.degrees(x):z.1f}" for x in angles) for angles in attitudes],
+        "attitude (deg)": [" ".join(f"{x:z.1f}" for x in _angles_deg(pose).values()) for pose in poses],
         f"{quantity.short} ({quantity.unit})": [
             f"{quantity.in_unit(result.objective.value):.4f}" for result in shown
         ],
@@ -120,11 +124,9 @@ def result_head(result: Result, *more: str) -> View:
     if isinstance(result.details, GivenDetails):
         bound = f"{bound_text(result.details.best.objective)} {objective.quantity.unit}"
         lines = (sure and f"upper bound of every pose {bound}", sure, *more)
-    label = (
-        f"{capitalised(result.label)}{', guaranteed' if isinstance(result.details, RobustDetails) else ''}"
-    )
+    guaranteed = ", guaranteed" if isinstance(result.details, RobustDetails) else ""
     value = f"{objective.quantity.smallest} {value_words(objective)}"
-    return head(result.scenario.name, label, value, lines)
+    return head(result.scenario.name, f"{capitalised(result.label)}{guaranteed}", value, lines)
 
 
 def _robust_view(result: Result, details: RobustDetails) -> View:
@@ -158,11 +160,10 @@ def _guarded_cells(objective: Objective, guarded: GuardedPose) -> dict[str, str]
         "lowest found": guarded.worst,
         "without errors": guarded.nominal,
     }
-    angles = (pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
     return {
         **{f"{name} ({quantity.unit})": f"{quantity.in_unit(value):.4f}" for name, value in values.items()},
         "position (m)": ", ".join(f"{x:z.3f}" for x in pose.position_m),
-        "roll, pitch, yaw (deg)": ", ".join(f"{math.degrees(angle_rad):z.2f}" for angle_rad in angles),
+        "roll, pitch, yaw (deg)": ", ".join(f"{x:z.2f}" for x in _angles_deg(pose).values()),
         "axis azimuth (deg)": azimuth_text(pose),
         "worst node": guarded.binding_node,
     }
@@ -181,8 +182,7 @@ def _antenna_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]
 
 
 def _attitude_words(pose: Pose | FramePose) -> str:
-    angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
-    return ", ".join(f"{name} {math.degrees(angle_rad):z.3f} deg" for name, angle_rad in angles.items())
+    return ", ".join(f"{name} {angle_deg:z.3f} deg" for name, angle_deg in _angles_deg(pose).items())
 
 
 def _in_brackets(numbers: Iterable[float]) -> str:
