@@ -42,7 +42,8 @@ def claims_page(reproduction: Reproduction, claims: tuple[Claim, ...]) -> str:
     verdicts = [
         {"claim": each.claim, "verdict": f"**{each.verdict}**", "where": _where(each)} for each in claims
     ]
-    lines = [*figure2_lines(reproduction.table), _BEYOND]
+    searched = "Maximum gain, as printed: best found by search, no upper bound."
+    lines = [*figure2_lines(reproduction.table), searched, _BEYOND]
     blocks = [_HEAD, "\n".join(f"- {line}" for line in lines), _table(verdicts)]
     blocks += [block for claim in claims for block in _section(claim)]
     return "\n\n".join(filter(None, blocks)) + "\n"

@@ -30,7 +30,7 @@ def test_figure2_shows_every_curve_in_its_colour(reproduction: Reproduction) -> 
     assert picture[..., :3].std() > 0.05
     for curve in CURVES.values():
         assert share_near(picture, curve.colour) > 2e-4, curve.label
-    assert share_near(picture, PRINTED_COLOUR) == 0.0
+    assert share_near(picture, PRINTED_COLOUR) < 1e-5
     apart = imread(reproduction.files[0].with_name("figure2-printed.png"))
     for colour in (PRINTED_COLOUR, CURVES["maximum-gain"].colour):
         assert share_near(apart, colour) > 2e-4, colour
