@@ -19,6 +19,7 @@ extensions = [
     "docstrings",
     "offline_math",
     "tables",
+    "twins_of_figures",
     "validation",
 ]
 exclude_patterns = ["_build", "_ext"]
@@ -52,6 +53,8 @@ nitpick_ignore_regex = [
 html_theme = "furo"
 html_title = "nullpose"
 html_static_path = ["_static"]
+html_favicon = "_static/logo.svg"
+html_theme_options = {"light_logo": "logo.svg", "dark_logo": "logo-dark.svg"}
 html_css_files = ["nullpose.css"]
 html_copy_source = False
 html_show_copyright = False

@@ -4,6 +4,7 @@
 """
 
 import shutil
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -12,10 +13,13 @@ from claims.page import check_claims, claims_page
 import nullpose
 from nullpose.paper.reproduce import reproduce
 from nullpose.report.figures.poses import draw_result
-from nullpose.report.figures.style import write_figure_file
 from nullpose.solver import solve
 
 DOCS = Path(__file__).parent
+sys.path.append(str(DOCS / "figures"))
+
+from twins import darken, write  # noqa: E402
+
 IMAGES = DOCS / "images"
 EXAMPLES = DOCS.parent / "examples"
 
@@ -27,7 +31,7 @@ def draw_examples() -> None:
     results["robust"] = solve(nullpose.load(EXAMPLES / "robust.toml"), robust=True)
     results["array"] = solve(nullpose.load(EXAMPLES / "array.toml"))
     for name, result in results.items():
-        write_figure_file(draw_result(result), IMAGES / f"{name}.png")
+        write(draw_result(result), name)
 
 
 def main() -> None:
@@ -35,8 +39,8 @@ def main() -> None:
     draw_examples()
     with TemporaryDirectory() as folder:
         reproduction = reproduce(Path(folder))
-        for name in ("figure2.png", "poses.png"):
-            shutil.copyfile(Path(folder) / name, IMAGES / name)
+        for name in ("figure2.png", "figure2-printed.png", "poses.png"):
+            darken(Path(shutil.copyfile(Path(folder) / name, IMAGES / name)))
     page = claims_page(reproduction, check_claims(reproduction))
     (DOCS / "claims.md").write_text(page, encoding="utf-8")
 

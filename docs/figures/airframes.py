@@ -12,12 +12,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from twins import write
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import INK, VEHICLES, Curve, house_style
 
 FOLDER = Path(__file__).parent
-IMAGES = FOLDER.parent / "images"
 DIPOLES = (
     "level-vertical",
     "level-horizontal",
@@ -47,16 +47,6 @@ def read(name: str) -> Table:
     return {
         key: np.array([row[key] if key == "case" else float(row[key]) for row in rows]) for key in rows[0]
     }
-
-
-def write(figure: Figure, name: str) -> None:
-    """Write a figure as PNG.
-
-    Args:
-        figure: what to write.
-        name: of the table that it shows.
-    """
-    figure.savefig(IMAGES / f"airframes-{name}.png", dpi=170, facecolor="white")
 
 
 def line(axes: Axes, x: FloatArray, y: FloatArray, look: Curve, *, every: int = 6, start: int = 0) -> None:
@@ -96,9 +86,9 @@ def draw_paper() -> None:
     axes.set_ylim(0.0, 1.55)
     axes.margins(x=0.02)
     axes.set_xlabel("jamming-to-transmission power ratio  $P_M/P$")
-    axes.set_ylabel("smallest SINR over the nodes  (power ratio)")
+    axes.set_ylabel("smallest SINR over the nodes (power ratio)")
     figure.legend(loc="outside upper center", ncols=3, frameon=False, handlelength=3.4)
-    write(figure, "paper")
+    write(figure, "airframes-paper", 170)
 
 
 def draw_tilt() -> None:
@@ -126,12 +116,12 @@ def draw_tilt() -> None:
             )
         axes.set_title(title, fontsize=9.0)
         axes.set_xticks([0, 15, 30, 45, 60, 75, 90])
-        axes.set_xlabel("largest tilt  (degrees)")
-    panels[0].set_ylabel("smallest SINR over the nodes  (power ratio)")
+        axes.set_xlabel("largest tilt (degrees)")
+    panels[0].set_ylabel("smallest SINR over the nodes (power ratio)")
     panels[0].set_ylim(0.0, 1.55)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False)
-    write(figure, "tilt")
+    write(figure, "airframes-tilt", 170)
 
 
 def draw_arrays() -> None:
@@ -151,14 +141,14 @@ def draw_arrays() -> None:
     axes.set_yticks([0.5, 1, 2, 4, 8, 16], ["0.5", "1", "2", "4", "8", "16"])
     axes.minorticks_off()
     axes.set_xlabel("elements of the array")
-    axes.set_ylabel("smallest SINR  (power ratio)")
+    axes.set_ylabel("smallest SINR (power ratio)")
     axes.set_title("paper's scene, $P_M/P$ = 100", fontsize=9.0)
     draw_array_shares(panels)
     looks = {"omnidirectional dipole": whole}
     looks |= {f"{size} elements": shade for size, shade in zip(FIELD_SIZES, SIZE_SHADES, strict=True)}
     handles = [Line2D([], [], color=shade, linewidth=1.8, label=label) for label, shade in looks.items()]
     figure.legend(handles=handles, loc="outside upper center", ncols=4, frameon=False, handlelength=3.0)
-    write(figure, "arrays")
+    write(figure, "airframes-arrays", 170)
 
 
 def draw_array_shares(panels: list[Axes]) -> None:
@@ -176,7 +166,7 @@ def draw_array_shares(panels: list[Axes]) -> None:
             gain_db = 10.0 * np.log10(arrays[f"array-{size}"][chosen] / dipole[chosen])
             steps(axes, gain_db, color=shade, linewidth=1.5)
         axes.axvline(0.0, color=VEHICLES["omnidirectional"].colour, linewidth=1.5)
-        axes.set_xlabel("gain over the\nomnidirectional dipole  (dB)")
+        axes.set_xlabel("gain over the\nomnidirectional dipole (dB)")
         axes.set_title(f"{chosen.sum()} fields, {jammers} jammer{'s' * (jammers > 1)}", fontsize=9.0)
         axes.set_xlim(left=-0.06 * axes.get_xlim()[1])  # the dipole's line stands off the axis
         axes.set_ylim(0.0, 1.02)
@@ -217,8 +207,8 @@ def draw_errors() -> None:
     figure = Figure(figsize=(7.6, 3.9), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
     kinds = {
-        "attitude_error_deg": "attitude error  (degrees)",
-        "jammer_radius_m": "radius of the ball that the jammer is in  (m)",
+        "attitude_error_deg": "attitude error (degrees)",
+        "jammer_radius_m": "radius of the ball that the jammer is in (m)",
     }
     for axes, (kind, words) in zip(panels, kinds.items(), strict=True):
         other = next(name for name in kinds if name != kind)
@@ -257,10 +247,10 @@ def draw_errors() -> None:
         axes.set_xlabel(words)
         axes.margins(x=0.02)
         axes.set_ylim(0.0, 1.3)
-    panels[0].set_ylabel("guaranteed smallest SINR  (power ratio)")
+    panels[0].set_ylabel("guaranteed smallest SINR (power ratio)")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=2, frameon=False, handlelength=3.4)
-    write(figure, "errors")
+    write(figure, "airframes-errors", 170)
 
 
 def draw_fields() -> None:
@@ -284,11 +274,11 @@ def draw_fields() -> None:
     axes.set_ylim(0.0, 1.02)
     axes.set_xticks([-12, -9, -6, -3, 0], [f"{MINUS}12\nor less", f"{MINUS}9", f"{MINUS}6", f"{MINUS}3", "0"])
     axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
-    figure.supxlabel("against the omnidirectional vehicle  (dB)", fontsize=9.5)
+    figure.supxlabel("against the omnidirectional vehicle (dB)", fontsize=9.5)
     figure.supylabel("CDF over fields", fontsize=9.5)
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False, handlelength=3.4)
-    write(figure, "fields")
+    write(figure, "airframes-fields", 170)
 
 
 if __name__ == "__main__":

@@ -16,15 +16,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MultipleLocator
+from twins import write
 
 import nullpose
 from nullpose.certificate.boxes import boxes_of
 from nullpose.certificate.certificate import AFFINE, FAR, KEPT_OUT, TOWARDS, WORLD
-from nullpose.report.figures.style import GREY, INK, house_style
+from nullpose.report.figures.style import GREY, INK, JAMMER, MARKS, NODE, house_style
 from nullpose.solver.certificate_from_proof import certificate_of
 
 DOCS = Path(__file__).parents[1]
-PICTURE = DOCS / "images" / "certificate-boxes.png"
 TABLE = DOCS / "figures" / "certificate-boxes.csv"
 
 SCENARIO = nullpose.load(DOCS.parent / "examples" / "paper.toml")
@@ -41,7 +41,7 @@ FILLS = {
     AFFINE: ("#8ed1b8", "bounded for the vertical axis"),
     KEPT_OUT: ("#d9a3c0", "inside the keep-out radius"),
 }
-POSE = "#d55e00"
+POSE = INK
 WINDOW_M = 1.25  # half the width of the closer views
 MOST_M = 43.0
 
@@ -93,9 +93,11 @@ def draw_floor(axes: Axes, solution: nullpose.Result, size: float) -> set[int]:
     (x, y), (width, depth) = tree.root_m[0, :2], np.ptp(tree.root_m[:, :2], axis=0)
     axes.add_patch(Rectangle((x, y), width, depth, fill=False, edgecolor=INK, linewidth=0.9))
     x, y, _ = solution.pose.position_m
-    axes.plot(x, y, "*", color=POSE, markeredgecolor="white", markeredgewidth=0.6, markersize=size, zorder=5)
+    axes.plot(x, y, "o", color=POSE, markeredgecolor="white", markeredgewidth=0.6, markersize=size, zorder=5)
     x, y, _ = SCENARIO.jammers[0].position_m
-    axes.plot(x, y, "x", color=INK, markersize=0.4 * size, markeredgewidth=1.3, zorder=6)
+    axes.plot(
+        x, y, MARKS["jammer"][1], color=JAMMER, markersize=0.6 * size, markeredgecolor="white", zorder=6
+    )
     axes.set_aspect("equal")
     axes.grid(visible=False)
     return set(tests.tolist())
@@ -108,15 +110,15 @@ def draw_whole(axes: Axes, solution: nullpose.Result) -> None:
         axes: where to draw.
         solution: with a proof of one tree.
     """
-    draw_floor(axes, solution, 12.0)
+    draw_floor(axes, solution, 8.0)
     for node in SCENARIO.nodes:
         x, y, _ = node.position_m
-        axes.plot(x, y, "o", color=INK, markersize=5)
+        axes.plot(x, y, MARKS["node"][1], color=NODE, markersize=5)
         axes.annotate(node.name, (x, y), xytext=(7, 0), textcoords="offset points", va="center", fontsize=8.5)
     axes.set_xlim(-MOST_M, MOST_M)
     axes.set_ylim(-6.0, 56.0)
     axes.set_title(f"{DRAWN[solution.scheme.value]}\nboxes at the lowest altitude", fontsize=9.0)
-    axes.set_ylabel("y (m)")
+    axes.set_ylabel("North y (m)")
 
 
 def draw_near(axes: Axes, solution: nullpose.Result, exponent: int) -> set[int]:
@@ -127,7 +129,7 @@ def draw_near(axes: Axes, solution: nullpose.Result, exponent: int) -> set[int]:
         solution: with a proof of one tree.
         exponent: the gap, as a power of ten.
     """
-    used = draw_floor(axes, solution, 9.0)
+    used = draw_floor(axes, solution, 7.0)
     x, y, _ = solution.pose.position_m
     axes.set_xlim(x - WINDOW_M, x + WINDOW_M)
     axes.set_ylim(y - WINDOW_M, y + WINDOW_M)
@@ -156,18 +158,16 @@ def draw() -> Figure:
         assert solution is not None
         draw_whole(panels[row, 0], solution)
         for axes in panels[-1]:
-            axes.set_xlabel("x (m)")
+            axes.set_xlabel("East x (m)")
     handles: list[Patch | Line2D] = [
         Patch(facecolor=fill, edgecolor=GREY, linewidth=0.5, label=label)
         for test, (fill, label) in FILLS.items()
         if test in used
     ]
     handles += [
-        Line2D([], [], marker="*", color=POSE, markersize=11, linestyle="", label="pose found"),
-        Line2D(
-            [], [], marker="x", color=INK, markeredgewidth=1.4, markersize=5, linestyle="", label="jammer"
-        ),
-        Line2D([], [], marker="o", color=INK, markersize=5, linestyle="", label="node"),
+        Line2D([], [], marker="o", color=POSE, markersize=7, linestyle="", label="drone, pose found"),
+        Line2D([], [], marker="X", color=JAMMER, markersize=7, linestyle="", label="jammer"),
+        Line2D([], [], marker="s", color=NODE, markersize=6, linestyle="", label="node"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=8.5)
     return figure
@@ -177,7 +177,7 @@ def main() -> None:
     """Write the table and the picture."""
     write_table()
     with house_style():
-        draw().savefig(PICTURE, dpi=200, facecolor="white", metadata={"Software": None})
+        write(draw(), "certificate-boxes")
 
 
 if __name__ == "__main__":

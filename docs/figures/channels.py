@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from twins import write
 
 import nullpose
 from nullpose.channel import ENVIRONMENTS
 from nullpose.channel.elevation import AVERAGES
-from nullpose.report.figures.style import GREY, Curve, house_style, line_style
+from nullpose.report.figures.style import GREY, INK, NODE, Curve, house_style, line_style
 
 FOLDER = Path(__file__).parent
-PICTURE = FOLDER.parent / "images" / "channels.png"
 PAPER = nullpose.load(FOLDER.parents[1] / "examples" / "paper.toml")
 GAP = 1e-4
 STRONG, STRONGEST = 100.0, 1e4
@@ -33,8 +33,8 @@ MINUS = "\N{MINUS SIGN}"
 
 # The distance between the nodes, the marks, and how far off a line's middle they are.
 LOOKS = (
-    (50.0, Curve("paper's scene, 50 m", "#0a3fd6", "", "o", 1.5, 3.0), -0.14),
-    (500.0, Curve("stretched to 500 m", "#d55e00", "", "D", 1.5, 3.1), 0.14),
+    (50.0, Curve("paper's scene, 50 m", INK, "", "o", 1.5, 3.0), -0.14),
+    (500.0, Curve("stretched to 500 m", NODE, "", "D", 1.5, 3.1), 0.14),
 )
 LIMITS = ((-0.6, 18.0), (0.0, 0.63), (-0.17, 0.05))
 TICKS = ((0, 5, 10, 15), (0, 0.2, 0.4, 0.6), (-0.1, 0))
@@ -308,7 +308,7 @@ def main() -> None:
         write_rows(f"channels-{scene.replace(' ', '-')}", poses_table(rows))
     write_rows("channels-claims", claims_table(by_scene))
     with house_style():
-        draw(by_scene).savefig(PICTURE, dpi=200, facecolor="white", metadata={"Software": None})
+        write(draw(by_scene), "channels")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from twins import write
 
 import nullpose
 from nullpose.report.figures.style import house_style
@@ -20,7 +21,6 @@ from nullpose.report.figures.vehicle import MOUNT_CURVES
 from nullpose.study.monte_carlo import StudySpec, draw_scene
 
 FOLDER = Path(__file__).parent
-IMAGE = FOLDER.parent / "images" / "least-tilt.png"
 MOUNTS_DEG = (0.0, 45.0, 90.0)
 TILTS_DEG = (0.0, 10.0, 20.0, 30.0)
 BOXES = 20_000  # of each proof: the same on every machine
@@ -151,7 +151,7 @@ def main() -> None:
     ):
         with (FOLDER / file).open("w", encoding="utf-8", newline="") as out:
             csv.writer(out, lineterminator="\n").writerows([head, *lines])
-    draw(rows).savefig(IMAGE)
+    write(draw(rows), "least-tilt", 130)
 
 
 if __name__ == "__main__":

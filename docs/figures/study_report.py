@@ -11,6 +11,8 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from twins import darken
+
 from nullpose.files import write_text
 from nullpose.report.study import report_study
 
@@ -28,7 +30,7 @@ def main(study: Path) -> None:
     with TemporaryDirectory() as folder:
         report = report_study(study, out=folder, requirement_db=REQUIREMENT_DB)
         for image in (Path(folder) / "figures").glob("*.png"):
-            shutil.copyfile(image, IMAGES / f"study-report-{image.name}")
+            darken(Path(shutil.copyfile(image, IMAGES / f"study-report-{image.name}")))
         shutil.copyfile(Path(folder) / "summary.csv", FOLDER / "study-report.csv")
         lines = (Path(folder) / "report.md").read_text(encoding="utf-8").splitlines()
     write_text(FOLDER / "study-report-answer.txt", " ".join([report.answer, *report.notes]) + "\n")
