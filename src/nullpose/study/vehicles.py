@@ -94,7 +94,7 @@ def compare_airframes(
     """Solve a scenario for vehicles that differ in tilt and in the dipole's mount, and for arrays.
 
     The scenario's own airframe is tried as well if it states one that is none of the others. The best mount
-    of the dipole is that of :func:`nullpose.least_tilt`. Unless a gap is stated, lesser vehicles are proved
+    of the dipole is that of ``nullpose.least_tilt``. Unless a gap is stated, lesser vehicles are proved
     only as near as it takes to tell whether they suffice. Where the scenario states errors, what each
     dipole guarantees is worked out at the pose that is best without them, and at the pose that guarantees
     most. After an interrupt during a proof the remaining vehicles are solved without one.
