@@ -143,11 +143,10 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
     return document(
         result_head(result, errors, result.note),
         table("", beside(cells), bold=[f"guaranteed ({quantity.unit})"]),
-        *(f"worst for the {name}: {pose.worst_case}" for name, pose in poses.items()),
-        "Guaranteed: holds for all errors within the stated limits. "
-        "Lowest found: over the errors that were tried.",
+        "Guaranteed: under all errors within the limits. Lowest found: by a search.",
+        f"The robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.\n",
+        f"worst for the robust pose: {robust.worst_case}\n",
         *(pairs(capitalised(name), frame_rows(scenario, pose.pose)) for name, pose in poses.items()),
-        f"\nThe robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.\n",
         sensitivity_view(result),
     )
 
