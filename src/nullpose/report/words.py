@@ -16,9 +16,8 @@ def airframe_words(airframe: Airframe, tilt_rad: float | None = None) -> str:
         airframe: how far it tilts and how the dipole is mounted.
         tilt_rad: how far it is tilted, if it is at a pose.
     """
-    limit = "without limit"
-    if airframe.tilt_max_rad < math.pi:
-        limit = f"at most {_degrees(airframe.tilt_max_rad)} deg"
+    is_limited = airframe.tilt_max_rad < math.pi
+    limit = f"at most {_degrees(airframe.tilt_max_rad)} deg" if is_limited else "without limit"
     used = "tilts" if tilt_rad is None else f"tilted by {abs(math.degrees(tilt_rad)):.3f} deg,"
     preset = f"{airframe.preset}: " if airframe.preset else ""
     return f"{preset}{used} {limit}; dipole {airframe.mount_deg:g} deg from upright on the body"
@@ -49,13 +48,13 @@ def place_words(place: Geodetic | Origin) -> str:
 def error_words(scenario: Scenario) -> str:
     """List the errors that a scenario states, as in ``axis 2 deg, M up to 3 m``."""
     receiver = scenario.receiver
+    hidden: list[Jammer | Eavesdropper] = [*scenario.jammers, *scenario.eavesdroppers]
+    reaches_m = {point.name: point.uncertainty_reach_m for point in hidden}
     errors = {
         f"axis {receiver.attitude_error_deg:g} deg": receiver.attitude_error_deg,
         f"position {receiver.position_error_m:g} m": receiver.position_error_m,
+        **{f"{name} up to {reach_m:g} m": reach_m for name, reach_m in reaches_m.items()},
     }
-    hidden: list[Jammer | Eavesdropper] = [*scenario.jammers, *scenario.eavesdroppers]
-    for point in hidden:
-        errors[f"{point.name} up to {point.uncertainty_reach_m:g} m"] = point.uncertainty_reach_m
     return ", ".join(words for words, size in errors.items() if size)
 
 
