@@ -99,7 +99,7 @@ def solve_scheme(
 
         if fields is None:
             raise UsageError("channel: given a function in Python; maximum gain then needs two nodes")
-        return solve_custom(scenario, list(fields.values()), options), fields
+        return solve_custom(scenario, family, list(fields.values()), options), fields
     if fields is None:
         return _by_values(record, family, options), None
     return solve_and_prove(family, list(fields.values()), options), fields

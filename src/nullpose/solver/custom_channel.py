@@ -19,7 +19,6 @@ from nullpose.channel.model import CONSTANT, CUSTOM
 from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
 from nullpose.problem.axis_field import AxisField
-from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INSIDE, INTERRUPT
@@ -43,12 +42,12 @@ class CustomSearch(PositionSearch):
 
     Args:
         scenario: with channels that are functions.
+        family: its ratios and domain.
         fields: the axis fields.
         seed: of the positions drawn.
     """
 
-    def __init__(self, scenario: Scenario, fields: Sequence[AxisField], seed: int) -> None:
-        family = build_family(scenario, any_channel=True, any_function=True)
+    def __init__(self, scenario: Scenario, family: Family, fields: Sequence[AxisField], seed: int) -> None:
         if scenario.prisms is None and np.isin(family.channels[:, 0], (CONSTANT, CUSTOM)).all():
             family = family.changed(channels=None)
         super().__init__(self.value_at, family, seed)
@@ -145,11 +144,14 @@ class CustomSearch(PositionSearch):
         return max(proof.upper_bound for proof in proofs), sum(proof.nodes for proof in proofs)
 
 
-def solve_custom(scenario: Scenario, fields: Sequence[AxisField], options: SolveOptions) -> Outcome:
+def solve_custom(
+    scenario: Scenario, family: Family, fields: Sequence[AxisField], options: SolveOptions
+) -> Outcome:
     """Search for the best pose, and bound it where every function states how it changes.
 
     Args:
         scenario: with channels that are functions in Python.
+        family: its ratios and domain.
         fields: the axis fields, one or more.
         options: what is asked for, its gap stated.
 
@@ -157,7 +159,7 @@ def solve_custom(scenario: Scenario, fields: Sequence[AxisField], options: Solve
         SolveError: no pose reaches every node.
     """
     (precompile if options.certify else compile_search)((False, False))
-    search = CustomSearch(scenario, fields, options.seed)
+    search = CustomSearch(scenario, family, fields, options.seed)
     began = limit_clock()
     search.search()
     bound, boxes, reason = None, 0, ""
