@@ -14,11 +14,13 @@ from shapely import Polygon
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
-from nullpose.scenario.areas import Area, account_of, areas_of, polygons_of
+from nullpose.scenario.areas import Area, areas_of, notes_on, polygons_of
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.geo_file import Feature
-from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
+from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu, wrapped
+from nullpose.scenario.no_fly import NoFlyZone
+from nullpose.scenario.origin import Origin
 from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.shapes import corners_of
 from nullpose.scenario.units import EARTHLY_RANGES
@@ -27,7 +29,7 @@ REACH_M = 6e4
 """How far east, west, north and south of the origin zones of files count; in degrees this square lies within
 the 100 km that a frame holds."""
 _HALVES_M = (REACH_M, 3e4, 1.5e4, 8e3, 4e3, 2e3)  # of squares about the origin
-_BOUNDS = {"x_m", "y_m", "geofence_m", "geofence_lat_lon_deg"}
+_BOUNDS = {"x_m", "y_m", "geofence_m", "geofence_lat_lon_deg", *RANGES}
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
@@ -36,14 +38,14 @@ Filled: TypeAlias = tuple[PlainTable, list[str], dict[str, str]]
 their path in the scenario."""
 
 
-def with_zones(airspace: PlainTable, features: Sequence[Feature], origin: PlainTable) -> Filled:
+def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled:
     """Add the zones of a file to a raw airspace after its own.
 
     Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
 
     Args:
-        airspace: raw.
         features: of the file.
+        airspace: raw.
         origin: the scenario's, raw; empty without one.
 
     Raises:
@@ -68,7 +70,7 @@ def with_zones(airspace: PlainTable, features: Sequence[Feature], origin: PlainT
     zones = [(zone, area.place) for area in areas for zone in area.zones()]
     places = {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(zones, len(listed))}
     filled = {**airspace, **bounds, "no_fly": [*listed, *(zone for zone, _ in zones)]}
-    return filled, account_of(areas, counts, remarks), places
+    return filled, list(notes_on(areas, counts, remarks)), places
 
 
 def reach_deg(origin: PlainTable) -> Polygon:
@@ -81,14 +83,14 @@ def reach_deg(origin: PlainTable) -> Polygon:
     return _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
 
 
-def with_fence(airspace: PlainTable, features: Sequence[Feature], origin: PlainTable) -> Filled:
+def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled:
     """Give a raw airspace the fence of a file.
 
     The fence's holes are zones, and its altitudes bound those of the airspace.
 
     Args:
-        airspace: raw, without a fence.
         features: of the file, of which one is a polygon.
+        airspace: raw, without a fence.
         origin: the scenario's, raw; empty without one.
 
     Raises:
@@ -108,43 +110,47 @@ def with_fence(airspace: PlainTable, features: Sequence[Feature], origin: PlainT
     fenced |= {"no_fly": [*holes, *airspace.get("no_fly", ())]} if holes else {}
     fenced |= dict(_altitudes(airspace, areas[0], ground_m))
     places = {"airspace.geofence_lat_lon_deg": areas[0].place}
-    return fenced, account_of(areas, counts, remarks, is_fence=True), places
+    return fenced, list(notes_on(areas, counts, remarks, is_fence=True)), places
 
 
 def _altitudes(airspace: PlainTable, fence: Area, ground_m: Ground) -> Iterator[tuple[str, list[float]]]:
     """Yield the airspace's ranges of altitudes within those of its fence."""
+    bounds, limits = _bounds(airspace), NoFlyZone._sound_part(fence.limits)
     for key, over in product(RANGES, fence.limits):
-        ends_m, limits_m = _ends(airspace.get(key)), _ends(fence.limits[over])
+        ends_m, limits_m = getattr(bounds, key), getattr(limits, over)
         if limits_m is None:
             raise refusal(f"{fence.place}.{over}", f"got {fence.limits[over]!r}, must be [low, high] in m")
-        if ends_m is None:
-            continue
-        over_m = shift_m(fence.place, over, key, ground_m)
-        low_m, high_m = max(ends_m[0], limits_m[0] + over_m), min(ends_m[1], limits_m[1] + over_m)
-        require(
-            low_m <= high_m,
-            fence.place,
-            f"its {over} = {fence.limits[over]} has no altitude in common with the airspace's {key} = "
-            f"{airspace[key]}; change either",
-        )
-        yield key, [low_m, high_m]
+        if ends_m is not None:
+            over_m = shift_m(fence.place, over, key, ground_m)
+            low_m, high_m = max(ends_m[0], limits_m[0] + over_m), min(ends_m[1], limits_m[1] + over_m)
+            require(
+                low_m <= high_m,
+                fence.place,
+                f"its {over} = {fence.limits[over]} has no altitude in common with the airspace's {key} = "
+                f"{airspace[key]}; change either",
+            )
+            yield key, [low_m, high_m]
 
 
 def _ground_m(origin: PlainTable) -> Ground:
-    return {"altitude_m": 0.0} | {key: origin.get(over) for key, over in EARTHLY_RANGES.items()}
+    sound = Origin._sound_part(origin)
+    return {"altitude_m": 0.0} | {key: getattr(sound, over) for key, over in EARTHLY_RANGES.items()}
 
 
 def _place(origin: PlainTable) -> Floats | None:
     """Return the origin's latitude and longitude, and altitude 0, (3,); None where it is at fault."""
-    try:
-        return np.array([origin["lat_deg"], origin["lon_deg"], 0.0], dtype=float)
-    except (KeyError, TypeError, ValueError):
-        return None  # which the scenario is refused for
+    sound = Origin._sound_part(origin)
+    return None if None in (sound.lat_deg, sound.lon_deg) else np.array([sound.lat_deg, sound.lon_deg, 0.0])
+
+
+def _bounds(airspace: PlainTable) -> Airspace:
+    """Return what bounds a raw airspace; None where it is at fault, which the scenario is refused for."""
+    return Airspace._sound_part({key: airspace[key] for key in _BOUNDS & airspace.keys()})
 
 
 def _box_m(airspace: PlainTable, half_m: float, place: Floats) -> Floats:
     """Return the ends of where the vehicle may be within a square about the origin, (2, 2), by axis last."""
-    bounds = Airspace._sound_part({key: airspace[key] for key in _BOUNDS & airspace.keys()})
+    bounds = _bounds(airspace)
     ends_m = np.array([[-half_m, -half_m], [half_m, half_m]])
     fence: ArrayLike | None = bounds.geofence_m
     if bounds.geofence_lat_lon_deg:
@@ -153,14 +159,6 @@ def _box_m(airspace: PlainTable, half_m: float, place: Floats) -> Floats:
         ends_m = np.clip(ends_m, np.min(fence, axis=0), np.max(fence, axis=0))
     sides_m = np.array([bounds.x_m or (-np.inf, np.inf), bounds.y_m or (-np.inf, np.inf)])
     return np.asarray(np.clip(ends_m, *sides_m.T))
-
-
-def _ends(value: object) -> tuple[float, float] | None:
-    """Return both ends of a range; None where there is none, or one that the scenario is refused for."""
-    match value:
-        case [int() | float() as low, int() | float() as high]:
-            return float(low), float(high)
-    return None
 
 
 def _everywhere(lon_deg: float = 0.0) -> Polygon:
@@ -172,7 +170,7 @@ def _box_deg(ends_m: Floats, place: Floats) -> Polygon:
     east_m, north_m = np.meshgrid(*np.linspace(ends_m[0], ends_m[1], 9).T)
     places = geodetic_from_enu(np.stack([east_m, north_m, 0.0 * east_m], axis=-1).reshape(-1, 3), place)
     corners = places[:, 1::-1]
-    corners[:, 0] -= 360.0 * np.round((corners[:, 0] - place[1]) / 360.0)
+    corners[:, 0] = wrapped(corners[:, 0], place[1])
     if np.abs(corners[:, 1]).max() > _POLE_DEG:
         corners = np.vstack([corners, [place[1] - 180.0, place[0]], [place[1] + 180.0, place[0]]])
     more = 0.01 * np.ptp(corners, axis=0) + 1e-4

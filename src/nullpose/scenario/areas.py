@@ -6,21 +6,21 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import count
+from itertools import chain, count
 
 import shapely
 from shapely import Polygon
 
-from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable
 from nullpose.scenario.altitude_limits import Ground, altitude_limits
-from nullpose.scenario.faults import EXCHANGED
+from nullpose.scenario.faults import EXCHANGED, call_each, raise_all
 from nullpose.scenario.geo_file import NAMES, Feature
+from nullpose.scenario.geodesy import wrapped
 from nullpose.scenario.shapes import box_about, corners_of, cut, near, parts_of, sound
 
 _LONGEST_NAME = 80
 _LIKE_RADII = re.compile("radi|buffer|diameter", re.IGNORECASE)
-_PASSED_OVER = ("point", "line", "wall", "feature without a place")
+_PASSED_OVER = ("point", "line", "polygon", "wall", "feature without a place", "other feature")
 
 
 @dataclass(slots=True)
@@ -60,9 +60,21 @@ class Area:
         return bool(self.polygons or self.cylinders)
 
 
-def account_of(
+def account(parts: Mapping[str, object], counts: Mapping[str, int]) -> str:
+    """Join the parts of an account that apply, and what is passed over of a file.
+
+    Args:
+        parts: in words, by whether they apply.
+        counts: of features by what became of them.
+    """
+    passed = counted({kind: counts.get(kind, 0) for kind in _PASSED_OVER})
+    whole = {**parts, f"passed over: {passed}": passed}
+    return "; ".join(words for words, is_so in whole.items() if is_so)
+
+
+def notes_on(
     areas: Sequence[Area], counts: Counter[str], remarks: Sequence[str], *, is_fence: bool = False
-) -> list[str]:
+) -> Iterator[str]:
     """Say in a line what became of all features of a file, then in a line each kind of remark.
 
     Args:
@@ -72,31 +84,23 @@ def account_of(
         is_fence: whether they are a fence, whose holes are zones; no line where there is nothing to say.
     """
     polygons = polygons_of(areas)
-    shapes = {"polygon": len(polygons), "cylinder": sum(len(area.cylinders) for area in areas)}
-    in_brackets = f" ({counted(shapes)})" if areas else ""
-    passed = counted({kind: counts[kind] for kind in _PASSED_OVER})
+    shapes = counted({"polygon": len(polygons), "cylinder": sum(len(area.cylinders) for area in areas)})
     holes = sum(len(polygon.interiors) for polygon in polygons)
     limits = areas[0].limits if is_fence else {}
+    head = "fence: 1 polygon" if is_fence else f"zones: {len(areas)} of {counts['area']} in reach"
     parts = {
-        "fence: 1 polygon": is_fence,
-        f"zones: {len(areas)} of {counts['area']} in reach{in_brackets}": not is_fence,
+        f"{head} ({shapes})" if areas and not is_fence else head: True,
         EXCHANGED: counts["area"] and not areas,
-        f"passed over: {passed}": passed,
         f"holes {'that are zones' if is_fence else 'filled'}: {holes}": holes,
         f"borders that cross, all inside counts: {counts['crossing']}": counts["crossing"],
         ", ".join(f"{key} = {ends}" for key, ends in limits.items()): limits,
     }
-    words = [part for part, is_so in parts.items() if is_so]
-    names: dict[str, list[str]] = {}
-    for area in areas:
-        for remark in area.remarks:
-            names.setdefault(remark, []).append(area.name or area.place)
-    more = {remark: f" (and so {len(others) - 1} more)" for remark, others in names.items() if others[1:]}
-    return [
-        *(["; ".join(words)] if len(words) > 1 or not is_fence else []),
-        *remarks,
-        *(f'"{first}"{more.get(remark, "")} {remark}' for remark, (first, *_) in names.items()),
-    ]
+    if (words := account(parts, counts)) != head or not is_fence:
+        yield words
+    yield from remarks
+    for remark in dict.fromkeys(remark for area in areas for remark in area.remarks):
+        first, *others = [area.name or area.place for area in areas if remark in area.remarks]
+        yield f'"{first}"{f" (and so {len(others)} more)" if others else ""} {remark}'
 
 
 def polygons_of(areas: Sequence[Area]) -> list[Polygon]:
@@ -138,25 +142,24 @@ def areas_of(
     Raises:
         ScenarioError: with the faults of all features.
     """
-    areas, counts, taken, faults = list[Area](), Counter[str](), set(names or ()), list[Fault]()
-    for feature in features:
-        try:
-            area = area_of(feature, reach, counts, is_fence)
-            if area is not None:
-                area.limits, area.remarks = altitude_limits(feature, ground_m)
-                area.name = unique(area.name, taken)
-                areas.append(area)
-        except ScenarioError as error:
-            faults += error.faults
-    if faults:
-        raise ScenarioError(faults)
+    counts, taken = Counter[str](), set(names or ())
+
+    def whole_area(feature: Feature) -> list[Area]:
+        found = area_of(feature, reach, counts, is_fence)
+        for area in found:
+            area.limits, area.remarks = altitude_limits(feature, ground_m)
+            area.name = unique(area.name, taken)
+        return found
+
+    areas, faults = call_each(whole_area, features)
+    raise_all(faults)
     points = [each for each in features if getattr(each.geometry, "geom_type", "") in ("Point", "MultiPoint")]
     keys = {key for point in points for key in point.properties if _LIKE_RADII.search(key)} - {"radius_m"}
     unread = f"of points {', '.join(sorted(keys))} is not read; a radius is radius_m"
-    return areas, counts, [unread] if keys else []
+    return list(chain.from_iterable(areas)), counts, [unread] if keys else []
 
 
-def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> Area | None:
+def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> list[Area]:
     """Find what a feature covers within reach; count what it is.
 
     Args:
@@ -166,20 +169,18 @@ def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bo
         is_fence: whether every crossing of a border is a fault.
 
     Returns:
-        The area without altitudes; None without one.
+        The area without altitudes; nothing without one.
 
     Raises:
         ScenarioError: its border crosses itself.
     """
-    west, _, east, _ = reach.bounds
-    middle_deg = 0.5 * (west + east)
-    polygons, cylinders = [], []
+    middle_deg, polygons, cylinders = reach.centroid.x, list[Polygon](), []
     parts = list(parts_of(shapely.force_2d(feature.geometry)))
     counts["feature without a place"] += not parts
     for part in parts:
         radius_m = _radius_m(feature)
         if part.geom_type == "Point" and radius_m is not None:
-            cylinders.append((part.x - 360.0 * round((part.x - middle_deg) / 360.0), part.y, radius_m))
+            cylinders.append((float(wrapped(part.x, middle_deg)), part.y, radius_m))
         elif part.geom_type == "Point":
             counts["point"] += 1
         elif part.geom_type == "LineString" and not (part.is_closed and len(part.coords) > 3):
@@ -187,19 +188,15 @@ def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bo
         else:
             ring = part if part.geom_type == "Polygon" else shapely.Polygon(part.coords)
             polygons.append(near(ring, middle_deg))
-    if not (polygons or cylinders):
-        return None
-    polygons = [polygon for polygon in polygons if polygon.envelope.intersects(reach)]
-    checked = [sound(polygon, feature.place, is_fence) for polygon in polygons]
+    within = [polygon for polygon in polygons if polygon.envelope.intersects(reach)]
+    checked = [sound(polygon, feature.place, is_fence) for polygon in within]
     counts["crossing"] += sum(is_crossing for _, is_crossing in checked)
     ground = [polygon for polygon, _ in checked if polygon.area]
-    if polygons and not ground and not cylinders:
-        counts["wall"] += 1
-        return None
-    counts["area"] += 1
+    is_wall = within and not ground and not cylinders
+    counts["wall" if is_wall else "area"] += 1 if polygons or cylinders else 0
     united = list(parts_of(shapely.union_all(ground) if len(ground) > 1 else ground))
     area = Area(feature.place, name_of(feature), united, cylinders)
-    return area if area.cut(reach) else None
+    return [area] if area.cut(reach) else []
 
 
 def _radius_m(feature: Feature) -> object:

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.errors import Fault
 from nullpose.files import PlainTable
 from nullpose.scenario.area_files import reach_deg
-from nullpose.scenario.areas import Area, area_of, counted, unique
+from nullpose.scenario.areas import Area, account, area_of, unique
 from nullpose.scenario.building_heights import BuildingHeight, height_of
 from nullpose.scenario.buildings import MOST_BUILDINGS, Building
-from nullpose.scenario.faults import EXCHANGED, require
+from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.shapes import corners_of
 
 _MARKS = ("building", "building:part")  # of OpenStreetMap
-_PASSED_OVER = ("point", "line", "wall", "feature without a place", "other feature")
 
 
 def buildings_of(
-    features: Sequence[Feature], rules: Building, origin: PlainTable, names: set[str]
-) -> tuple[list[tuple[PlainTable, str]], list[str]]:
+    features: Sequence[Feature], rules: Building, origin: PlainTable, names: set[str], first: int
+) -> tuple[list[PlainTable], list[str], dict[str, str]]:
     """Make raw buildings of features: one of each polygon, open where it has a hole.
 
     Where some features are marked as buildings, as those of OpenStreetMap are, the others are left out.
@@ -31,27 +31,27 @@ def buildings_of(
         rules: the table that names the file.
         origin: the scenario's, raw; empty without one.
         names: that are taken; those of the file are added.
+        first: how many buildings the scenario has before them.
 
     Returns:
-        The buildings, each with the place of its feature, and notes on what became of the features.
+        The buildings, notes on what became of the features, and the places in the file of the buildings by
+        their path in the scenario.
 
     Raises:
         ScenarioError: with the faults of all features.
     """
-    counts, faults, found = Counter[str](), list[Fault](), list[tuple[Area, BuildingHeight]]()
     marked = [feature for feature in features if _is_marked(feature)] or features
-    counts["other feature"], reach = len(features) - len(marked), reach_deg(origin)
-    for feature in marked:
-        try:
-            area = area_of(feature, reach, counts, is_fence=True)
-            if area is not None:
-                counts["point"] += len(area.cylinders)
-                found += [(area, height_of(feature, rules))] if area.polygons else []
-        except ScenarioError as error:
-            faults += error.faults
+    counts, reach = Counter({"other feature": len(features) - len(marked)}), reach_deg(origin)
+
+    def areas_with_height(feature: Feature) -> list[tuple[Area, BuildingHeight]]:
+        areas = area_of(feature, reach, counts, is_fence=True)
+        counts["point"] += sum(len(area.cylinders) for area in areas)
+        return [(area, height_of(feature, rules)) for area in areas if area.polygons]
+
+    each, faults = call_each(areas_with_height, marked)
+    found: list[tuple[Area, BuildingHeight]] = list(chain.from_iterable(each))
     faults += _without_height([area for area, height in found if not height.by])
-    if faults:
-        raise ScenarioError(faults)
+    raise_all(faults)
     total = sum(len(area.polygons) for area, _ in found)
     require(
         total <= MOST_BUILDINGS,
@@ -59,8 +59,10 @@ def buildings_of(
         f"it has {total} buildings in reach, must be at most {MOST_BUILDINGS}; cut it to the "
         "streets of the scene",
     )
-    tables = [(table, area.place) for area, height in found for table in _tables(area, height, rules, names)]
-    return tables, list(_notes(found, counts))
+    tables = [table for area, height in found for table in _tables(area, height, rules, names)]
+    in_file = [area.place for area, _ in found for _ in area.polygons]
+    places = {f"buildings[{index}]": place for index, place in enumerate(in_file, first)}
+    return tables, list(_notes(found, counts)), places
 
 
 def _is_marked(feature: Feature) -> bool:
@@ -97,15 +99,13 @@ def _tables(area: Area, height: BuildingHeight, rules: Building, names: set[str]
 def _notes(found: Sequence[tuple[Area, BuildingHeight]], counts: Counter[str]) -> Iterator[str]:
     """Yield how the heights of all buildings are stated and what is passed over, then what is not read."""
     sources = Counter(height.by for area, height in found for _ in area.polygons)
-    passed = counted({kind: counts[kind] for kind in _PASSED_OVER})
+    shares = ", ".join(f"{number} {source}" for source, number in sources.most_common())
     parts = {
-        f"buildings: {sources.total()}": True,
-        ": " + ", ".join(f"{number} {source}" for source, number in sources.most_common()): found,
-        f"; {EXCHANGED}": counts["area"] and not found,
-        f"; out of reach: {counts['area'] - len(found)}": counts["area"] > len(found),
-        f"; passed over: {passed}": passed,
+        f"buildings: {sources.total()}{f': {shares}' if shares else ''}": True,
+        EXCHANGED: counts["area"] and not found,
+        f"out of reach: {counts['area'] - len(found)}": counts["area"] > len(found),
     }
-    yield "".join(part for part, is_so in parts.items() if is_so)
+    yield account(parts, counts)
     unread = Counter(key for _, height in found for key in height.unread)
     if unread:
         yield f"not read: {', '.join(f'{key} (of {number})' for key, number in unread.items())}"

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, Field, TypeAdapter, WithJsonSchema
 
 from nullpose.files import PlainTable
 from nullpose.scenario.arrays import Floats
@@ -16,7 +16,7 @@ from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone, unplaced
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
-from nullpose.scenario.rules import Ascending, Choice, ListOf, Quantity
+from nullpose.scenario.rules import Choice, ListOf, Quantity, ascending
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label, MarginMetres
 from nullpose.scenario.ways import Ways
@@ -36,7 +36,11 @@ _STOREY = Quantity("a height of a storey in m", 1.0, 20.0, "3 m is common")
 _COURTYARDS = ListOf("a list of at most 1000 polygons, each a list of vertices", 0, 1000)
 _Height = Annotated[float, _ABOVE_GROUND]
 _BOTH_ENDS: TypeAdapter[tuple[float, float]] = TypeAdapter(
-    Annotated[tuple[_Height, _Height], Ascending("one height in m, or two, the lowest first", 2, 2)]
+    Annotated[
+        tuple[_Height, _Height],
+        ListOf("one height in m, or two, the lowest first", 2, 2),
+        AfterValidator(ascending),
+    ]
 )
 _LIMITS = {"minimum": _ABOVE_GROUND.low, "maximum": _ABOVE_GROUND.high}
 

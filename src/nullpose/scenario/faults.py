@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -22,6 +22,8 @@ ONLY_LOCAL = "only a scenario file on this machine may name another"
 """Said where a file is named by anything else."""
 _KIND = "scenario"  # the type that every fault worded here carries through pydantic
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_Raw = TypeVar("_Raw")
+_Read = TypeVar("_Read")
 
 
 def refusal(path: str, message: str, source: str = "") -> ScenarioError:
@@ -39,6 +41,23 @@ def require(holds: object, path: str, message: str) -> None:
     """Raise the error of one fault unless a condition holds, as :func:`refusal` words it."""
     if not holds:
         raise refusal(path, message)
+
+
+def raise_all(faults: Sequence[Fault], source: str = "") -> None:
+    """Raise the error of all faults together, if there is any."""
+    if faults:
+        raise ScenarioError(faults, source)
+
+
+def call_each(function: Callable[[_Raw], _Read], members: Iterable[_Raw]) -> tuple[list[_Read], list[Fault]]:
+    """Call a function with each member; return its values, and the faults that it raises."""
+    values, faults = list[_Read](), list[Fault]()
+    for member in members:
+        try:
+            values.append(function(member))
+        except ScenarioError as error:
+            faults += error.faults
+    return values, faults
 
 
 def rejection(message: str) -> PydanticCustomError:

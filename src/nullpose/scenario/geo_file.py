@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import count
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +19,8 @@ import numpy as np
 import shapely.geometry
 from shapely.geometry.base import BaseGeometry
 
-from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable, parse_json
-from nullpose.scenario.faults import EXCHANGED, refusal, require
+from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, refusal, require
 from nullpose.scenario.kml import kml_of_kmz, require_whole, root_of
 from nullpose.scenario.toml_file import decoded
 from nullpose.scenario.wording import described
@@ -31,7 +30,6 @@ ENDINGS = (".geojson", ".json", ".kml", ".kmz", ".gpkg", ".shp", ".gpx")
 MOST_BYTES = 60_000_000
 NAMES = ("name", "Name", "NAME", "title", "identifier", "designator")
 """The properties that may name a feature, the first first."""
-_MOST_FAULTS = 100  # of one file
 _SIGNS = {".kmz": b"PK", ".gpkg": b"SQLite format 3\0", ".shp": b"\0\0\x27\x0a", ".kml": b"", ".gpx": b""}
 _GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
 _WGS84 = ("CRS84", "CRS84h", "4326", "4979", "4258")  # as the names of reference systems end
@@ -70,7 +68,7 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
     """
     ending = path.suffix.lower()
     if ending in (".geojson", ".json"):
-        return list(_features_of_json(decoded(content)))
+        return _features_of_json(decoded(content))
     begin = f"it does not begin as a {ending} file does; is it of another kind?"
     require(content.startswith(_SIGNS[ending]), "", begin)
     is_kml = ending in (".kml", ".kmz")
@@ -86,7 +84,7 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
     return features
 
 
-def _features_of_json(text: str) -> Iterator[Feature]:
+def _features_of_json(text: str) -> list[Feature]:
     data = parse_json(text)
     require(isinstance(data, dict), "", f"got {described(data)}, must be a FeatureCollection")
     kind, members = data.get("type"), data.get("features")
@@ -103,19 +101,14 @@ def _features_of_json(text: str) -> Iterator[Feature]:
     require(is_list, "features", f"got {described(members)}, must be a list of one feature or more")
     if "crs" in data:
         _require_wgs84(json.dumps(data["crs"]).rstrip('}"]'))
-    faults: list[Fault] = []
-    for index, member in enumerate(members):
-        try:
-            yield from _features_of_member(f"features[{index}]", member)
-        except ScenarioError as error:
-            faults += error.faults
-        if len(faults) > _MOST_FAULTS:
-            break
-    if faults:
-        raise ScenarioError(faults)
+    features, faults = call_each(_features_of_member, enumerate(members))
+    raise_all(faults)
+    return list(chain.from_iterable(features))
 
 
-def _features_of_member(place: str, member: Any) -> Iterator[Feature]:
+def _features_of_member(numbered: tuple[int, Any]) -> list[Feature]:
+    index, member = numbered
+    place = f"features[{index}]"
     geometry, properties = _of(member, "geometry"), _of(member, "properties")
     kind = _of(member, "type")
     require(kind == "Feature", place, f'got {described(kind)}, must be an object with "type": "Feature"')
@@ -127,12 +120,13 @@ def _features_of_member(place: str, member: Any) -> Iterator[Feature]:
         shapes = {f"{place}.geometry.geometries[{index}]": each for index, each in enumerate(parts)}
     else:
         shapes = {f"{place}.geometry": geometry}
+    features = []
     for where, shape in shapes.items():
-        beside = dict(shape) if isinstance(shape, dict) else {}
-        for key in ("type", "coordinates", "geometries"):
-            beside.pop(key, None)
+        geometric = ("type", "coordinates", "geometries")
+        beside = {key: shape[key] for key in shape if key not in geometric} if isinstance(shape, dict) else {}
         found = {key: value for key, value in {**(properties or {}), **beside}.items() if value is not None}
-        yield Feature(where.removesuffix(".geometry"), _shape(shape, where), found)
+        features.append(Feature(where.removesuffix(".geometry"), _shape(shape, where), found))
+    return features
 
 
 def _of(value: object, key: str) -> Any:

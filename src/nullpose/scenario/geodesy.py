@@ -49,6 +49,17 @@ def geodetic_from_enu(position_m: ArrayLike, origin: ArrayLike) -> NDArray[np.fl
     return np.stack(enu2geodetic(*np.moveaxis(positions, -1, 0), *np.asarray(origin)), axis=-1)
 
 
+def wrapped(lon_deg: ArrayLike, about_deg: ArrayLike = 0.0) -> NDArray[np.float64]:
+    """Move longitudes by whole turns to within half a turn of one.
+
+    Args:
+        lon_deg: longitudes [degrees], of any shape.
+        about_deg: the one [degrees].
+    """
+    turns = np.round(np.subtract(lon_deg, about_deg) / 360.0)
+    return np.asarray(np.subtract(lon_deg, 360.0 * turns))
+
+
 def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:
     """Convert vectors to north, east, down: the first two components swapped, the third negated.
 

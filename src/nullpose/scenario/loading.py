@@ -15,7 +15,7 @@ from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import file_text, tables_of, uploaded_text
 
-_FILE_KEYS = ("nodes_from", "airspace.geofence_from", "airspace.no_fly_from", "antenna.file")
+_FILE_KEYS = ("nodes_from", "geofence_from", "no_fly_from", "file", "buildings_from")
 _EARLY = re.compile(
     r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b"
     r"|buildings\S*\.(?:buildings_from|storey_height_m|missing_height_m|height_unit|\w+_property)\b"
@@ -87,19 +87,18 @@ def _overridden_tables(
 
 def _named_files(tables: PlainTable) -> PlainTable:
     """Pick the names of the files of nodes, fence, zones, antenna and buildings, by key."""
-    inner = {
-        f"{key}.{below}": value
-        for key, table in tables.items()
-        if isinstance(table, Mapping)
-        for below, value in table.items()
-    }
     buildings = tables.get("buildings")
-    of_buildings = {
-        f"buildings[{index}].buildings_from": table["buildings_from"]
-        for index, table in enumerate(buildings if isinstance(buildings, list) else ())
-        if isinstance(table, Mapping) and "buildings_from" in table
+    holders = {"": tables, "airspace.": tables.get("airspace"), "antenna.": tables.get("antenna")}
+    holders |= {
+        f"buildings[{i}].": each for i, each in enumerate(buildings if isinstance(buildings, list) else ())
     }
-    return {key: value for key, value in {**tables, **inner}.items() if key in _FILE_KEYS} | of_buildings
+    return {
+        f"{path}{key}": table[key]
+        for path, table in holders.items()
+        if isinstance(table, Mapping)
+        for key in _FILE_KEYS
+        if key in table
+    }
 
 
 def files_of(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Path]:

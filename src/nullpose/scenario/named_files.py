@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path, PurePath
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
@@ -15,9 +17,9 @@ from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
 from nullpose.scenario.building_files import buildings_of
 from nullpose.scenario.buildings import Building
-from nullpose.scenario.faults import refusal
+from nullpose.scenario.faults import raise_all, refusal
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
-from nullpose.scenario.node_files import ListedNode, nodes_of_csv, nodes_of_features
+from nullpose.scenario.node_files import nodes_of_csv, nodes_of_features
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_content, file_text, inside
 from nullpose.scenario.wording import described
@@ -29,6 +31,8 @@ _AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
 _FENCES = {"geofence_m", "geofence_lat_lon_deg"}
 _STEP = re.compile(r"(?=[.\[])")
 _MEMBER = re.compile(r"[\w.]+\[\d+\]")
+_Found = TypeVar("_Found")
+_Filled: TypeAlias = tuple[_Found, list[str], dict[str, str]]
 
 
 class NamedFiles:
@@ -37,6 +41,7 @@ class NamedFiles:
     def __init__(self, folder: Path, allow_outside: bool, on_note: Callable[[str], object]) -> None:
         self._folder, self._allow_outside, self._on_note = folder, allow_outside, on_note
         self._faults: list[Fault] = []
+        self._keys: list[str] = []  # that name files of zones and buildings
         self._places: dict[str, str] = {}  # in the files, of tables and values by their path in the scenario
 
     def scenario(self, tables: PlainTable) -> Scenario:
@@ -45,16 +50,14 @@ class NamedFiles:
         Raises:
             ScenarioError: with its faults.
         """
-        listed = [f"airspace.{_ZONES_KEY}"] if _ZONES_KEY in (tables.get("airspace") or ()) else []
+        origin = origin if isinstance(origin := tables.get("origin"), dict) else {}
         if "antenna" in tables:
             tables |= {"antenna": self._antenna(tables["antenna"])}
-        if "airspace" in tables:
-            tables |= {"airspace": self._airspace(tables["airspace"], tables.get("origin"))}
+        airspace = tables.get("airspace")
+        if isinstance(airspace, dict) and isinstance(airspace.get("no_fly", []), list):
+            tables |= {"airspace": self._airspace(airspace, origin)}
         if isinstance(buildings := tables.get("buildings"), list):
-            tables |= {"buildings": self._buildings(buildings, tables.get("origin"))}
-            listed += [
-                f"buildings[{i}].{_BUILDINGS_KEY}" for i, each in enumerate(buildings) if _is_file(each)
-            ]
+            tables |= {"buildings": self._buildings(buildings, origin)}
         if _NODES_KEY in tables and "nodes" not in tables:
             # The nodes take the place of the key, so that faults come in the order of the file.
             tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
@@ -65,10 +68,9 @@ class NamedFiles:
             # Nodes that could not be read are not told as missing too.
             repeated = "nodes" if self._faults and tables.get("nodes") == [] else None
             self._faults += [self._placed(fault) for fault in error.faults if fault.path != repeated]
-        if self._faults:
-            raise ScenarioError(self._faults)
-        if listed:
-            _require_nodes_in_reach(scenario, listed[0])
+        raise_all(self._faults)
+        for key in self._keys[:1]:
+            _require_nodes_in_reach(scenario, key)
         return scenario
 
     def _placed(self, fault: Fault) -> Fault:
@@ -112,71 +114,69 @@ class NamedFiles:
             return with_harmonics(antenna, inside(self._folder, file, self._allow_outside))
         return antenna | {"harmonics": [[1.0]]}
 
-    def _airspace(self, airspace: object, origin: object) -> object:
+    def _filled(
+        self, key: str, file: object, fill: Callable[[list[Feature]], _Filled[_Found]]
+    ) -> _Found | None:
+        """Return what a file of areas fills in, and tell what became of it; None where it is at fault.
+
+        Args:
+            key: where it is named.
+            file: its name.
+            fill: from its features to what they fill in, notes, and their places by path in the scenario.
+        """
+        with self._reading(f"{key}: {file}"):
+            found, notes, places = fill(self._features(self._path(file, _AREA_FILE), _AREA_FILE))
+            self._note(file, notes)
+            self._places |= {path: f"{key}: {file}: {place}" for path, place in places.items()}
+            return found
+        return None
+
+    def _note(self, file: object, notes: Iterable[str]) -> None:
+        for note in notes:
+            self._on_note(f"{file}: {note}")
+
+    def _airspace(self, airspace: PlainTable, origin: PlainTable) -> PlainTable:
         """Fill in the fence and the zones of other files."""
-        if not isinstance(airspace, dict) or not isinstance(airspace.get("no_fly", []), list):
-            return airspace
         for key, fill in ((_FENCE_KEY, with_fence), (_ZONES_KEY, with_zones)):
-            if key not in airspace or (fill is with_fence and _FENCES & airspace.keys()):
-                continue
-            file, label = airspace[key], f"airspace.{key}: {airspace[key]}"
-            airspace = {other: value for other, value in airspace.items() if other != key}
-            with self._reading(label):
-                features = self._features(self._path(file, _AREA_FILE), _AREA_FILE)
-                airspace, notes, places = fill(airspace, features, origin if isinstance(origin, dict) else {})
-                for note in notes:
-                    self._on_note(f"{file}: {note}")
-                self._places |= {path: f"{label}: {place}" for path, place in places.items()}
+            if key in airspace and not (key == _FENCE_KEY and _FENCES & airspace.keys()):
+                rest = {other: value for other, value in airspace.items() if other != key}
+                whole = partial(fill, airspace=rest, origin=origin)
+                self._keys += [f"airspace.{key}"] * (key == _ZONES_KEY)
+                airspace = self._filled(f"airspace.{key}", airspace[key], whole) or rest
         return airspace
 
-    def _buildings(self, tables: list[object], origin: object) -> list[object]:
+    def _buildings(self, tables: list[object], origin: PlainTable) -> list[object]:
         """Put the buildings of other files in place of the tables that name these."""
         whole: list[object] = []
         names = {str(table.get("name")) for table in tables if isinstance(table, dict)}
         for index, table in enumerate(tables):
             place = f"buildings[{index}]"
-            found: list[tuple[str, object]] = [] if _is_file(table) else [(place, table)]
-            if _is_file(table):
-                with self._reading(place, "."):
-                    found = self._buildings_of_file(place, Building.from_dict(table), origin, names)
-            for of_feature, each in found:
-                self._places[f"buildings[{len(whole)}]"] = of_feature
-                whole.append(each)
+            if not isinstance(table, dict) or _BUILDINGS_KEY not in table:
+                self._places[f"buildings[{len(whole)}]"] = place
+                whole.append(table)
+                continue
+            self._keys.append(f"{place}.{_BUILDINGS_KEY}")
+            with self._reading(place, "."):
+                rules = Building.from_dict(table)
+                fill = partial(buildings_of, rules=rules, origin=origin, names=names, first=len(whole))
+                whole += self._filled(self._keys[-1], rules.buildings_from, fill) or []
         return whole
-
-    def _buildings_of_file(
-        self, place: str, rules: Building, origin: object, names: set[str]
-    ) -> list[tuple[str, object]]:
-        """Return the raw buildings of a file, each with its place there; none where it is at fault."""
-        file, label = rules.buildings_from, f"{place}.{_BUILDINGS_KEY}: {rules.buildings_from}"
-        with self._reading(label):
-            features = self._features(self._path(file, _AREA_FILE), _AREA_FILE)
-            found, notes = buildings_of(features, rules, origin if isinstance(origin, dict) else {}, names)
-            for note in notes:
-                self._on_note(f"{file}: {note}")
-            return [(f"{label}: {of_feature}", table) for table, of_feature in found]
-        return []
 
     def _nodes(self, file: object) -> list[PlainTable]:
         """Read the nodes that another file lists."""
-        nodes: list[ListedNode] = []
-        unread: list[Fault] = []  # of nodes
         with self._reading(f"{file}"):
             path = self._path(file, _NODES_FILE, _NODES_KEY)
             if path.suffix.lower() == ".csv":
-                nodes += nodes_of_csv(file_text(path, _NODES_FILE, self._folder, _NODES_KEY), unread)
+                nodes, unread, notes = nodes_of_csv(file_text(path, _NODES_FILE, self._folder, _NODES_KEY))
             else:
-                features = self._features(path, _NODES_FILE, _NODES_KEY)
-                nodes += nodes_of_features(features, unread, lambda note: self._on_note(f"{file}: {note}"))
-        self._faults += [_in_file(file, fault) for fault in unread]
-        for index, node in enumerate(nodes):
-            for key, place in node.places.items():
-                self._places[f"nodes[{index}].{key}".removesuffix(".")] = f"{file}: {place}"
-        return [node.values for node in nodes]
-
-
-def _is_file(building: object) -> bool:
-    return isinstance(building, dict) and _BUILDINGS_KEY in building
+                nodes, unread, notes = nodes_of_features(self._features(path, _NODES_FILE, _NODES_KEY))
+            self._note(file, notes)
+            self._faults += [_in_file(file, fault) for fault in unread]
+            for index, node in enumerate(nodes):
+                for key, place in node.places.items():
+                    self._places[f"nodes[{index}].{key}".removesuffix(".")] = f"{file}: {place}"
+            return [node.values for node in nodes]
+        return []
 
 
 def _require_nodes_in_reach(scenario: Scenario, key: str) -> None:

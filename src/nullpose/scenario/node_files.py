@@ -6,17 +6,18 @@ import csv
 import io
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
+from functools import cache
 from itertools import islice
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from shapely import Point
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.errors import Fault
 from nullpose.files import PlainTable
-from nullpose.scenario.areas import counted, name_of, unique
-from nullpose.scenario.faults import refusal, require
+from nullpose.scenario.areas import account, counted, name_of, unique
+from nullpose.scenario.faults import call_each, raise_all, refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.ground_points import PLACE, Node
 from nullpose.scenario.rules import MOST_MEMBERS
@@ -29,6 +30,7 @@ _LOCAL = ("x_m", "y_m", "z_m")
 _PLACE = Ways((_LOCAL, GEODETIC_KEYS), twins=PLACE.twins)
 _COLUMNS = ("name", *_LOCAL, *(key for key in Node.model_fields if key not in ("name", "position_m")))
 _OF_KML = {"absolute": "alt_msl_m", "relativeToGround": "alt_agl_m"}  # by altitude mode
+_READ_HERE = {"Name", "altitudeMode", "extrude", "ele"}
 _TYPO = 0.75  # similarity from which an unknown property is taken for a key
 _NO_HEIGHT = (
     "there is no altitude; add it to the coordinates, or as a property alt_m (ellipsoid), alt_msl_m (sea) or "
@@ -49,13 +51,16 @@ class ListedNode(NamedTuple):
     places: Mapping[str, str]
 
 
-def nodes_of_csv(text: str, faults: list[Fault]) -> Iterator[ListedNode]:
-    """Yield the nodes of a CSV file.
+ReadNodes: TypeAlias = tuple[list[ListedNode], list[Fault], list[str]]
+"""The nodes of a file, the faults of those that are left out, and notes on what is not read."""
+
+
+def nodes_of_csv(text: str) -> ReadNodes:
+    """Read the nodes of a CSV file.
 
     Args:
         text: the file's content: columns ``x_m``, ``y_m``, ``z_m`` or ``lat_deg``, ``lon_deg`` and an
             altitude, a power, and any other key of a node; an empty cell is a key left out.
-        faults: to which those of lines that are left out are added.
 
     Raises:
         ScenarioError: no CSV, a header that cannot be used, or no line below it.
@@ -68,15 +73,9 @@ def nodes_of_csv(text: str, faults: list[Fault]) -> Iterator[ListedNode]:
         rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused
     except csv.Error as error:
         raise refusal("", f"this is not CSV: {error}; check the quotes") from None
-    if wrong := [Fault(f"line {line}", message) for message in _header_faults(header)]:
-        raise ScenarioError(wrong)
+    raise_all([Fault(f"line {line}", message) for message in _header_faults(header)])
     require(rows, "", "there is no line below the header, must be one for each node")
-    for line, row in rows:
-        if len(row) == len(header):
-            yield _node_of_row(f"line {line}", dict(zip(header, row, strict=True)))
-        else:
-            message = f"got {len(row)} values, must be {len(header)}, as many as the header has"
-            faults.append(Fault(f"line {line}", message))
+    return *call_each(lambda row: _node_of_row(f"line {row[0]}", header, row[1]), rows), []
 
 
 def _header_faults(header: Sequence[str]) -> Iterator[str]:
@@ -93,8 +92,10 @@ def _header_faults(header: Sequence[str]) -> Iterator[str]:
     yield from _PLACE.faults(header)
 
 
-def _node_of_row(where: str, cells: Mapping[str, str]) -> ListedNode:
-    row = {key: cell if key == "name" else _number(cell) for key, cell in cells.items()}
+def _node_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> ListedNode:
+    many = f"got {len(cells)} values, must be {len(header)}, as many as the header has"
+    require(len(cells) == len(header), where, many)
+    row = {key: cell if key == "name" else _number(cell) for key, cell in zip(header, cells, strict=True)}
     places = {"": where, "position_m": where} | {key: f"{where}, column {key}" for key in row}
     places |= {f"position_m[{axis}]": f"{where}, column {key}" for axis, key in enumerate(_LOCAL)}
     # A place is never left out, so its empty cells stay, to be refused.
@@ -112,51 +113,42 @@ def _number(cell: str) -> object:
         return cell
 
 
-def nodes_of_features(
-    features: Sequence[Feature], faults: list[Fault], on_note: Callable[[str], object]
-) -> Iterator[ListedNode]:
-    """Yield the points of a geographic file as nodes.
+def nodes_of_features(features: Sequence[Feature]) -> ReadNodes:
+    """Read the points of a geographic file as nodes.
 
     Args:
         features: of the file.
-        faults: to which those of points that are left out are added.
-        on_note: is called with an account of what is passed over, if anything is.
 
     Raises:
         ScenarioError: there is no point.
     """
-    passed, unread, taken, nodes = Counter[str](), set[str](), set[str](), 0
+    passed, taken, points = Counter[str](), set[str](), list[tuple[Feature, Point, str]]()
     for feature in features:
         parts = list(parts_of(feature.geometry))
         passed["feature without a place"] += not parts
-        values = _values(feature, unread)
-        for index, part in enumerate(parts):
-            if part.geom_type != "Point":
-                passed["line" if "Line" in part.geom_type else "polygon"] += 1
-                continue
-            nodes += 1
-            name = name_of(feature)
-            name = unique(f"{name} ({index + 1})" if name and len(parts) > 1 else name, taken)
-            try:
-                yield _node_of_point(feature, part, values | ({"name": name} if name else {}))
-            except ScenarioError as error:
-                faults += error.faults
-    require(nodes, "", f"it has no point, must have one for each node; it has {counted(passed)}")
-    words = [f"passed over: {counted(passed)}"] if any(passed.values()) else []
-    words += [f"properties not read: {', '.join(sorted(unread))}"] if unread else []
-    if words:
-        on_note(f"nodes: {nodes}; {'; '.join(words)}")
+        passed.update("line" if "Line" in part.geom_type else part.geom_type.lower() for part in parts)
+        for index, part in enumerate(parts, 1):
+            if part.geom_type == "Point":
+                name = name_of(feature)
+                name = unique(f"{name} ({index})" if name and len(parts) > 1 else name, taken)
+                points.append((feature, part, name))
+    del passed["point"]
+    require(points, "", f"it has no point, must have one for each node; it has {counted(passed)}")
+    unread = {key for feature in features for key in feature.properties if not _is_like_key(key)} - _READ_HERE
+    words = {f"nodes: {len(points)}": True, f"properties not read: {', '.join(sorted(unread))}": unread}
+    notes = [account(words, passed)] if unread or any(passed.values()) else []
+    return *call_each(lambda each: _node_of_point(*each), points), notes
 
 
-def _values(feature: Feature, unread: set[str]) -> PlainTable:
-    """Pick the properties that are keys of a node or look like one; add the others to those unread."""
-    keys = set(Node.model_fields)
-    likely = {key for key in feature.properties if key in keys or get_close_matches(key, keys, 1, _TYPO)}
-    unread |= feature.properties.keys() - likely - {"Name", "altitudeMode", "extrude", "ele"}
-    return {key: feature.properties[key] for key in likely - {"name", "Name"}}
+@cache
+def _is_like_key(name: str) -> bool:
+    """Tell whether a property is a key of a node or looks like one."""
+    return name in Node.model_fields or bool(get_close_matches(name, Node.model_fields, 1, _TYPO))
 
 
-def _node_of_point(feature: Feature, point: Point, values: PlainTable) -> ListedNode:
+def _node_of_point(feature: Feature, point: Point, name: str) -> ListedNode:
+    likely = [key for key in feature.properties if _is_like_key(key) and key not in ("name", "Name")]
+    values = {key: feature.properties[key] for key in likely} | ({"name": name} if name else {})
     where, coordinates = feature.place, f"{feature.place}.geometry.coordinates"
     key, height_m = "alt_m", point.z if point.has_z and math.isfinite(point.z) else None
     if where.startswith("Placemark"):  # KML clamps a point without a mode to the ground

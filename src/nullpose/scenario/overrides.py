@@ -12,7 +12,7 @@ from typing import Any
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import path_of, refusal, require
+from nullpose.scenario.faults import call_each, path_of, raise_all, refusal, require
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
@@ -86,13 +86,12 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         (10.0, 0.0)
     """
     data, changes = scenario.to_dict(), list(overrides)
-    faults = _applied(changes, data)
+    faults = _apply_all(changes, data)
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:
         faults += error.faults
-    if faults:
-        raise ScenarioError(faults, _source(changes))
+    raise_all(faults, _source(changes))
     return changed
 
 
@@ -107,19 +106,13 @@ def overridden(tables: PlainTable, overrides: Sequence[str | Override]) -> Plain
         ScenarioError: with every path that does not exist.
     """
     data = deepcopy(dict(tables))
-    if faults := _applied(overrides, data):
-        raise ScenarioError(faults, _source(overrides))
+    raise_all(_apply_all(overrides, data), _source(overrides))
     return data
 
 
-def _applied(overrides: Sequence[str | Override], data: PlainTable) -> list[Fault]:
-    """Set the values in a raw scenario; returns the faults of those that cannot be set."""
-    faults: list[Fault] = []
-    for override in overrides:
-        try:
-            _apply(parse_override(override) if isinstance(override, str) else override, data)
-        except ScenarioError as error:
-            faults += error.faults
+def _apply_all(overrides: Sequence[str | Override], data: PlainTable) -> list[Fault]:
+    """Set the values in a raw scenario; return the faults of those that cannot be set."""
+    _, faults = call_each(lambda override: _apply(override, data), overrides)
     return faults
 
 
@@ -127,8 +120,9 @@ def _source(overrides: Sequence[str | Override]) -> str:
     return f"override {listed([str(override).strip() or '(blank)' for override in overrides])}"
 
 
-def _apply(override: Override, data: PlainTable) -> None:
-    """Set one value of a raw scenario, and drops what it replaces."""
+def _apply(stated: str | Override, data: PlainTable) -> None:
+    """Set one value of a raw scenario, and drop what it replaces."""
+    override = parse_override(stated) if isinstance(stated, str) else stated
     path = override.path
     require(_PATH.fullmatch(path), path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))

@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
+from pydantic import AfterValidator
 
 from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.faults import rejection
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 MOST_CORNERS = 5000
 """Vertices of a polygon, and of all that an airspace has: more take too long to cut."""
+_Vertices = tuple[tuple[float, float], ...]
 _SAME_VERTEX = 1e-9  # metres or degrees: vertices closer than this are one
 
 
@@ -73,7 +75,7 @@ def _prepared(vertices_m: bytes) -> tuple[BaseGeometry, BaseGeometry]:
 
 
 @lru_cache(maxsize=64)  # a scenario reads its polygons more than once
-def _judged(corners: tuple[tuple[float, float], ...]) -> tuple[str, tuple[tuple[float, float], ...]]:
+def _judged(corners: _Vertices) -> tuple[str, _Vertices]:
     """Find the fault of corners that bound no area, in shapely's words, and drop doubled ones."""
     import shapely
 
@@ -86,45 +88,39 @@ def _judged(corners: tuple[tuple[float, float], ...]) -> tuple[str, tuple[tuple[
     return "it has no area" if polygon.is_valid else shapely.is_valid_reason(polygon), ()
 
 
-class _Outline(ListOf):
-    """The vertices of a simple polygon, as the metadata of an annotated tuple."""
-
-    def judge(self, value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        """Return the vertices without doubled ones, or raises the fault that keeps them from one area."""
-        fault, corners = _judged(value)
-        if fault:
-            raise rejection(
-                f"the border crosses or touches itself, or has no area ({fault}); list every vertex once, in "
-                "order around the area (the last is joined to the first)"
-            )
-        return value if len(corners) == len(value) else corners
-
-
-class _EarthlyOutline(_Outline):
-    """The same in degrees; longitudes go on across the antimeridian."""
-
-    def judge(self, value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-        """Return the vertices without doubled ones, or raises the fault that keeps them from one area."""
-        first = value[0][1]
-        near = tuple((lat, lon - 360.0 * round((lon - first) / 360.0)) for lat, lon in value)
-        corners = super().judge(near)
-        return (
-            value if corners is near else tuple((lat, (lon + 180.0) % 360.0 - 180.0) for lat, lon in corners)
+def _outline(value: _Vertices) -> _Vertices:
+    """Return the vertices without doubled ones, or raise the fault that keeps them from one area."""
+    fault, corners = _judged(value)
+    if fault:
+        raise rejection(
+            f"the border crosses or touches itself, or has no area ({fault}); list every vertex once, in "
+            "order around the area (the last is joined to the first)"
         )
+    return value if len(corners) == len(value) else corners
+
+
+def _earthly_outline(value: _Vertices) -> _Vertices:
+    """Do the same in degrees; longitudes go on across the antimeridian."""
+    first = value[0][1]
+    near = tuple((lat, lon - 360.0 * round((lon - first) / 360.0)) for lat, lon in value)
+    corners = _outline(near)
+    return value if corners is near else tuple((lat, (lon + 180.0) % 360.0 - 180.0) for lat, lon in corners)
 
 
 Polygon = Annotated[
     tuple[PlanePoint, ...],
-    _Outline(f"a list of at least three and at most {MOST_CORNERS} vertices [x, y] in m", 3, MOST_CORNERS),
+    ListOf(f"a list of at least three and at most {MOST_CORNERS} vertices [x, y] in m", 3, MOST_CORNERS),
+    AfterValidator(_outline),
 ]
 """The vertices [x, y] of a polygon in order, in m; the last is joined to the first."""
 EarthlyPolygon = Annotated[
     tuple[LatLon, ...],
-    _EarthlyOutline(
+    ListOf(
         f"a list of at least three and at most {MOST_CORNERS} vertices [latitude, longitude] in degrees",
         3,
         MOST_CORNERS,
     ),
+    AfterValidator(_earthly_outline),
 ]
 """The vertices [latitude, longitude] of a polygon in order, in degrees; the last is joined to the first."""
 

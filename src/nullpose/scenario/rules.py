@@ -27,17 +27,12 @@ class Rule:
         """Return a raw value as its type takes it, or raises the fault that says what is wrong with it."""
         return value
 
-    def judge(self, value: Any) -> object:
-        """Return a value of the type, or raises the fault that says what is wrong with it."""
-        return value
-
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
         """Return the JSON Schema, given that of the type."""
         return inner
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        read = core_schema.no_info_before_validator_function(self.read, handler(source))
-        return core_schema.no_info_after_validator_function(self.judge, read)
+        return core_schema.no_info_before_validator_function(self.read, handler(source))
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
@@ -175,40 +170,31 @@ class ListOf(Rule):
         return {"type": "array", "items": items, "minItems": self.fewest, "maxItems": self.most}
 
 
-class Ascending(ListOf):
-    """A list of two numbers, the second no less than the first."""
-
-    def judge(self, value: tuple[float, float]) -> tuple[float, float]:
-        """Return the two, or raises the fault that they are reversed."""
-        if value[0] > value[1]:
-            raise rejection(
-                f"got {list(value)}, which is reversed and so holds nothing; must be {self.noun}; "
-                f"try {list(value[::-1])}"
-            )
-        return value
-
-
-class Direction(ListOf):
-    """A list of three numbers, not all zero: a direction, of any length."""
-
-    def judge(self, value: tuple[float, float, float]) -> tuple[float, float, float]:
-        """Return the three, or raises the fault that they point nowhere."""
-        if not any(value):
-            raise rejection(f"got {list(value)}, which has length 0 and no direction; must be {self.noun}")
-        return value
+def ascending(value: tuple[float, float]) -> tuple[float, float]:
+    """Return two numbers, or raise the fault that the second is less than the first."""
+    if value[0] > value[1]:
+        raise rejection(
+            f"got {list(value)}, which is reversed and so holds nothing; must have the lowest first; "
+            f"try {list(value[::-1])}"
+        )
+    return value
 
 
 class Members(ListOf):
-    """A list of tables, as the metadata of an annotated tuple."""
+    """A list of tables, of which each that leaves its name out is named by its letter and its place."""
 
-    def judge(self, value: tuple[Any, ...]) -> tuple[object, ...]:
-        """Return the tables, each that leaves its name out being named by its letter and its place."""
-        return tuple(
-            member
-            if member.name or member.letter is None
-            else BaseModel.model_copy(member, update={"name": f"{member.letter}{place}"})
-            for place, member in enumerate(value, 1)
-        )
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        members = super().__get_pydantic_core_schema__(source, handler)
+        return core_schema.no_info_after_validator_function(_named_by_place, members)
+
+
+def _named_by_place(value: tuple[Any, ...]) -> tuple[Any, ...]:
+    return tuple(
+        member
+        if member.name or member.letter is None
+        else BaseModel.model_copy(member, update={"name": f"{member.letter}{place}"})
+        for place, member in enumerate(value, 1)
+    )
 
 
 def list_of_tables(key: str, fewest: int = 0, most: int = MOST_MEMBERS) -> Members:

@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import require
+from nullpose.scenario.geodesy import wrapped
 
 _SAME_CORNER_DEG = 9e-8  # a centimetre
 _STRAIGHT_DEG = 0.02  # an edge of this length, straight in degrees, is within 0.2 m of straight in metres
@@ -30,10 +31,8 @@ def parts_of(geometry: BaseGeometry | Sequence[BaseGeometry] | None) -> Iterator
 
 def corners_of(ring: LinearRing) -> list[list[float]]:
     """Return the corners of a ring as latitudes and longitudes, these from -180 to 180 degrees."""
-    corners = shapely.get_coordinates(ring)[:-1, ::-1]
-    beyond = np.abs(corners[:, 1]) > 180.0
-    corners[beyond, 1] = (corners[beyond, 1] + 180.0) % 360.0 - 180.0
-    return corners.tolist()  # type: ignore[no-any-return]
+    lon_deg, lat_deg = shapely.get_coordinates(ring)[:-1].T
+    return np.stack([lat_deg, wrapped(lon_deg)], axis=1).tolist()  # type: ignore[no-any-return]
 
 
 def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:
@@ -82,13 +81,10 @@ def near(polygon: Polygon, middle_deg: float) -> Polygon:
     """Move a polygon's longitudes near a middle, going on across the antimeridian."""
 
     def moved(corners: Floats) -> Floats:
-        first = corners[0, 0] - 360.0 * round((corners[0, 0] - middle_deg) / 360.0)
-        corners[:, 0] -= 360.0 * np.round((corners[:, 0] - first) / 360.0)
+        corners[:, 0] = wrapped(corners[:, 0], wrapped(corners[0, 0], middle_deg))
         return corners
 
-    west, _, east, _ = polygon.bounds
-    is_near = east - west < 180.0 and abs(west - middle_deg) <= 180.0
-    return polygon if is_near else shapely.transform(polygon, moved)
+    return shapely.transform(polygon, moved)
 
 
 def box_about(lon_deg: float, lat_deg: float, radius_m: object) -> Polygon:

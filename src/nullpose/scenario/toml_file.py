@@ -198,22 +198,17 @@ def toml_text(scenario: Mapping[str, object]) -> str:
 
 def _blocks(header: list[str], path: str, values: Mapping[str, object]) -> Iterator[str]:
     """Yield a table's own keys under its header, then the tables inside it under theirs."""
-    tables = {key: _tables(value) for key, value in values.items()}
-    yield "\n".join(header + [f"{key} = {toml_value(values[key])}" for key in values if tables[key] is None])
+    tables = {
+        key: [value] if isinstance(value, Mapping) else value
+        for key, value in values.items()
+        if isinstance(value, Mapping)
+        or (isinstance(value, list) and all(isinstance(member, Mapping) for member in value))
+    }
+    yield "\n".join(header + [f"{key} = {toml_value(values[key])}" for key in values if key not in tables])
     for key, inner in tables.items():
         name = f"{path}.{key}".removeprefix(".")
-        is_alone = isinstance(values[key], Mapping)
-        for table in inner or ():
-            yield from _blocks([f"[{name}]" if is_alone else f"[[{name}]]"], name, table)
-
-
-def _tables(value: object) -> Sequence[Mapping[str, object]] | None:
-    """Return the tables that a value is, one or a list of them; None if it is a value of another kind."""
-    if isinstance(value, Mapping):
-        return [value]
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return value if all(isinstance(member, Mapping) for member in value) else None
-    return None
+        for table in inner:
+            yield from _blocks([f"[{name}]" if values[key] is table else f"[[{name}]]"], name, table)
 
 
 def toml_value(value: object) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BeforeValidator, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, WithJsonSchema
 
 from nullpose.scenario.faults import EXCHANGED, rejection
-from nullpose.scenario.rules import Ascending, Direction, ListOf, Quantity
+from nullpose.scenario.rules import ListOf, Quantity, ascending
 from nullpose.scenario.wording import described
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
@@ -130,7 +130,8 @@ Position = Annotated[
 ]
 Range = Annotated[
     tuple[Metres, Metres],
-    Ascending("a list of two numbers in m, the lowest first (equal ends fix the value)", 2, 2),
+    ListOf("a list of two numbers in m, the lowest first (equal ends fix the value)", 2, 2),
+    AfterValidator(ascending),
 ]
 PlanePoint = Annotated[
     tuple[Metres, Metres], ListOf("a list of two numbers [x, y]: metres east and north", 2, 2)
@@ -139,9 +140,18 @@ LatLon = Annotated[
     tuple[Latitude, Longitude],
     ListOf("a list of two numbers [latitude, longitude]: degrees north and east", 2, 2),
 ]
+
+
+def _pointing(value: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not any(value):
+        raise rejection(f"got {list(value)}, which has length 0 and no direction; [0, 0, 1] is upright")
+    return value
+
+
 AxisDirection = Annotated[
     tuple[Component, Component, Component],
-    Direction("a list of three numbers [x, y, z]: a direction, east, north and up, of any length", 3, 3),
+    ListOf("a list of three numbers [x, y, z]: a direction, east, north and up, of any length", 3, 3),
+    AfterValidator(_pointing),
 ]
 RollPitchYaw = Annotated[
     tuple[AttitudeDegrees, AttitudeDegrees, AttitudeDegrees],

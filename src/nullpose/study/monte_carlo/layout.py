@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import GroundAntennaKind, GroundPoint
-from nullpose.scenario.rules import Ascending, Choice, Count, Quantity
+from nullpose.scenario.rules import Choice, Count, ListOf, Quantity, ascending
 from nullpose.scenario.section import Section
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
@@ -38,7 +38,7 @@ MOST_POINTS = 10_000  # of one kind in a scene
 
 
 @dataclass(frozen=True, slots=True)
-class _CountRange(Ascending):
+class _CountRange(ListOf):
     """A whole number, or a range of them that one is drawn from evenly."""
 
     low: int
@@ -46,7 +46,7 @@ class _CountRange(Ascending):
     def read(self, value: object) -> list[object]:
         count = Count(self.noun.split(",")[0], self.low, MOST_POINTS, "or a range, as in [2, 10]")
         ends = plain(value)
-        ends = Ascending.read(self, ends) if isinstance(ends, list | tuple) else [ends, ends]
+        ends = ListOf.read(self, ends) if isinstance(ends, list | tuple) else [ends, ends]
         return [count.read(end) for end in ends]
 
 
@@ -97,7 +97,11 @@ class Points(Section):
         examples=["disc"],
     )
     count: (
-        Annotated[tuple[int, int], _CountRange("a number of points, or two, the smaller first", 2, 2, 0)]
+        Annotated[
+            tuple[int, int],
+            _CountRange("a number of points, or two, the smaller first", 2, 2, 0),
+            AfterValidator(ascending),
+        ]
         | None
     ) = Field(
         default=None,
@@ -121,7 +125,11 @@ class Points(Section):
         default=None, description="Of poisson: the mean number over the area.", examples=[1e-3]
     )
     parents: (
-        Annotated[tuple[int, int], _CountRange("a number of clusters, or two, the smaller first", 2, 2, 1)]
+        Annotated[
+            tuple[int, int],
+            _CountRange("a number of clusters, or two, the smaller first", 2, 2, 1),
+            AfterValidator(ascending),
+        ]
         | None
     ) = Field(default=None, description="Of clusters: how many, a number or a range.", examples=[[2, 4]])
     spread_m: RadiusMetres | None = Field(
