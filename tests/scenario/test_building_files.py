@@ -150,8 +150,8 @@ def test_what_becomes_of_features(tmp_path: Path) -> None:
     inside = shapely.Polygon(court.polygon_m, court.courtyards_m)
     assert inside.area == pytest.approx(sum(_areas(scenario, 0)), rel=1e-5)
     assert notes == [
-        "town.geojson: buildings: 4: 2 by levels, 1 by height, 1 assumed; out of reach: 1; passed over: "
-        "1 point, 1 line, 2 other features",
+        "town.geojson: buildings: 4: 2 by levels, 1 by height, 1 assumed; passed over: 1 point, 1 line, "
+        "2 other features; out of reach: 1",
         "town.geojson: not read: roof:height (of 1), est_height (of 1)",
     ]
 

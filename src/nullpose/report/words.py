@@ -87,5 +87,6 @@ def channel_words(scenario: Scenario) -> str | None:
     """Describe the channel, and those of points that have their own; None where none is stated."""
     points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
     channels = {"": scenario.channel} | {f"{point.name}: ": point.channel for point in points}
-    words = "words" if scenario.prisms is None else "words_among_buildings"
-    return "; ".join(f"{name}{getattr(each, words)}" for name, each in channels.items() if each) or None
+    among = scenario.prisms is not None
+    words = (f"{name}{each.describe(among_buildings=among)}" for name, each in channels.items() if each)
+    return "; ".join(words) or None

@@ -157,14 +157,22 @@ class Airspace(Section):
         return counter_clockwise_m(self.geofence_m)
 
     @cached_property
+    def box_m(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lower and upper corner of the smallest box about what the ranges and the fence allow, (3,) in m."""
+        fence_m = self.geofence_outline_m
+        if not len(fence_m):
+            return self.lower_m, self.upper_m
+        low_m, high_m = [*fence_m.min(axis=0), -math.inf], [*fence_m.max(axis=0), math.inf]
+        return np.maximum(self.lower_m, low_m), np.minimum(self.upper_m, high_m)
+
+    @cached_property
     def inner(self) -> Airspace:
         """The same without its margin, which larger zones and a smaller fence have instead."""
         if not self.margin_m:
             return self
-        raw = {key: getattr(self, key) for key in type(self).model_fields}
         fence_m = self.geofence_m and offset_outlines_m(self.geofence_outline_m, -self.margin_m)[0]
         zones = tuple(zone.grown(self.margin_m) for zone in self.no_fly)
-        return self.model_construct(**raw | {"margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
+        return self.model_construct(**{**dict(self), "margin_m": 0.0, "geofence_m": fence_m, "no_fly": zones})
 
     def outside(self, solids: Iterable[NoFlyZone]) -> Airspace:
         """Return the same without more zones, such as buildings.
@@ -172,9 +180,8 @@ class Airspace(Section):
         Args:
             solids: the zones.
         """
-        raw = {key: getattr(self, key) for key in type(self).model_fields}
         more = tuple(zone for zone in solids if self.reached(zone.grown(self.margin_m or 0.0)))
-        return self.model_construct(**raw | {"no_fly": (*self.no_fly, *more)}) if more else self
+        return self.model_construct(**{**dict(self), "no_fly": (*self.no_fly, *more)}) if more else self
 
     def reached(self, zone: NoFlyZone) -> bool:
         """Check if a zone may forbid anything that the ranges and the fence allow.
@@ -182,11 +189,8 @@ class Airspace(Section):
         Args:
             zone: one of the airspace's.
         """
-        low_m, high_m = zone.box_m
-        is_reached = np.all(low_m < self.upper_m) and np.all(high_m > self.lower_m)
-        if len(fence_m := self.geofence_outline_m):
-            is_reached &= np.all(low_m[:2] < fence_m.max(axis=0)) and np.all(high_m[:2] > fence_m.min(axis=0))
-        return bool(is_reached)
+        (low_m, high_m), (lower_m, upper_m) = zone.box_m, self.box_m
+        return bool(np.all(low_m < upper_m) and np.all(high_m > lower_m))
 
     def allows(self, position_m: ArrayLike) -> NDArray[np.bool_]:
         """Check positions of the vehicle against ranges, fence and zones, without the keep-out balls.

@@ -60,16 +60,17 @@ class Area:
         return bool(self.polygons or self.cylinders)
 
 
-def account(parts: Mapping[str, object], counts: Mapping[str, int]) -> str:
-    """Join the parts of an account that apply, and what is passed over of a file.
+def account(head: str, counts: Mapping[str, int], parts: Mapping[str, object]) -> str:
+    """Say in a line what is read of a file, what is passed over, and what else applies.
 
     Args:
-        parts: in words, by whether they apply.
+        head: the first part.
         counts: of features by what became of them.
+        parts: the last ones, by whether they apply.
     """
     passed = counted({kind: counts.get(kind, 0) for kind in _PASSED_OVER})
-    whole = {**parts, f"passed over: {passed}": passed}
-    return "; ".join(words for words, is_so in whole.items() if is_so)
+    whole = {f"passed over: {passed}": passed, **parts}
+    return "; ".join([head, *(words for words, is_so in whole.items() if is_so)])
 
 
 def notes_on(
@@ -88,14 +89,14 @@ def notes_on(
     holes = sum(len(polygon.interiors) for polygon in polygons)
     limits = areas[0].limits if is_fence else {}
     head = "fence: 1 polygon" if is_fence else f"zones: {len(areas)} of {counts['area']} in reach"
+    head += f" ({shapes})" if areas and not is_fence else ""
     parts = {
-        f"{head} ({shapes})" if areas and not is_fence else head: True,
         EXCHANGED: counts["area"] and not areas,
         f"holes {'that are zones' if is_fence else 'filled'}: {holes}": holes,
         f"borders that cross, all inside counts: {counts['crossing']}": counts["crossing"],
         ", ".join(f"{key} = {ends}" for key, ends in limits.items()): limits,
     }
-    if (words := account(parts, counts)) != head or not is_fence:
+    if (words := account(head, counts, parts)) != head or not is_fence:
         yield words
     yield from remarks
     for remark in dict.fromkeys(remark for area in areas for remark in area.remarks):

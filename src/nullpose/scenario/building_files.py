@@ -101,11 +101,10 @@ def _notes(found: Sequence[tuple[Area, BuildingHeight]], counts: Counter[str]) -
     sources = Counter(height.by for area, height in found for _ in area.polygons)
     shares = ", ".join(f"{number} {source}" for source, number in sources.most_common())
     parts = {
-        f"buildings: {sources.total()}{f': {shares}' if shares else ''}": True,
         EXCHANGED: counts["area"] and not found,
         f"out of reach: {counts['area'] - len(found)}": counts["area"] > len(found),
     }
-    yield account(parts, counts)
+    yield account(f"buildings: {sources.total()}{f': {shares}' if shares else ''}", counts, parts)
     unread = Counter(key for _, height in found for key in height.unread)
     if unread:
         yield f"not read: {', '.join(f'{key} (of {number})' for key, number in unread.items())}"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, ClassVar
 
-from pydantic import Field, SkipValidation
+from pydantic import BeforeValidator, Field, SkipValidation
 
 from nullpose.channel import CHANNELS, ENVIRONMENTS, Custom, LinkChannel
 from nullpose.channel.elevation import AVERAGES
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place
-from nullpose.scenario.rules import ByName, Choice, Quantity, Rule
+from nullpose.scenario.rules import ByName, Choice, Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import BlockedDecibels, LossDecibels, ReferenceMetres, ratio_from_db
 from nullpose.scenario.ways import Ways
@@ -119,21 +119,18 @@ class Channel(Section):
         """The distance at which the reference gain holds [m]."""
         return self.reference_distance_m or _DEFAULTS["reference_distance_m"]
 
-    @property
-    def words(self) -> str:
-        """What it is, as in ``elevation, environment urban, average power``."""
-        return self._words()
+    def describe(self, *, among_buildings: bool) -> str:
+        """Put into words what it is, as in ``elevation, environment urban, average power``.
 
-    @property
-    def words_among_buildings(self) -> str:
-        """The same where buildings decide on line of sight: then there is neither probability nor average."""
-        if self.average is None:
-            return self.words
-        return f"{self._words(unused=('a', 'b', 'average'))}, line of sight by buildings"
-
-    def _words(self, unused: tuple[str, ...] = ()) -> str:
-        keys = [key for key in _keys_of(self.model) if getattr(self, key) is not None and key not in unused]
-        return ", ".join([self.model, *(f"{key.replace('_', ' ')} {getattr(self, key)}" for key in keys)])
+        Args:
+            among_buildings: whether these decide on line of sight: then there is neither probability nor
+                average.
+        """
+        sure = among_buildings and self.average is not None
+        used = [key for key in _keys_of(self.model) if not (sure and key in ("a", "b", "average"))]
+        keys = [key for key in used if getattr(self, key) is not None]
+        numbers = [f"{key.replace('_', ' ')} {getattr(self, key)}" for key in keys]
+        return ", ".join([self.model, *numbers, *["line of sight by buildings"] * sure])
 
     def make(self, is_interferer: bool) -> LinkChannel:
         """Return the channel of a link.
@@ -182,9 +179,8 @@ class CustomChannel(Channel):
         """Return no faults: the law has judged itself."""
         return ()
 
-    @property
-    def words(self) -> str:
-        """Its name."""
+    def describe(self, *, among_buildings: bool) -> str:
+        """Return its name."""
         return self.law.name
 
     def make(self, is_interferer: bool) -> LinkChannel:
@@ -192,19 +188,14 @@ class CustomChannel(Channel):
         return self.law.link()
 
 
-class _OrCustom(Rule):
-    """A table, in place of which there may be a channel of one's own, in Python."""
-
-    def read(self, value: object) -> object:
-        """Return the table."""
-        return (
-            CustomChannel.model_construct(model=value.name, law=value) if isinstance(value, Custom) else value
-        )
+def _read_custom(value: object) -> object:
+    """Return the table of a channel of one's own, in Python; other values pass unchanged."""
+    return CustomChannel.model_construct(model=value.name, law=value) if isinstance(value, Custom) else value
 
 
 _OR_NAME = ByName(
     'a table such as { model = "power-law", exponent = 2.4 }, or the name of a model that needs no numbers',
     {name: {"model": name} for name, model in CHANNELS.items() if not model.keys},
 )
-NamedChannel = Annotated[Channel, _OrCustom(), _OR_NAME]
+NamedChannel = Annotated[Channel, BeforeValidator(_read_custom), _OR_NAME]
 """The type of a point's key ``channel``: a table, or the name of a model."""

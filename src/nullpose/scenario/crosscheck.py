@@ -61,9 +61,11 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     ]
     yield from misplaced
     yield from _objective_faults(scenario, points)
-    yield from shared_names(points)
-    yield from shared_names(zones)
-    yield from _buildings_faults(buildings)
+    for named in (points, zones, buildings):
+        yield from shared_names(named)
+    for place, building in buildings.items():
+        if building.buildings_from is not None:
+            yield (*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it"
     yield from _antenna_faults(scenario, points)
     yield from _channel_faults(scenario, {(): scenario, **points})
     if not misplaced:
@@ -76,14 +78,6 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
             receiver: Receiver | None = scenario.receiver
             outside = airspace.outside(each.zone for each in solid.values())
             yield from airspace_faults(outside, positioned, receiver.position_error_m if receiver else 0.0)
-
-
-def _buildings_faults(buildings: Mapping[Place, Building]) -> Iterator[tuple[Place, str]]:
-    """Yield the buildings whose name is another's, and those whose file was not read."""
-    yield from shared_names(buildings)
-    for place, building in buildings.items():
-        if building.buildings_from is not None:
-            yield (*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it"
 
 
 def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> list[tuple[Place, str]]:

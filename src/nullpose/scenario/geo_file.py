@@ -8,15 +8,17 @@ from __future__ import annotations
 import json
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import shapely.geometry
+from shapely.errors import ShapelyError
 from shapely.geometry.base import BaseGeometry
 
 from nullpose.files import PlainTable, parse_json
@@ -69,12 +71,12 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
     ending = path.suffix.lower()
     if ending in (".geojson", ".json"):
         return _features_of_json(decoded(content))
-    begin = f"it does not begin as a {ending} file does; is it of another kind?"
-    require(content.startswith(_SIGNS[ending]), "", begin)
+    has_sign = content.startswith(_SIGNS[ending])
+    require(has_sign, "", f"it does not begin as a {ending} file does; is it of another kind?")
     is_kml = ending in (".kml", ".kmz")
     if ending == ".kmz":
         content = kml_of_kmz(content, MOST_BYTES)
-    document = root_of(content, ending[1:].replace("kmz", "kml")) if is_kml or ending == ".gpx" else None
+    document = root_of(content, "kml" if is_kml else "gpx") if is_kml or ending == ".gpx" else None
     # GDAL knows an old GeoPackage by its ending, and reads the journal beside it
     features = list(_features_of_gdal(path if document is None else content, is_kml))
     if is_kml and document is not None:
@@ -95,10 +97,16 @@ def _features_of_json(text: str) -> list[Feature]:
             "FeatureCollection",
             [data if kind == "Feature" else {"type": "Feature", "geometry": data}],
         )
-    allowed = 'must be "FeatureCollection", "Feature" or a geometry'
-    require(kind == "FeatureCollection", "type", f"got {described(kind)}, {allowed}")
-    is_list = isinstance(members, list) and members
-    require(is_list, "features", f"got {described(members)}, must be a list of one feature or more")
+    require(
+        kind == "FeatureCollection",
+        "type",
+        f'got {described(kind)}, must be "FeatureCollection", "Feature" or a geometry',
+    )
+    require(
+        isinstance(members, list) and members,
+        "features",
+        f"got {described(members)}, must be a list of one feature or more",
+    )
     if "crs" in data:
         _require_wgs84(json.dumps(data["crs"]).rstrip('}"]'))
     features, faults = call_each(_features_of_member, enumerate(members))
@@ -110,11 +118,17 @@ def _features_of_member(numbered: tuple[int, Any]) -> list[Feature]:
     index, member = numbered
     place = f"features[{index}]"
     geometry, properties = _of(member, "geometry"), _of(member, "properties")
-    kind = _of(member, "type")
-    require(kind == "Feature", place, f'got {described(kind)}, must be an object with "type": "Feature"')
+    require(
+        _of(member, "type") == "Feature",
+        place,
+        f'got {described(_of(member, "type"))}, must be an object with "type": "Feature"',
+    )
     require("geometry" in member, f"{place}.geometry", "missing; a feature without a place states null")
-    is_object = isinstance(properties, dict | None)
-    require(is_object, f"{place}.properties", f"got {described(properties)}, must be an object")
+    require(
+        isinstance(properties, dict | None),
+        f"{place}.properties",
+        f"got {described(properties)}, must be an object",
+    )
     parts = _of(geometry, "geometries")
     if isinstance(parts, list) and any({"layer", "extent"} & set(each) for each in parts if each):
         shapes = {f"{place}.geometry.geometries[{index}]": each for index, each in enumerate(parts)}
@@ -125,7 +139,9 @@ def _features_of_member(numbered: tuple[int, Any]) -> list[Feature]:
         geometric = ("type", "coordinates", "geometries")
         beside = {key: shape[key] for key in shape if key not in geometric} if isinstance(shape, dict) else {}
         found = {key: value for key, value in {**(properties or {}), **beside}.items() if value is not None}
-        features.append(Feature(where.removesuffix(".geometry"), _shape(shape, where), found))
+        features.append(
+            Feature(where.removesuffix(".geometry"), _shape(shapely.geometry.shape, shape, where), found)
+        )
     return features
 
 
@@ -133,35 +149,22 @@ def _of(value: object, key: str) -> Any:
     return value.get(key) if isinstance(value, dict) else None
 
 
-def _shape(geometry: object, place: str) -> BaseGeometry | None:
-    """Return a GeoJSON geometry as shapely's."""
+def _shape(read: Callable[[Any], BaseGeometry], geometry: object, place: str) -> BaseGeometry | None:
+    """Read a geometry, whose coordinates are longitudes, which may go on beyond 180, and latitudes."""
     if geometry is None:
         return None
     try:
-        found = shapely.geometry.shape(geometry)
-    except (
-        AttributeError,
-        IndexError,
-        KeyError,
-        TypeError,
-        ValueError,
-        shapely.errors.ShapelyError,
-    ) as error:
+        shape = read(geometry)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError, ShapelyError) as error:
         got = described(geometry["type"] if isinstance(geometry, dict) and "type" in geometry else geometry)
         raise refusal(
             place, f"got {got}, must be a geometry with [longitude, latitude] in degrees ({error})"
         ) from None
-    return _on_earth(found, place)
-
-
-def _on_earth(geometry: BaseGeometry, place: str) -> BaseGeometry:
-    """Return a geometry whose coordinates are longitudes, which may go on beyond 180, and latitudes."""
-    places = shapely.get_coordinates(geometry)
+    places = shapely.get_coordinates(shape)
     wrong = ~(np.abs(places) <= [360.0, 90.0]).all(axis=1)  # NaN too
-    if wrong.any():
-        lon, lat = places[wrong.argmax()]
+    for lon, lat in places[wrong][:1]:
         raise refusal(place, f"got longitude {lon:g} and latitude {lat:g}, must be degrees; {EXCHANGED}")
-    return geometry
+    return shape
 
 
 def _layers_of_gdal(source: Path | bytes) -> list[tuple[str, Any]]:
@@ -186,6 +189,7 @@ def _layers_of_gdal(source: Path | bytes) -> list[tuple[str, Any]]:
 
 def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
     numbers, left_out = count(), _OF_DRAWING if is_kml else set()
+    read_wkb = partial(shapely.from_wkb, on_invalid="fix")
     for layer, (meta, _, shapes, columns) in _layers_of_gdal(source):
         if shapes is None:  # a table, such as of styles
             shapes = [None] * len(columns[0]) if columns else []
@@ -200,7 +204,7 @@ def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
             name, number = found.get("Name", found.get("name")), next(numbers)
             label = f"[{number}]" if name is None else f' "{name}"'
             place = f"{'Placemark' if is_kml else layer}{label}"
-            yield Feature(place, _shape_of_wkb(shape, place), found)
+            yield Feature(place, _shape(read_wkb, shape, place), found)
 
 
 def _cell(value: object, is_name: bool) -> object:
@@ -213,13 +217,6 @@ def _cell(value: object, is_name: bool) -> object:
         with suppress(ValueError, RecursionError):
             return json.loads(value)
     return None if value is None or value != value else value
-
-
-def _shape_of_wkb(shape: bytes | None, place: str) -> BaseGeometry | None:
-    try:
-        return None if shape is None else _on_earth(shapely.from_wkb(shape, on_invalid="fix"), place)
-    except shapely.GEOSException as error:
-        raise refusal(place, f"its geometry cannot be used: {error}") from None
 
 
 def _require_wgs84(system: str) -> None:

@@ -63,8 +63,11 @@ def require_whole(root: Element, placemarks: int, corners: int) -> None:
         ScenarioError: there are more, or something else that may hold areas.
     """
     for kind, words in (("NetworkLink", "a link to another file"), ("GroundOverlay", "a picture on a map")):
-        is_absent = root.find(f".//{{*}}{kind}") is None
-        require(is_absent, "", f"it has a {kind}, {words}, which is not read; save what it shows as KML")
+        require(
+            root.find(f".//{{*}}{kind}") is None,
+            "",
+            f"it has a {kind}, {words}, which is not read; save what it shows as KML",
+        )
     written = root.findall(".//{*}Placemark")
     count = 0
     for placemark in written:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from nullpose.errors import ScenarioError
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import ONLY_LOCAL, refusal, require
+from nullpose.scenario.faults import ONLY_LOCAL, refusal
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import file_text, tables_of, uploaded_text
@@ -124,8 +124,8 @@ def scenario_from_text(content: bytes, name: str) -> Scenario:
     """
     try:
         tables = tables_of(uploaded_text(content))
-        is_whole = "nodes_from" not in tables
-        require(is_whole, "nodes_from", f"{ONLY_LOCAL}; list the nodes here, under [[nodes]]")
+        if "nodes_from" in tables:
+            raise refusal("nodes_from", f"{ONLY_LOCAL}; list the nodes here, under [[nodes]]")
         return Scenario.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError(error.faults, name) from None

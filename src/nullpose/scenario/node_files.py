@@ -24,7 +24,7 @@ from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.shapes import parts_of
 from nullpose.scenario.units import ALTITUDE_KEYS, GEODETIC_KEYS
 from nullpose.scenario.ways import Ways
-from nullpose.scenario.wording import listed, printable, unknown
+from nullpose.scenario.wording import printable, unknown
 
 _LOCAL = ("x_m", "y_m", "z_m")
 _PLACE = Ways((_LOCAL, GEODETIC_KEYS), twins=PLACE.twins)
@@ -81,7 +81,8 @@ def nodes_of_csv(text: str) -> ReadNodes:
 def _header_faults(header: Sequence[str]) -> Iterator[str]:
     if len(header) < 2:
         got = f'got "{printable(header[0])}"' if header else "the file is empty"
-        yield f"{got}, must be a header line of columns separated by commas, such as {listed(_COLUMNS[:8])}"
+        columns = ", ".join(_COLUMNS[:8])
+        yield f"{got}, must be a header line of columns separated by commas, such as {columns}"
         return
     for index, column in enumerate(header):
         if column in header[:index]:
@@ -135,8 +136,8 @@ def nodes_of_features(features: Sequence[Feature]) -> ReadNodes:
     del passed["point"]
     require(points, "", f"it has no point, must have one for each node; it has {counted(passed)}")
     unread = {key for feature in features for key in feature.properties if not _is_like_key(key)} - _READ_HERE
-    words = {f"nodes: {len(points)}": True, f"properties not read: {', '.join(sorted(unread))}": unread}
-    notes = [account(words, passed)] if unread or any(passed.values()) else []
+    parts = {f"properties not read: {', '.join(sorted(unread))}": unread}
+    notes = [account(f"nodes: {len(points)}", passed, parts)] if unread or any(passed.values()) else []
     return *call_each(lambda each: _node_of_point(*each), points), notes
 
 

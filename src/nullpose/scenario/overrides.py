@@ -17,7 +17,7 @@ from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
 from nullpose.scenario.units import EARTHLY
-from nullpose.scenario.wording import described, listed, nearest, plain
+from nullpose.scenario.wording import described, nearest, plain
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")
@@ -117,7 +117,7 @@ def _apply_all(overrides: Sequence[str | Override], data: PlainTable) -> list[Fa
 
 
 def _source(overrides: Sequence[str | Override]) -> str:
-    return f"override {listed([str(override).strip() or '(blank)' for override in overrides])}"
+    return f"override {', '.join([str(override).strip() or '(blank)' for override in overrides])}"
 
 
 def _apply(stated: str | Override, data: PlainTable) -> None:
@@ -204,4 +204,4 @@ def _instead(step: str | int, members: Collection[str | int], path: str) -> str:
     meant = f"; did you mean {path.replace(path_of((step,)), path_of((guess,)), 1)}?" if guess else ""
     if not members:
         return "but it has no members, so set it whole"
-    return f"must be one of {listed([path_of((member,)) for member in members])}{meant}"
+    return f"must be one of {', '.join([path_of((member,)) for member in members])}{meant}"

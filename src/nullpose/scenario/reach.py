@@ -142,16 +142,13 @@ def may_hold_a_position(airspace: Airspace, centres_m: Floats) -> bool:
         airspace: where the vehicle may be.
         centres_m: the ground points [m], (n, 3).
     """
-    fence_m = airspace.geofence_outline_m
-    lower_m, upper_m = airspace.lower_m, airspace.upper_m
-    if len(fence_m):
-        lower_m = np.maximum(lower_m, [*fence_m.min(axis=0), -np.inf])
-        upper_m = np.minimum(upper_m, [*fence_m.max(axis=0), np.inf])
+    lower_m, upper_m = airspace.box_m
     if not (np.isfinite(lower_m).all() and np.isfinite(upper_m).all()):
         return True  # zones and balls end somewhere
     apart_m = np.linalg.norm(centres_m - np.clip(centres_m, lower_m, upper_m), axis=1)
     near_m = centres_m[apart_m < airspace.keep_out_m]
-    borders = sum((len(zone.outline_m) for zone in airspace.no_fly), len(fence_m) + len(near_m))
+    outlines = [airspace.geofence_outline_m, *(zone.outline_m for zone in airspace.no_fly)]
+    borders = sum(map(len, outlines), len(near_m))
     most = min(60_000, _MOST_DISTANCES // max(1, borders))
     position_m, is_sure = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, near_m, at), most)
     return position_m is not None or not is_sure
@@ -166,11 +163,12 @@ def _reach_faults(
     error: the distance may then be zero, at which the model has no limit.
     """
     for place, point in points.items():
-        reach_m = point.uncertainty_reach_m if isinstance(point, Uncertain) else 0.0
+        reach_m, matrix_m = 0.0, np.zeros((3, 3))
+        if isinstance(point, Uncertain):
+            reach_m, matrix_m = point.uncertainty_reach_m, point.uncertainty_matrix_m
         total_m = reach_m + error_m
         if total_m == 0.0 or total_m < airspace.keep_out_m:
             continue
-        matrix_m = point.uncertainty_matrix_m if isinstance(point, Uncertain) else np.zeros((3, 3))
         half_m = np.sqrt(np.diag(matrix_m @ matrix_m.T)) + error_m
         centre_m = np.asarray(point.position_m)
 

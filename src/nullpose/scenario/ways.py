@@ -35,8 +35,8 @@ class Ways:
         allowed = ", or ".join(" and ".join(group) for group in self.groups)
         keys = [" and ".join(key for key in self._all(group) if key in present) for group in taken]
         if len(taken) > self.most:
-            number = "exactly" if self.fewest else "at most"
-            yield f"both {' and '.join(keys)} are given, {number} one is allowed: {allowed}; remove either"
+            number = "exactly one" if self.fewest else "at most one"
+            yield f"both {' and '.join(keys)} are given, {number} is allowed: {allowed}; remove either"
         elif len(taken) < self.fewest:
             number = "exactly" if self.most == 1 else "at least"
             neither = " nor ".join(" and ".join(group) for group in self.groups)

@@ -50,11 +50,6 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in shown)
 
 
-def listed(words: Collection[str]) -> str:
-    """Return the words joined by commas."""
-    return ", ".join(words)
-
-
 def nearest(word: str, words: Collection[str]) -> str:
     """Return the known word most like the given one, or an empty text when none is like it.
 
@@ -81,4 +76,4 @@ def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str
     """
     guess = nearest(word, likely) or nearest(word, words)
     meant = f'; did you mean "{guess}"?' if guess else ";"
-    return f"unknown {noun}{meant} the {noun}s here are {listed(words)}"
+    return f"unknown {noun}{meant} the {noun}s here are {', '.join(words)}"

@@ -15,7 +15,7 @@ from nullpose.physics import Poses
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.toml_file import FileKind, file_text
 from nullpose.scenario.units import ALTITUDE_KEYS
-from nullpose.scenario.wording import described, listed
+from nullpose.scenario.wording import described
 
 _LOCAL, _ANGLES = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
 _NO_ORIGIN = "lat_deg and lon_deg need the [origin] of a scenario; add it, or give x_m, y_m and z_m"
@@ -52,7 +52,7 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = N
         earthly = "x_m" not in header and ("lat_deg" in header or "lon_deg" in header)
         columns = (*(("lat_deg", "lon_deg", altitude) if earthly else _LOCAL), *_ANGLES)
         absent = [name for name in columns[:-1] if name not in header]
-        message = "there is no column {}, must be " + listed(columns)
+        message = "there is no column {}, must be " + ", ".join(columns)
         faults = [Fault("line 1", message.format(name)) for name in absent]
         if earthly and origin is None:
             faults.append(Fault("line 1", _NO_ORIGIN))

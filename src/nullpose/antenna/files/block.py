@@ -104,9 +104,10 @@ def rows_of(lines: Lines, start: int, count: float, width: int, what: str) -> Fl
         ScenarioError: there are fewer, or one has other numbers.
     """
     got = len(lines) - start
-    is_count = 0 < count <= got and count % 1.0 == 0.0
     require(
-        is_count, f"{count:g} rows are announced and {got} lines follow; is the file cut short?", lines[-1][0]
+        0 < count <= got and count % 1.0 == 0.0,
+        f"{count:g} rows are announced and {got} lines follow; is the file cut short?",
+        lines[-1][0],
     )
     return numbers(lines[start : start + int(count)], width, what)
 
@@ -132,8 +133,10 @@ def gridded(block: Block, source: str) -> PatternTable:
         ScenarioError: rows are missing, contradict each other or are beyond the sphere.
     """
     hz = block.frequency_hz or _FREQUENCIES_HZ[0]
-    is_frequency = _FREQUENCIES_HZ[0] <= hz <= _FREQUENCIES_HZ[1]
-    require(is_frequency, f"its frequency is {hz:g} Hz, must be 1 kHz to 10 THz; is the unit right?")
+    require(
+        _FREQUENCIES_HZ[0] <= hz <= _FREQUENCIES_HZ[1],
+        f"its frequency is {hz:g} Hz, must be 1 kHz to 10 THz; is the unit right?",
+    )
     theta, phi = np.round(block.theta_deg, 3), np.round(block.phi_deg, 3)
     beyond = (np.abs(theta) > 180.0) | (np.abs(phi) > 360.0)
     _refuse_row(block, beyond, "is beyond the sphere; polar angles go from 0 to 180, azimuths from 0 to 360")

@@ -46,14 +46,14 @@ def require_antenna(table: PatternTable) -> None:
     )
 
 
-def require_fit(table: PatternTable) -> Harmonics:
-    """Return the harmonics of a table, which must follow it.
+def require_fit(table: PatternTable) -> None:
+    """Refuse a table that its harmonics do not follow, or of which a row does not fit those around it.
 
     Args:
         table: any.
 
     Raises:
-        ScenarioError: its steps are too coarse, or its beam is too narrow.
+        ScenarioError: its steps are too coarse, or its beam is too narrow; or with the row that fits least.
     """
     found = fit(table, supported_degree(table))
     part, step_deg = missed_share(table, found), 180.0 / (len(table.theta_deg) - 1)
@@ -63,19 +63,12 @@ def require_fit(table: PatternTable) -> Harmonics:
         f"{found.degree}, it is off by {100.0 * part:.0f} % of the peak, must be 1 % at most; export finer "
         f"steps, or fields with their phases; no degree above {HIGHEST_DEGREE} is taken",
     )
-    return found
+    if not table.caveat:  # which an estimate has
+        _require_rows(table, found)
 
 
-def require_rows(table: PatternTable, found: Harmonics) -> None:
-    """Refuse a row within 20 dB of the peak that does not fit those around it.
-
-    Args:
-        table: any.
-        found: its harmonics.
-
-    Raises:
-        ScenarioError: with the row that fits least.
-    """
+def _require_rows(table: PatternTable, found: Harmonics) -> None:
+    """Refuse the row within 20 dB of the peak that fits those around it least, if it does not fit."""
     smooth = found.on_grid(np.radians(table.theta_deg), np.radians(table.phi_deg))
     gain, smooth = (np.maximum(values, _STRONG * np.max(table.gain)) for values in (table.gain, smooth))
     apart_db = np.abs(10.0 * np.log10(gain / smooth))

@@ -24,8 +24,11 @@ def read_ffd(lines: Lines) -> Iterator[Block]:
     """
     ranges = numbers(lines[:2], 3, "an angle's first, last and count")
     for (line, _), steps in zip(lines, ranges[:, 2], strict=False):
-        is_count = 1.0 <= steps <= _MOST_ANGLES and steps % 1.0 == 0.0
-        require(is_count, f"got {steps:g} angles, must be a whole number from 1 to {_MOST_ANGLES}", line)
+        require(
+            1.0 <= steps <= _MOST_ANGLES and steps % 1.0 == 0.0,
+            f"got {steps:g} angles, must be a whole number from 1 to {_MOST_ANGLES}",
+            line,
+        )
     angles = [np.linspace(first, last, int(steps)) for first, last, steps in ranges]
     theta, phi = np.meshgrid(*angles, indexing="ij")
     at, found, announced, frequency_hz = 2, 0, None, None

@@ -53,8 +53,7 @@ def read_msi(lines: Lines) -> Iterator[Block]:
     keys: dict[str, tuple[int, str]] = {}
     for i, (line, text) in enumerate(lines):
         key = text.split()[0].upper()
-        is_twice = key in keys and key in _KEYS
-        require(not is_twice, f"{key} is given twice; keep one antenna in a file", line)
+        require(key not in {*keys} & {*_KEYS}, f"{key} is given twice; keep one antenna in a file", line)
         keys[key] = i, text.split(None, 1)[-1]
     for name in _CUTS:
         require(name in keys, f"the cut {name} is missing; both must be there. Is the file cut short?")

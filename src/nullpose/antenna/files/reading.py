@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from nullpose.antenna.files.block import Block, FloatArray, Lines, gridded, refuse, require
-from nullpose.antenna.files.checks import require_antenna, require_fit, require_rows
+from nullpose.antenna.files.checks import require_antenna, require_fit
 from nullpose.antenna.files.cst import read_cst, read_ffs
 from nullpose.antenna.files.csv_table import profile_of, read_csv
 from nullpose.antenna.files.hfss import read_ffd
@@ -65,12 +65,12 @@ def read_pattern(
     with _lines_of(path) as lines:
         name = _format_of("\n".join(text for _, text in lines), file_format)
         table = _picked(list(FORMATS[name][1](lines)), frequency_hz, f"{Path(path).name} ({name})")
-        is_allowed = estimate or not table.caveat
-        require(is_allowed, f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}")
+        require(
+            estimate or not table.caveat,
+            f"{table.caveat}. Ask the maker for the whole pattern, or {_TWO_CUTS}",
+        )
         require_antenna(table := _scaled(table))
-        harmonics = require_fit(table)
-        if not table.caveat:
-            require_rows(table, harmonics)
+        require_fit(table)
     return table
 
 
@@ -106,17 +106,16 @@ def _lines_of(path: str | os.PathLike[str]) -> Iterator[Lines]:
 
 
 def _content(path: Path) -> bytes:
-    is_whole = True
+    unpacker = zlib.decompressobj(wbits=31)
     try:
         content = read_bytes(path, _MOST_BYTES)
-        if content.startswith(b"\x1f\x8b"):
-            unpacker = zlib.decompressobj(wbits=31)
-            content = unpacker.decompress(content, _MOST_BYTES)
-            is_whole = unpacker.eof
+        if not content.startswith(b"\x1f\x8b"):
+            return content
+        content = unpacker.decompress(content, _MOST_BYTES)
     except (OSError, ValueError, zlib.error) as error:
         refuse(f"it cannot be read: {getattr(error, 'strerror', None) or error}")
     most = f"{_MOST_BYTES / 1e6:g} MB, the most that is read"
-    require(is_whole, f"its content is cut short, or exceeds {most}")
+    require(unpacker.eof, f"its content is cut short, or exceeds {most}")
     return content
 
 
@@ -125,11 +124,14 @@ def _format_of(text: str, asserted: str | None) -> str:
     looks = [
         name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE | re.IGNORECASE)
     ]
-    has_format = asserted is not None or looks
-    require(has_format, f"it has the marks of no known format; export the pattern in one of {formats}")
-    looks_like = f"it looks like {looks[0] if looks else 'none of them'}"
-    is_like = asserted in (None, *looks)
-    require(is_like, f"got the format {asserted!r}, must be one of {formats}; {looks_like}")
+    require(
+        asserted is not None or looks,
+        f"it has the marks of no known format; export the pattern in one of {formats}",
+    )
+    require(
+        asserted in (None, *looks),
+        f"got the format {asserted!r}, must be one of {formats}; it looks like {[*looks, 'none of them'][0]}",
+    )
     return asserted or looks[0]
 
 
@@ -159,8 +161,10 @@ def _picked(blocks: list[Block], frequency_hz: float | None, source: str) -> Pat
     if not whole:
         raise faults[0]
     starts = ", ".join(str(np.min(table.lines)) for table in whole if table.lines is not None)
-    more = f"it has {len(whole)} tables at one frequency, from the lines {starts} on; keep one of them"
-    require(len(whole) == 1, more)
+    require(
+        len(whole) == 1,
+        f"it has {len(whole)} tables at one frequency, from the lines {starts} on; keep one of them",
+    )
     return replace(whole[0], notes=(*whole[0].notes, *([_OTHERS] if faults else [])))
 
 
@@ -173,8 +177,10 @@ def _scaled(table: PatternTable) -> PatternTable:
     mean_db, note = 10.0 * np.log10(mean), _NO_POWER
     if table.quantity == "directivity":
         note = f"Its directivity averages to {mean_db:.2f} dB over the sphere; it is scaled to 0 dB."
-        off = f"its directivity averages to {mean_db:.1f} dB over the sphere, must be 0 dB"
-        require(abs(mean_db) <= _OFF_DB, f"{off}. Is the unit right?")
+        require(
+            abs(mean_db) <= _OFF_DB,
+            f"its directivity averages to {mean_db:.1f} dB over the sphere, must be 0 dB. Is the unit right?",
+        )
     return replace(
         table,
         gain=table.gain / mean,

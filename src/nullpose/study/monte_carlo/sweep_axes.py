@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 from nullpose.errors import UsageError
 from nullpose.scenario.faults import Place, collected, path_of, rejection
 from nullpose.scenario.rules import Choice, Count, Quantity, Rule
-from nullpose.scenario.wording import described, listed, plain, unknown
+from nullpose.scenario.wording import described, plain, unknown
 from nullpose.study.sweep import spaced
 
 MOST_POINTS = 1_000_000  # combinations of swept values
@@ -77,6 +77,8 @@ def _values(raw: object) -> tuple[float, ...]:
             raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
     missing = [key for key in ("from", "to", "points") if key not in raw]
     if missing:
-        raise rejection(f"{listed(missing)} missing; a table here has from, to, points and perhaps spacing")
+        raise rejection(
+            f"{', '.join(missing)} missing; a table here has from, to, points and perhaps spacing"
+        )
     start, stop, points, spacing = (rule.read(raw.get(key, "linear")) for key, rule in _KEYS.items())
     return spaced(start, stop, points, log=spacing == "log")
