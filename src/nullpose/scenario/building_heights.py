@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from nullpose.scenario.arrays import Floats
 from nullpose.scenario.buildings import HIGHEST_M, Building
 from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.geo_file import Feature
@@ -68,7 +67,8 @@ def height_of(feature: Feature, rules: Building) -> BuildingHeight:
         and _LIKE_HEIGHTS.search(key)
         and (by in (BY_LEVELS, ASSUMED) or _LIKE_BASES.search(key))
     )
-    if by in (BY_LEVELS, ASSUMED) and np.nan_to_num(_altitudes_m(feature)).any():
+    corners = shapely.get_coordinates(feature.geometry, include_z=True)
+    if by in (BY_LEVELS, ASSUMED) and np.nan_to_num(corners[:, 2]).any():
         unread += (_OF_CORNERS,)
     if by:
         require(
@@ -78,10 +78,6 @@ def height_of(feature: Feature, rules: Building) -> BuildingHeight:
             f"and no lower than its min_height, {base_m:g} m, itself 0 or more; correct it in the file",
         )
     return BuildingHeight(base_m, ends_m, by, unread)
-
-
-def _altitudes_m(feature: Feature) -> Floats:
-    return np.asarray(shapely.get_coordinates(feature.geometry, include_z=True)[:, 2])
 
 
 def _roof(feature: Feature, rules: Building) -> tuple[str, tuple[float, float]]:

@@ -173,18 +173,16 @@ class Building(Section):
                 f"got {self.heights_m[0]:g}, must be base_m = {self.base_m:g} or more: a roof is above "
                 "what it covers; raise it or lower base_m",
             )
-        if self.polygon_m and self.courtyards_m and (fault := self._courtyard_fault()):
-            yield (
-                ("courtyards_m" if raw.get("courtyards_m") is not None else "courtyards_lat_lon_deg",),
-                f"they must lie inside the outline, apart from each other, but do not ({fault}); correct or "
-                "remove them",
-            )
+        if self.polygon_m and self.courtyards_m:
+            import shapely
 
-    def _courtyard_fault(self) -> str:
-        import shapely
-
-        shape = shapely.Polygon(self.polygon_m, self.courtyards_m)
-        return "" if shape.is_valid else str(shapely.is_valid_reason(shape))
+            shape = shapely.Polygon(self.polygon_m, self.courtyards_m)
+            if not shape.is_valid:
+                yield (
+                    ("courtyards_m" if raw.get("courtyards_m") is not None else "courtyards_lat_lon_deg",),
+                    "they must lie inside the outline, apart from each other, but do not "
+                    f"({shapely.is_valid_reason(shape)}); correct or remove them",
+                )
 
     @cached_property
     def outline_m(self) -> NDArray[np.float64]:

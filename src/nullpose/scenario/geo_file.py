@@ -71,8 +71,11 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
     ending = path.suffix.lower()
     if ending in (".geojson", ".json"):
         return _features_of_json(decoded(content))
-    has_sign = content.startswith(_SIGNS[ending])
-    require(has_sign, "", f"it does not begin as a {ending} file does; is it of another kind?")
+    require(
+        content.startswith(_SIGNS[ending]),
+        "",
+        f"it does not begin as a {ending} file does; is it of another kind?",
+    )
     is_kml = ending in (".kml", ".kmz")
     if ending == ".kmz":
         content = kml_of_kmz(content, MOST_BYTES)
@@ -182,8 +185,11 @@ def _layers_of_gdal(source: Path | bytes) -> list[tuple[str, Any]]:
         except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, RuntimeError) as error:
             raise refusal("", f"GDAL cannot read it: {str(error)[:200]}") from None
     for words in (str(warning.message) for warning in said):
-        is_whole = any(harmless in words for harmless in _NO_MATTER)
-        require(is_whole, "", f"GDAL reads it in part only: {words[:200]}; export it anew")
+        require(
+            any(harmless in words for harmless in _NO_MATTER),
+            "",
+            f"GDAL reads it in part only: {words[:200]}; export it anew",
+        )
     return layers
 
 

@@ -136,8 +136,8 @@ def nodes_of_features(features: Sequence[Feature]) -> ReadNodes:
     del passed["point"]
     require(points, "", f"it has no point, must have one for each node; it has {counted(passed)}")
     unread = {key for feature in features for key in feature.properties if not _is_like_key(key)} - _READ_HERE
-    parts = {f"properties not read: {', '.join(sorted(unread))}": unread}
-    notes = [account(f"nodes: {len(points)}", passed, parts)] if unread or any(passed.values()) else []
+    more = {f"properties not read: {', '.join(sorted(unread))}": unread}
+    notes = [account(f"nodes: {len(points)}", passed, more)] if unread or any(passed.values()) else []
     return *call_each(lambda each: _node_of_point(*each), points), notes
 
 

@@ -59,9 +59,7 @@ def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:
     if is_crossing:
         rings = [shapely.Polygon(ring) for ring in (polygon.exterior, *polygon.interiors)]
         wholes = [_valid(ring) for ring in rings]
-        has_loops = any(
-            ring.area < (1.0 - _LOOPS) * whole.area for ring, whole in zip(rings, wholes, strict=True)
-        )
+        has_loops = np.any(shapely.area(rings) < (1.0 - _LOOPS) * shapely.area(wholes))
         require(
             not (is_fence or has_loops),
             place,

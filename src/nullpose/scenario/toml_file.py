@@ -77,11 +77,11 @@ def uploaded_text(content: bytes) -> str:
     Raises:
         ScenarioError: it is no text, or it does.
     """
-    is_small = len(content) <= MOST_BYTES
-    require(is_small, "", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read")
+    require(
+        len(content) <= MOST_BYTES, "", f"it is larger than {MOST_BYTES / 1e6:g} MB, the most that is read"
+    )
     text = decoded(content)
-    is_short = text.count("=") <= _MOST_KEYS
-    require(is_short, "", f"it has more than {_MOST_KEYS} keys, the most that is read")
+    require(text.count("=") <= _MOST_KEYS, "", f"it has more than {_MOST_KEYS} keys, the most that is read")
     is_suspect = any(map(_is_monstrous, text.split("\n")))
     words = _WORD.findall(_NO_WORD.sub("text", text)) if is_suspect else ()
     require(
