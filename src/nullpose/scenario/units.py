@@ -144,7 +144,10 @@ LatLon = Annotated[
 
 def _pointing(value: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(value):
-        raise rejection(f"got {list(value)}, which has length 0 and no direction; [0, 0, 1] is upright")
+        raise rejection(
+            f"got {list(value)}, which has length 0 and no direction; must be a direction of any other "
+            "length; [0, 0, 1] is upright"
+        )
     return value
 
 
