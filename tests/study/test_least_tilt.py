@@ -37,7 +37,7 @@ def field(seed: int, whips: bool = False) -> Scenario:
     )
 
 
-def checked(scenario: Scenario, found: LeastTilt, mount: MountTilt) -> None:
+def checked(scenario: Scenario, found: LeastTilt, mount: MountTilt, apart_deg: float = 0.1) -> None:
     """Check both sides of a mount by solves with the tilt stated."""
     assert mount.suffices_deg is not None
     enough = nullpose.solve(
@@ -47,7 +47,7 @@ def checked(scenario: Scenario, found: LeastTilt, mount: MountTilt) -> None:
     assert mount.pose is not None
     assert math.degrees(mount.pose.tilt_rad) <= mount.suffices_deg + 1e-6
     if mount.fails_deg is not None:
-        assert mount.suffices_deg - mount.fails_deg <= 0.1 + 1e-9
+        assert mount.suffices_deg - mount.fails_deg <= apart_deg + 1e-9
         assert mount.upper_bound is not None
         assert mount.upper_bound < found.target
         little = nullpose.solve(
@@ -106,15 +106,26 @@ def test_more_is_asked_for_more_and_the_best_mount_asks_for_least(seed: int, whi
         assert all(found.best.suffices_deg <= (mount.suffices_deg or 0.0) for mount in found.mounts)
 
 
-@settings(max_examples=4)
-@given(seed=st.integers(0, 10_000))
-def test_nearly_all_of_the_value_takes_the_tilt_of_the_best_pose(seed: int) -> None:
-    """As solve finds it: with that tilt the value is the omnidirectional one."""
-    scenario = field(seed)
-    found = least_tilt(scenario, share=1.0 - 1e-6, mounts_deg=[0.0], node_limit=10**6)
-    best = nullpose.solve(scenario, gap=1e-8).objective
-    assert found.omnidirectional.objective.value == pytest.approx(best.value, rel=1e-7)
-    checked(scenario, found, found.mounts[0])
+def test_nearly_all_of_the_value_takes_the_tilt_of_the_best_pose_in_fifty_scenes() -> None:
+    """Both sides agree with solve; less is asked for less; no stated mount needs less than the best one."""
+    for seed in range(50):
+        rng = np.random.default_rng(seed)
+        points_m = np.column_stack([rng.uniform(0.0, 60.0, (3, 2)), np.ones(3)])
+        scenario = Scenario.from_arrays(points_m[:2], points_m[2:], noise_w=1e-3, altitude_m=(8, 40))
+        mount_deg = float(rng.choice([0.0, 45.0, 90.0]))
+        more, less = (
+            least_tilt(scenario, share=share, mounts_deg=[mount_deg], threads=1)
+            for share in (1.0 - 1e-6, 0.9)
+        )
+        (mount,), (easier,) = more.mounts, less.mounts
+        checked(scenario, more, mount, apart_deg=0.5)  # the value hardly changes with the tilt there
+        assert more.best is not None
+        assert more.best.suffices_deg is not None
+        assert mount.suffices_deg is not None
+        assert easier.suffices_deg is not None
+        assert max(more.best.suffices_deg, easier.suffices_deg) <= mount.suffices_deg
+        best = nullpose.solve(scenario, gap=1e-8).objective
+        assert more.omnidirectional.objective.value == pytest.approx(best.value, rel=1e-7)
 
 
 def test_values_by_angle_are_what_level_vehicles_reach() -> None:

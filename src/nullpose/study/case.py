@@ -35,6 +35,7 @@ LEVEL = "level-vertical"  # the case that studies compare others with
 
 Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
 Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
+Share = Annotated[float, Quantity("a share", 1e-6, 1.0, "0.99 is all but a hundredth")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
 
@@ -71,6 +72,8 @@ class Case(Section):
         scheme: how the pose is chosen.
         airframe: the vehicle in place of the scene's.
         mount_scenes: how many scenes choose the mount of the airframe; None for the mount that it states.
+        reach: the share of what any pose reaches for which the least tilt is found; None for the tilt that
+            the airframe states.
         array: several dipoles in place of the one.
         robust: whether the pose that guarantees most under the scene's errors is asked for.
         pose: a pose to evaluate, in place of a search.
@@ -83,7 +86,8 @@ class Case(Section):
     letter: ClassVar[str] = "C"
     ways: ClassVar[tuple[Ways, ...]] = (
         at_most_one("airframe", "array"),
-        at_most_one("scheme", "robust", "array", "pose"),
+        at_most_one("scheme", "robust", "array", "pose", "reach"),
+        at_most_one("mount_scenes", "reach"),
     )
 
     name: Label = Field(
@@ -100,13 +104,19 @@ class Case(Section):
         default=None,
         description="The vehicle in place of the scene's: level-vertical, level-horizontal, "
         "tilt-10-horizontal (or 20 or 30, or vertical), omnidirectional, a preset, or a table with "
-        "tilt_max_deg and mount_deg, which may be best.",
+        "tilt_max_deg, which may be least, and mount_deg, which may be best.",
         examples=["tilt-10-horizontal"],
     )
     mount_scenes: Annotated[int, Count("a number of scenes", 1, 1e6, "more take longer")] | None = Field(
         default=None,
         description='With mount_deg = "best": number of scenes that choose the mount. Left out: 64.',
         examples=[64],
+    )
+    reach: Share | None = Field(
+        default=None,
+        description='With tilt_max_deg = "least": the share of the omnidirectional vehicle\'s bound that '
+        "suffices. Left out: 0.99.",
+        examples=[0.99],
     )
     array: Array | None = Field(
         default=None,
@@ -138,8 +148,11 @@ class Case(Section):
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Drop ``robust = false``; add the number of scenes that choose a best mount."""
+        """Drop ``robust = false``; add the share of a least tilt, and how many scenes choose a best mount."""
         vehicle = data.get("airframe")
+        if isinstance(vehicle, Mapping) and vehicle.get("tilt_max_deg") == "least":
+            vehicle = {**vehicle, "tilt_max_deg": 180.0}
+            data = {"reach": 0.99, **data, "airframe": vehicle}
         if isinstance(vehicle, Mapping) and vehicle.get("mount_deg") == "best":
             data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
@@ -148,6 +161,8 @@ class Case(Section):
         """Yield keys of a proof where there is none."""
         if self.mount_scenes is not None and self.airframe is None:
             yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'
+        if self.reach is not None and self.airframe is None:
+            yield ("reach",), 'has no meaning without airframe; add one with tilt_max_deg = "least"'
         for key in ("certify", "gap", "time_limit_s"):
             if self.pose is not None and getattr(self, key) is not None:
                 yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
@@ -159,7 +174,8 @@ class Case(Section):
 
     @property
     def _is_free(self) -> bool:
-        return self.array is None and self.pose is None and self.scheme in (None, Scheme.OPTIMUM)
+        is_other = self.array is not None or self.pose is not None or self.reach is not None
+        return not is_other and self.scheme in (None, Scheme.OPTIMUM)
 
     @property
     def usual(self) -> str:
@@ -205,7 +221,10 @@ class Case(Section):
             tilt, mount_deg = _degrees(airframe.tilt_max_rad), airframe.mount_deg
             words = {usual_deg: f"a {word} dipole" for word, usual_deg in _MOUNTS_DEG.items()}
             dipole = words.get(mount_deg, f"the dipole mounted at {mount_deg:.4g} degrees")
-            phrase = f"{'a level vehicle' if tilt == '0' else f'a {tilt} degree tilt'} with {dipole}"
+            vehicle = "a level vehicle" if tilt == "0" else f"a {tilt} degree tilt"
+            if self.reach is not None:
+                vehicle = f"the least tilt for {100.0 * self.reach:.6g} %"
+            phrase = f"{vehicle} with {dipole}"
         if self.name == FILE_VEHICLE:
             phrase = f"the file's vehicle ({phrase})"
         chosen = f" (the best mount tried, on up to {self.mount_scenes} scenes)" if self.mount_scenes else ""

@@ -62,6 +62,12 @@ class MountTilt:
         """The pose with the tilt that suffices."""
         return None if self.result is None else self.result.pose
 
+    @property
+    def is_known(self) -> bool:
+        """Whether both sides are known, a step apart; a level vehicle that suffices needs no other side."""
+        too_little_deg = -STEP_DEG if self.fails_deg is None else self.fails_deg
+        return self.suffices_deg is not None and self.suffices_deg - too_little_deg < 1.5 * STEP_DEG
+
     def to_dict(self) -> PlainTable:
         """Write the two sides as plain data."""
         keys = ("mount_deg", "suffices_deg", "value", "fails_deg", "upper_bound")
@@ -150,10 +156,7 @@ def least_tilt(
             "degrees"
         )
     began, total = time.perf_counter(), len(mounts_deg) + 1
-    if options.get("gap") is None:
-        options["gap"] = min(max(0.1 * (1.0 - share), LEAST_GAP), _GAP)
-    search = TiltSearch(scenario.without_array.model_copy(update={"airframe": None}), share, options)
-    _uninterrupted(search.whole)
+    search = tilt_search(scenario, share, options)
     mounts = []
     for done, mount_deg in enumerate(mounts_deg, start=1):
         mounts.append(search.sides(mount_deg))
@@ -170,6 +173,25 @@ def least_tilt(
         rigour=search.rigour,
         seconds=time.perf_counter() - began,
     )
+
+
+def tilt_search(scenario: Scenario, share: float, options: SolveKeywords) -> TiltSearch:
+    """Solve a scenario for a vehicle that takes any attitude, to go on with its tilts.
+
+    Args:
+        scenario: its airframe and its array are left out.
+        share: above 0, at most 1.
+        options: as for :func:`nullpose.solver.solve`; the gap is chosen by the share unless it is stated.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C ended the proof.
+        SolveError: no pose reaches every node.
+    """
+    if options.get("gap") is None:
+        options["gap"] = min(max(0.1 * (1.0 - share), LEAST_GAP), _GAP)
+    search = TiltSearch(scenario.without_array.model_copy(update={"airframe": None}), share, options)
+    _uninterrupted(search.whole)
+    return search
 
 
 def values_by_angle(

@@ -9,9 +9,10 @@ import pytest
 from nullpose import Array, Pose, Scenario, evaluate
 from nullpose.solver import solve
 from nullpose.study.evaluation import pose_faults
+from nullpose.study.least_tilt import least_tilt
 from nullpose.study.monte_carlo import StudySpec
 from nullpose.study.monte_carlo.draw import Draws
-from nullpose.study.monte_carlo.rows import Row
+from nullpose.study.monte_carlo.rows import Row, schema_of
 from nullpose.study.monte_carlo.solving import solved_row
 
 Spec = Callable[..., StudySpec]
@@ -39,6 +40,19 @@ def test_an_array_takes_the_place_of_the_dipole(spec: Spec) -> None:
     found = solve(scene.model_copy(update={"array": array}), gap=1e-2)
     assert row["value"] == found.objective.value
     assert (row["roll_rad"], row["pitch_rad"]) == (0.0, 0.0)
+
+
+def test_a_least_tilt_has_two_sides(spec: Spec) -> None:
+    """Those of least_tilt, in columns that other studies do not have; the pose keeps to the tilt."""
+    study = spec(cases=[{"airframe": {"tilt_max_deg": "least", "mount_deg": 90}, "reach": 0.95}])
+    row, scene = _row(study)
+    (mount,) = least_tilt(scene, share=0.95, mounts_deg=[90.0], threads=1).mounts
+    assert (row["least_tilt_deg"], row["too_little_deg"]) == (mount.suffices_deg, mount.fails_deg)
+    assert (row["status"], row["value"]) == ("certified", mount.value)
+    assert 0.95 * row["bound"] <= row["value"]
+    assert StudySpec.from_dict(study.to_dict()).digest == study.digest
+    assert "least_tilt_deg" in schema_of(study).names
+    assert "least_tilt_deg" not in schema_of(spec(cases=[{"robust": True}])).names
 
 
 def test_a_given_pose_is_evaluated(spec: Spec) -> None:

@@ -32,6 +32,8 @@ _COLUMNS = {
     "yaw_rad": "float64",
     "null_gain": "float64",
     "binding_node": "string",
+    "least_tilt_deg": "float64",
+    "too_little_deg": "float64",
     "boxes": "int64",
     "seconds": "float64",
     "reason": "string",
@@ -58,7 +60,8 @@ def schema_of(spec: StudySpec) -> pa.Schema:
 
     swept = [(path, pa.float64()) for path in spec.swept]
     case = pa.dictionary(pa.int16(), pa.string())
-    results = [(name, pa.type_for_alias(kind)) for name, kind in _COLUMNS.items()]
+    tilts = set() if any(case.reach for case in spec.cases) else {"least_tilt_deg", "too_little_deg"}
+    results = [(name, pa.type_for_alias(kind)) for name, kind in _COLUMNS.items() if name not in tilts]
     return pa.schema([("scene", pa.int64()), ("point", pa.int32()), *swept, ("case", case), *results])
 
 

@@ -27,6 +27,7 @@ from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.robust import RobustDetails
 from nullpose.study.case import Case
 from nullpose.study.evaluation import pose_faults
+from nullpose.study.least_tilt import tilt_search
 from nullpose.study.monte_carlo.rows import FAILED, Row, row_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -123,6 +124,8 @@ def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
         weakest = min(evaluate(scene, pose), key=quantity.at)
         columns = _found(scene, Status.GIVEN, pose, quantity.at(weakest), None, None)
         return columns | {"reason": faults, "binding_node": weakest.node}
+    if case.reach is not None and scene.airframe is not None:
+        return _least_tilt(case.reach, scene.airframe, scene, options | {"gap": case.gap})
     result = solve(scene, case.scheme or Scheme.OPTIMUM, robust=bool(case.robust), **options)
     objective, pose, details = result.objective, result.pose, result.details
     columns = _found(
@@ -130,6 +133,23 @@ def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
     )
     node = details.robust.binding_node if isinstance(details, RobustDetails) else result.binding_node
     return columns | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
+
+
+def _least_tilt(share: float, airframe: Airframe, scene: Scenario, options: SolveKeywords) -> PlainTable:
+    """Find the least tilt of a mount; certified means that both of its sides are proved."""
+    search = tilt_search(scene, share, options)
+    mount = search.sides(airframe.mount_deg)
+    result = mount.result or search.flown(search.whole, airframe)
+    objective, status = result.objective, Status.CERTIFIED if mount.is_known else Status.GAP_NOT_REACHED
+    columns = _found(
+        scene, status, result.pose, objective.value, objective.upper_bound, objective.relative_gap
+    )
+    return columns | {
+        "reason": "" if mount.is_known else "the least tilt is not known to a step",
+        "binding_node": result.binding_node,
+        "least_tilt_deg": mount.suffices_deg,
+        "too_little_deg": mount.fails_deg,
+    }
 
 
 def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tuple[int, int, str], Row]:
