@@ -37,7 +37,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         scenario: nodes, jammers or eavesdroppers, receiver and airspace.
         cases: one or more.
     """
-    nominal, moved = build_family(scenario), interferer_field(scenario, "offsets")
+    nominal, moved = build_family(scenario, any_channel=True), interferer_field(scenario, "offsets")
     copies: dict[bytes, tuple[FloatArray, FloatArray, int]] = {}  # each moved point with its rotation once
     places: dict[bytes, int] = {}
 
@@ -76,6 +76,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
     return nominal.changed(
         ground_axes=None if nominal.ground_axes is None else nominal.ground_axes[originals],
         ground_leaks=None if nominal.ground_leaks is None else nominal.ground_leaks[originals],
+        channels=None if nominal.channels is None else nominal.channels[originals],
         points_m=points_m,
         turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
         numerator_isotropic=nominal.numerator_isotropic[ratios],
@@ -92,7 +93,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
     """Collect the matrices of the sets in which each point of the family may be, (m, 3, 3), metres."""
     sets_m = getattr(scenario, interferer_field(scenario, "uncertainty"))
-    return _of_points(build_family(scenario), scenario, sets_m)
+    return _of_points(build_family(scenario, any_channel=True), scenario, sets_m)
 
 
 def interferer_field(scenario: Scenario, kind: str) -> str:

@@ -93,13 +93,15 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     Args:
         scenario: as stated.
     """
+    channels = (scenario.source_channels, scenario.eavesdropper_channels)
     traits = (
         scenario.objective,
         scenario.airframe,
         scenario.antenna,
         scenario.is_uncertain,
         scenario.has_margins,
-        scenario.has_channels,
+        frozenset(kind for each in channels if each is not None for kind in each.rows[:, 0].tolist()),
+        scenario.receiver.position_error_m > 0.0,
         scenario.has_custom_channels,
         scenario.prisms is None,
         bool(scenario.jammers),

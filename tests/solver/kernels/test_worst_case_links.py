@@ -18,12 +18,14 @@ LOOSE, ROUNDING = 1e-3, 1e-12
 
 def ball(radius: float) -> Sets:
     """Returns the set of one ball."""
-    return Sets(np.array([radius]), None, None, np.zeros((1, 3)))
+    return Sets(np.array([radius]), None, None, np.zeros((1, 3)), np.array([radius]))
 
 
 def ellipsoid(axes: np.ndarray, semi: np.ndarray) -> Sets:
     """Returns the set of one ellipsoid, its axes being columns."""
-    return Sets(np.array([-1.0]), np.ascontiguousarray(axes.T[None]), np.array([semi]), np.zeros((1, 3)))
+    return Sets(
+        np.array([-1.0]), np.ascontiguousarray(axes.T[None]), np.array([semi]), np.zeros((1, 3)), np.ones(1)
+    )
 
 
 def strongest(sets: Sets, y: np.ndarray, q: np.ndarray, tolerance: float) -> tuple[float, float, np.ndarray]:

@@ -63,7 +63,7 @@ def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
     """
     field, search = AxisField.within(*scenario.axis_band), replace(limits, certify=False)
     inner = Inner(worst_polarised(require_dipole(scenario)))
-    incumbent = solve_and_prove(build_family(scenario), [field], search).incumbent
+    incumbent = solve_and_prove(build_family(scenario, any_channel=True), [field], search).incumbent
     nominal = Pose.of_airframe(scenario, incumbent.position_m, incumbent.axis)
     exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:

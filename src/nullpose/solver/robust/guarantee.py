@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.channel.model import BY_ELEVATION, CONSTANT
 from nullpose.errors import UsageError
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.physics import ErrorCase, ratios_under, rotation_between
@@ -91,14 +92,19 @@ def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy:
 
 
 def require_dipole(scenario: Scenario) -> Scenario:
-    """Refuse a scenario with an array; return any other.
+    """Refuse a scenario with an array or buildings; return any other.
 
     Args:
         scenario: any.
 
     Raises:
-        UsageError: it has an array.
+        UsageError: it has an array or buildings.
     """
+    if scenario.prisms is not None:
+        raise UsageError(
+            "buildings: a guarantee would end at the edge of a shadow; remove [[buildings]], or solve "
+            "without robust"
+        )
     if scenario.array is not None:
         raise UsageError("array: guarantees are for one dipole; remove [array], or solve without robust")
     return scenario
@@ -113,15 +119,24 @@ class Inner:
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
-        self.family = build_family(scenario)
-        self.angle_rad = math.radians(scenario.receiver.attitude_error_deg)
+        self.family = build_family(scenario, any_channel=True)
         self.reach_m = float(scenario.receiver.position_error_m)
+        channels = self.family.channels
+        by_elevation = channels is not None and bool(np.any(channels[:, 0] == BY_ELEVATION))
+        if by_elevation and self.reach_m > 0.0:
+            raise UsageError(
+                f"receiver.position_error_m: given {self.reach_m:g} with line of sight by elevation; allowed "
+                'there for guarantees: 0, or average = "guaranteed"'
+            )
+        self.angle_rad = math.radians(scenario.receiver.attitude_error_deg)
         self.none = ErrorCase.none(scenario)
         self.moved = interferer_field(scenario, "offsets")
         axes = self.family.ground_axes
         self.dipoles = np.zeros_like(self.family.points_m) if axes is None else axes
         self.radii, self.axes, self.semi = _shapes(point_uncertainty_m(scenario))
         is_closed = (self.family.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
+        if channels is not None:
+            is_closed &= channels[:, 0] == CONSTANT
         self.radii[~is_closed & (self.radii > 0.0)] = -1.0
 
     def worst(
@@ -155,8 +170,10 @@ class Inner:
         group = family.denominator_of[ratio]
         entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
         points = family.denominator_point[entries]
-        noise, shaped = float(family.denominator_isotropic[group]), bool(np.any(self.radii < 0.0))
-        node_m = family.points_m[family.numerator_point[ratio]] - p
+        noise, node = float(family.denominator_isotropic[group]), family.numerator_point[ratio]
+        channels = None if family.channels is None else family.channels[[*points, node]]
+        shaped = channels is not None or bool(np.any(self.radii < 0.0))
+        node_m = family.points_m[node] - p
         numbers = Ratio(
             isotropic=float(family.numerator_isotropic[ratio]) / noise,
             weight=float(family.numerator_weight[ratio]) / noise,
@@ -168,16 +185,19 @@ class Inner:
                 self.axes[points] if shaped else None,
                 self.semi[points] if shaped else None,
                 self.dipoles[points],
+                np.max(self.semi[points], axis=1),
+                channels,
             ),
             leak=family.leak,
-            dipole=tuple(self.dipoles[family.numerator_point[ratio]].tolist()),
+            dipole=tuple(self.dipoles[node].tolist()),
         )
         errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
         if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:
             accuracy = min(accuracy, _EXACT)  # closed form
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
         most = _STAGE_CELLS_ELLIPSOIDS if np.any(numbers.sets.radii < 0.0) else _STAGE_CELLS
-        most = _STAGE_CELLS_DIPOLES if np.any(numbers.sets.dipoles) else most
+        is_slow = channels is not None or np.any(numbers.sets.dipoles)
+        most = _STAGE_CELLS_DIPOLES if is_slow else most
         lower, worst, cells = worst_case(numbers, errors, accuracy, most, y, offset, places)
         case = self._case(u, y, offset, points, places - (numbers.centres - offset))
         node, eavesdropper = divmod(ratio, nominal.shape[1])

@@ -15,9 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nullpose.channel.model import BY_DISTANCE
 from nullpose.solver.kernels.bounds.constants import VECTOR_BEND, VECTOR_SLOPE
+from nullpose.solver.kernels.bounds.link_field import Reach, distance_amplitude
 from nullpose.solver.kernels.bounds.node import split_across
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel
+from nullpose.solver.kernels.linear_algebra.channel import excess_in_sight
 from nullpose.solver.kernels.linear_algebra.vectors import (
     along,
     combination,
@@ -133,6 +136,40 @@ def least_dipole_link(ratio, y, q):
 
 
 @inner_kernel
+def link_reach(channels, j, q, near, far, is_dipole):
+    """Return the reach of a link vector times the amplitude of its channel, between two distances.
+
+    Args:
+        channels: the rows, or None.
+        j: which.
+        q: of the point, or of the centre of its set.
+        near: the least distance; in a channel by elevation the position is known.
+        far: the largest.
+        is_dipole: whether the vector is that of a dipole.
+    """
+    slope, bend = (VECTOR_SLOPE, VECTOR_BEND) if is_dipole else (1.0, 2.0)
+    inverse = 1.0 / near
+    length, slope, bend = inverse, slope * inverse * inverse, bend * inverse * inverse * inverse
+    if channels is not None:
+        if channels[j, 0] == BY_DISTANCE:
+            field = distance_amplitude(channels[j], q, near * near, far * far)
+            bend = field.most * bend + 2.0 * field.slope * slope + field.bend * length
+            slope = field.most * slope + field.slope * length
+            length *= field.most
+        elif near == far:
+            length *= math.sqrt(excess_in_sight(channels[j], q))
+    return Reach(length, slope, bend)
+
+
+@inner_kernel
+def node_gain(channels, n, q):
+    """Return the excess gain of the node's channel, the last of n + 1."""
+    if channels is not None:
+        return excess_in_sight(channels[n], q)
+    return 1.0
+
+
+@inner_kernel
 def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
     """Fill what holds at the corners; return False near a jammer. The node's weight is 0 if left out.
 
@@ -142,6 +179,7 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
     for e in range(n_offsets):
         offset = corner_of(cell.d, cell.d_half, e)
         node = minus(ratio.node, offset)
+        strength = weight * node_gain(ratio.sets.channels, ratio.shares.shape[0], node)
         corners.ball[e] = errors.reach**2 - dot(offset, offset)
         for m in range(n_axes):
             x = corner_of(cell.x, cell.x_half, 2 * m)
@@ -149,12 +187,12 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
             corners.cone[m] = x[ahead(cell.face)] ** 2 - errors.cosine**2 * square
             signal, noise = ratio.isotropic * square, square
             if weight > 0.0 and has_dipole(ratio.dipole):
-                signal += weight * least_dipole_link(ratio, y, node)
+                signal += strength * least_dipole_link(ratio, y, node)
             elif weight > 0.0:
                 rounding = ROUND * length * norm(node)
                 across = max(0.0, norm(cross(y, node)) - rounding) / dot(node, node)
                 leaking = max(0.0, abs(dot(y, node)) - rounding) / dot(node, node)
-                signal += weight * (across * across + ratio.leak * leaking * leaking)
+                signal += strength * (across * across + ratio.leak * leaking * leaking)
             for j in range(ratio.shares.shape[0]):
                 q = minus(row(ratio.centres, j), offset)
                 found, root, _ = strongest_link(
@@ -172,26 +210,26 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
 
 
 @inner_kernel
-def curvatures(ratio, weight, level, cell, across):
-    """Return lemma 4's A, B and C, or those of a dipole; infinite unless the cell keeps clear of all sets."""
+def curvatures(ratio, channels, weight, level, cell, across):
+    """Return lemma 4's A, B and C; infinite unless the cell keeps clear of all sets."""
     lean, swing, length = norm(cell.x_half), norm(cell.d_half), norm(farthest(cell.x, cell.x_half))
-    kappa = 1.0 / (norm(minus(ratio.node, cell.d)) - swing) if weight > 0.0 else 0.0
-    square = kappa * kappa
-    a = 2.0 * max(0.0, ratio.isotropic - level + weight * square)
-    b = 4.0 * weight * length * kappa * square
-    c = 6.0 * weight * (length * square) ** 2
-    if has_dipole(ratio.dipole):
-        b, c = b * VECTOR_SLOPE, c * (1.0 + VECTOR_SLOPE * VECTOR_SLOPE / 3.0)
-    for j in range(ratio.shares.shape[0]):
-        near = clearance(ratio.sets, j, minus(row(ratio.centres, j), cell.d)) - swing
+    n, q = ratio.shares.shape[0], minus(ratio.node, cell.d)
+    near, far = norm(q) - swing if weight > 0.0 else math.inf, norm(q) + swing
+    node = link_reach(channels, n, q, near, far, has_dipole(ratio.dipole))
+    a = 2.0 * max(0.0, ratio.isotropic - level + weight * node.length**2)
+    b = 4.0 * weight * length * node.length * node.slope
+    c = 2.0 * weight * length**2 * (node.slope**2 + node.length * node.bend)
+    for j in range(n):
+        q = minus(row(ratio.centres, j), cell.d)
+        near = clearance(ratio.sets, j, q) - swing
         if not near > 0.0:
             return math.inf, math.inf, math.inf
-        kappa, has = 1.0 / near, has_dipole(row(ratio.sets.dipoles, j))
-        slope, bend = (VECTOR_SLOPE, VECTOR_BEND) if has else (1.0, 2.0)
-        most = across[j] + lean * kappa + slope * swing * length * kappa**2  # no corner is farther off
-        part = 2.0 * level * ratio.shares[j] * most * kappa**2
-        b += slope * part
-        c += bend * part * length * kappa
+        far = norm(q) + ratio.sets.extents[j] + swing
+        reach = link_reach(channels, j, q, near, far, has_dipole(row(ratio.sets.dipoles, j)))
+        most = across[j] + lean * reach.length + swing * length * reach.slope  # no corner is farther off
+        part = 2.0 * level * ratio.shares[j] * most
+        b += part * reach.slope
+        c += part * length * reach.bend
     return a, b, c
 
 
@@ -270,7 +308,7 @@ def holds(ratio, errors, level, cell, tolerance, corners):
     weight = ratio.weight if distance > swing else 0.0
     a = math.inf
     if evaluate_corners(ratio, weight, errors, level, cell, math.inf, corners):
-        a, b, c = curvatures(ratio, weight, level, cell, corners.across)
+        a, b, c = curvatures(ratio, ratio.sets.channels, weight, level, cell, corners.across)
     if not a < math.inf:
         return False, side_to_split(cell, distance**2, 1.0)
     nu, mu = multipliers(errors, cell, corners.values)
@@ -280,7 +318,7 @@ def holds(ratio, errors, level, cell, tolerance, corners):
     if spare > tolerance * size:  # bounds need be no closer than what is to spare
         tolerance = _SHARE * spare / size
         if evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
-            a, b, c = curvatures(ratio, weight, level, cell, corners.across)
+            a, b, c = curvatures(ratio, ratio.sets.channels, weight, level, cell, corners.across)
             rest = 0.5 * (a * lean**2 + 2.0 * b * lean * swing + c * swing**2)
             if margin(errors, cell, corners, nu, mu, rest) >= 0.0:
                 return True, 0

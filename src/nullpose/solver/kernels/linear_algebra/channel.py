@@ -65,14 +65,19 @@ def sight_gain(family, channels, j, p):
 def excess_at(family, channels, j, p):
     """Return the excess gain of point j at a position."""
     if channels is not None:
-        row, r = channels[j], minus(row_of(family.points_m, j), p)
-        gain = sight_gain(family, channels, j, p)
-        if row[0] == BY_DISTANCE:
-            return gain * (dot(r, r) / (row[2] * row[2])) ** (0.5 * row[1])
-        if row[0] == BY_ELEVATION:
-            elevation_rad = math.atan2(-r[2], math.hypot(r[0], r[1]))
-            return gain * elevation_gain(row, sight_probability(row, elevation_rad))
-        return gain
+        sight = sight_gain(family, channels, j, p)
+        return sight * excess_in_sight(channels[j], minus(row_of(family.points_m, j), p))
+    return 1.0
+
+
+@small_kernel
+def excess_in_sight(row, r):
+    """Return the excess gain of a channel, r being the vector to the point, without buildings."""
+    if row[0] == BY_DISTANCE:
+        return (dot(r, r) / (row[2] * row[2])) ** (0.5 * row[1])
+    if row[0] == BY_ELEVATION:
+        elevation_rad = math.atan2(-r[2], math.hypot(r[0], r[1]))
+        return elevation_gain(row, sight_probability(row, elevation_rad))
     return 1.0
 
 

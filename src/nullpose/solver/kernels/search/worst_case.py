@@ -26,7 +26,7 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
     store,
     unit,
 )
-from nullpose.solver.kernels.search.worst_case_links import Sets, has_dipole, link_and_slopes, strongest_link
+from nullpose.solver.kernels.search.worst_case_links import Sets, channel_slopes, has_dipole, strongest_link
 
 _LOOSE = 1e-3  # tolerance of an ellipsoid's strongest link in the search, which asks for what is attained
 _STEPS = 200
@@ -42,7 +42,8 @@ class Ratio(NamedTuple):
     """A ratio ``(a + c (|y x v|^2 + l (y.v)^2)) / (1 + sum_j b_j L_j)``.
 
     v is the node's inverted point, L_j the link of set j, and l the antenna's leak. A node with a dipole has
-    ``(1 - l) (y.a)^2 + l |a|^2`` in place of the bracket, a being its link vector (lemma 5).
+    ``(1 - l) (y.a)^2 + l |a|^2`` in place of the bracket, a being its link vector (lemma 5). Links are
+    multiplied by the excess gains of their channels.
     """
 
     isotropic: float  # a
@@ -70,20 +71,22 @@ def ratio_at(ratio, y, offset, places):
 
     Fills the sets' places from the actual position.
     """
-    below, below_y, below_d = 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    channels, below, below_y, below_d = ratio.sets.channels, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for j in range(ratio.shares.shape[0]):
         share, q = ratio.shares[j], minus(row(ratio.centres, j), offset)
         root, _, place = strongest_link(ratio.sets, j, y, q, ratio.leak, _LOOSE)
         store(place, places[j])
         below += share * root * root
         if root < math.inf:
-            _, by_axis, by_place = link_and_slopes(y, place, row(ratio.sets.dipoles, j), ratio.leak)
+            axis = row(ratio.sets.dipoles, j)
+            _, by_axis, by_place = channel_slopes(channels, j, y, place, axis, ratio.leak)
             below_y, below_d = along(below_y, share, by_axis), along(below_d, -share, by_place)
     q = minus(ratio.node, offset)
     square = dot(q, q)
     if not (square > 0.0 and below < math.inf):
         return 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    link, by_axis, by_place = link_and_slopes(y, q, ratio.dipole, ratio.leak)
+    node = ratio.shares.shape[0]  # the last of the channels
+    link, by_axis, by_place = channel_slopes(channels, node, y, q, ratio.dipole, ratio.leak)
     value = (ratio.isotropic + ratio.weight * link) / below
     by_axis, by_offset = scaled(ratio.weight, by_axis), scaled(-ratio.weight, by_place)
     return value, over(along(by_axis, -value, below_y), below), over(along(by_offset, -value, below_d), below)
