@@ -17,6 +17,7 @@ from rich.console import Console
 from rich.progress import track
 
 from benchmarks.soundness.search import feasible, nearest_in_band
+from nullpose.channel import PointChannels, excess_gain
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
 
@@ -26,6 +27,15 @@ _KEPT = 400  # errors that every pose of the search is judged by
 _MANY = 20_000  # errors that a guarantee has to withstand
 _ROUNDS, _CLOSER = 12, 500  # of a random search around the worst errors found
 _WALKS, _STEPS = 12, 120
+_URBAN = {"model": "elevation", "environment": "urban", "average": "power"}
+CHANNELS: list[tuple[dict[str, object], dict[str, object], float]] = [
+    ({}, {}, 0.0),
+    ({"model": "power-law", "exponent": 3.0}, {"channel": "free-space"}, 14.0),
+    ({"model": "power-law", "exponent": 2.5}, {}, 7.0),
+    (_URBAN, {}, 6.0),
+    (_URBAN | {"environment": "suburban", "average": "db"}, {"channel": "free-space"}, 6.0),
+]
+"""The channel of every fifth scene, that of its jammers if it is another, and the reference gain [dB]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,14 +95,16 @@ def worst(scenario: Scenario, position_m: FloatArray, axis: FloatArray, errors: 
     moved = np.einsum("jab,njb->nja", scenario.jammer_uncertainty_m, errors.jammers)
     g0 = scenario.receiver.reference_gain
 
-    def received(points: FloatArray, powers: FloatArray) -> FloatArray:
+    def received(points: FloatArray, powers: FloatArray, channels: PointChannels | None) -> FloatArray:
         r = points - positions[:, None, :]
         distance2 = np.sum(r * r, axis=-1)
         sine2 = np.sum(np.cross(axes[:, None, :], r) ** 2, axis=-1) / distance2
-        return np.asarray(g0 * powers * sine2 / distance2)
+        excess = 1.0 if channels is None else excess_gain(channels, r)
+        return np.asarray(g0 * powers * sine2 / distance2 * excess)
 
-    signal = received(scenario.node_positions_m[None], scenario.node_powers_w)
-    jamming = received(scenario.jammer_positions_m + moved, scenario.jammer_powers_w).sum(axis=1)
+    signal = received(scenario.node_positions_m[None], scenario.node_powers_w, scenario.node_channels)
+    jammers_m = scenario.jammer_positions_m + moved
+    jamming = received(jammers_m, scenario.jammer_powers_w, scenario.jammer_channels).sum(axis=1)
     return np.asarray((signal / (jamming + scenario.receiver.noise_power_w)[:, None]).min(axis=1))
 
 
@@ -112,6 +124,10 @@ def make_robust_scene(number: int) -> Scenario:
     frame = rng.choice([0, 1, 2])
     tilted = {"tilt_max_deg": 10.0, "mount_deg": 90.0}
     airframes = [{}, {"airframe": tilted}, {"airframe": {"preset": "level"}}]
+    channel, jammer_channel, gain_db = CHANNELS[number % len(CHANNELS)]
+    receiver["reference_gain_db"] = gain_db
+    if channel.get("model") == "elevation":
+        receiver["position_error_m"] = 0.0
     return Scenario.from_dict(
         {
             "name": f"robust {number}",
@@ -121,9 +137,11 @@ def make_robust_scene(number: int) -> Scenario:
             "jammers": [
                 {"position_m": p, "power_w": float(10.0 ** rng.uniform(-1.0, 2.0))}
                 | {"uncertainty_m": sets[int(rng.integers(2))]}
+                | jammer_channel
                 for p in jammers.tolist()
             ],
             **airframes[int(frame)],
+            **({"channel": channel} if channel else {}),
         }
     )
 

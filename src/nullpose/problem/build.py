@@ -59,8 +59,8 @@ def _refuse_channels(scenario: Scenario) -> None:
     """
     if scenario.has_channels:
         raise UsageError(
-            "channel: given a power law or line of sight by elevation; allowed here: free space, or average = "
-            '"guaranteed"; solve and evaluate know every channel'
+            "channel: given a power law or line of sight by elevation; allowed here: free space, or average "
+            '= "guaranteed"; solve and evaluate know every channel'
         )
 
 
