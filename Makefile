@@ -54,6 +54,7 @@ figures: .venv/.with-core ## the pictures and the claims that README and pages s
 	$(BIN)/python docs/figures/certificate_boxes.py
 	$(BIN)/python docs/figures/proof_boxes.py
 	$(BIN)/python docs/figures/logo.py
+	$(BIN)/python docs/figures/cards.py
 	$(BIN)/python docs/figures/airframes_data.py
 	$(BIN)/python docs/figures/airframes.py
 	$(BIN)/python docs/figures/channels.py

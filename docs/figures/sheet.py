@@ -12,6 +12,7 @@ from itertools import combinations
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
 from matplotlib.text import Text
@@ -33,7 +34,7 @@ POSES = ("paper", "field", "no-fly", "eavesdropper", "geodetic", "town", "array"
 MAPS = ("no-fly", "geodetic")
 LEAST_PT, SLACK_PX = 6.0, 1.0
 COLUMN_PX, SCREEN_PX = 416, 900  # 88 mm at 120 dots to the inch, and a page of the documentation
-SIDE_BY_SIDE = {COLUMN_PX: 4, SCREEN_PX: 2}
+SIDE_BY_SIDE = {COLUMN_PX: 4, SCREEN_PX: 6}
 VIEWS = {"light": lambda colours: colours, "dark": inverted, "grey": grey, "deuteranope": deuteranope}
 Pixels = NDArray[np.floating]
 
@@ -58,9 +59,10 @@ def drawings() -> Iterator[tuple[str, Callable[[str | None], Figure]]]:
 
 
 def hidden_labels(figure: Figure) -> Iterator[Text]:
-    """Yield the numbers of ticks beyond the ends of the axes, which are never drawn."""
-    for axes in figure.axes:
-        for axis in axes._axis_map.values():
+    """Yield the numbers of ticks beyond the ends of the axes, and what ends at an outline."""
+    for axes in figure.findobj(Axes):
+        yield from (text for text in axes.texts if text.get_clip_on())  # numbers of contours
+        for axis in axes._axis_map.values() if axes.name != "3d" else ():  # there all ticks are inside
             drawn = axis._update_ticks()
             for tick in (*axis.majorTicks, *axis.minorTicks):
                 if tick not in drawn:

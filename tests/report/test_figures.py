@@ -29,7 +29,7 @@ def test_any_sweep_can_be_drawn(paper: Scenario, log: bool) -> None:
     table = sweep(paper, "jammers.M.position_m[0]", [10.0, 17.0, 30.0])
     figure = draw_sweep(table, log=log)
     (axes,) = figure.axes
-    assert axes.get_xlabel() == "Position of jammer M, east  (m)"
+    assert axes.get_xlabel() == "Position of jammer M, east (m)"
     assert axes.get_xscale() == ("log" if log else "linear")
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == [CURVES[s].label for s in table.names]

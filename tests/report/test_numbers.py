@@ -57,14 +57,14 @@ def test_a_bound_is_never_rounded_down(objective: Objective, digits: int) -> Non
 @pytest.mark.parametrize(
     ("path", "label"),
     [
-        ("jammers.M.power_w", "Power of jammer M  (W)"),
-        ("nodes.S1.min_sinr_db", "Required SINR of node S1  (dB)"),
-        ("receiver.noise_dbm", "Noise power of the receiver  (dBm)"),
-        ("receiver.attitude_error_deg", "Attitude error of the receiver  (degrees)"),
-        ("jammers.M.position_m[2]", "Position of jammer M, up  (m)"),
-        ("airspace.altitude_m[0]", "Altitude of the airspace, lowest  (m)"),
+        ("jammers.M.power_w", "Power of jammer M (W)"),
+        ("nodes.S1.min_sinr_db", "Required SINR of node S1 (dB)"),
+        ("receiver.noise_dbm", "Noise power of the receiver (dBm)"),
+        ("receiver.attitude_error_deg", "Attitude error of the receiver (degrees)"),
+        ("jammers.M.position_m[2]", "Position of jammer M, up (m)"),
+        ("airspace.altitude_m[0]", "Altitude of the airspace, lowest (m)"),
         ("array.elements", "Elements of the array"),
-        ("airframe.tilt_max_deg", "Largest tilt of the airframe  (degrees)"),
+        ("airframe.tilt_max_deg", "Largest tilt of the airframe (degrees)"),
     ],
 )
 def test_a_setting_is_told_in_words(path: str, label: str) -> None:

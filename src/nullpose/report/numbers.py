@@ -94,7 +94,7 @@ def unit_of(path: str) -> str:
 
 
 def axis_label(path: str) -> str:
-    """Name a swept setting such as ``jammers.M.power_w`` in words: ``Power of jammer M  (W)``."""
+    """Name a swept setting such as ``jammers.M.power_w`` in words: ``Power of jammer M (W)``."""
     *tables, leaf = path.split(".")
     key, _, place = leaf.partition("[")
     unit, words = unit_of(path), _KEY_WORDS.get(key, "")
@@ -104,7 +104,7 @@ def axis_label(path: str) -> str:
     group = tables[0].partition("[")[0].removesuffix("s") if tables else ""
     whose = " ".join((group, *tables[1:])) if len(tables) > 1 else group and f"the {group}"
     label = capitalised(f"{words} of {whose}" if whose else words).replace("_", " ") + part
-    return f"{label}  ({unit})" if unit else label
+    return f"{label} ({unit})" if unit else label
 
 
 def percent(share: float, digits: int = 0) -> str:

@@ -45,7 +45,7 @@ def test_files_of_a_report(make: Make, ladder: Ladder) -> None:
     there = {
         str(path.relative_to(folder / "report")) for path in (folder / "report").rglob("*") if path.is_file()
     }
-    figures = {f"figures/{name}{suffix}" for name in ALL for suffix in (".png", ".svg")}
+    figures = {f"figures/{name}{suffix}" for name in ALL for suffix in (".png", ".svg", ".pdf")}
     assert there == figures | {"report.md", "report.html", "summary.csv", "study.csv"}
     assert {str(path.relative_to(folder / "report")) for path in report.files} == there
     text = (folder / "report" / "report.md").read_text(encoding="utf-8")
@@ -90,7 +90,7 @@ def test_the_same_each_time(make: Make, ladder: Ladder, tmp_path: Path) -> None:
     for name in ("a", "b"):
         report_study(folder, out=tmp_path / name)
     files = [path.relative_to(tmp_path / "a") for path in (tmp_path / "a").rglob("*") if path.is_file()]
-    assert len(files) == 4 + 2 * len(ALL)
+    assert len(files) == 4 + 3 * len(ALL)
     for name in files:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before

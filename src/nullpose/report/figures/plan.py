@@ -43,7 +43,9 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         pose: of the drone.
         box_m: low and high corner of what is shown, (2, 2), metres; the whole stage if left out.
     """
-    low, high = _filled(axes, np.stack(limits_m(stage))[:, :2]) if box_m is None else box_m
+    low, high = np.stack(limits_m(stage))[:, :2] if box_m is None else box_m
+    if stage.view.is_small:
+        low, high = _filled(axes, np.stack([low, high]))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="East x (m)", ylabel="North y (m)")
     axes.set_aspect("equal")
     if box_m is None:  # a map has its own colours

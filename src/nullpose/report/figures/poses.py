@@ -37,8 +37,8 @@ from nullpose.solver.array import ArrayDetails
 from nullpose.solver.robust import RobustDetails
 from nullpose.study import ResultRow
 
-_PLAN_INCH = 3.4  # width of a plan on a screen
-_PLAN_SHARE = 0.31 / 0.57  # width of a plan over that of the scene beside it
+_PLAN_INCH = 4.2  # width of a plan on a screen
+_PLAN_SHARE = 0.64  # width of a plan over that of the scene beside it
 _Place: TypeAlias = tuple[float, float, float, float]
 _PLAN: _Place = (0.165, 0.3, 0.435, 0.68)  # in a column, of the figure
 _SOLID: _Place = (0.625, 0.36, 0.29, 0.6)
@@ -117,7 +117,7 @@ def _axes(figure: Figure, place: SubplotSpec | _Place, projection: str | None = 
     return figure.add_subplot(place, projection=projection)
 
 
-_LETTERS = 100  # in a line of a title
+_LETTERS = 120  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
 _SURFACE = "radiation pattern"
 

@@ -145,7 +145,7 @@ def draw_panel(
             write_name(axes, point.name, place)
     draw_bodies(axes, stage.scenario)
     for zone, corners_m in stage.zones:
-        _draw_zone(axes, zone, corners_m)
+        _draw_zone(axes, zone, corners_m, is_named=not is_small)
     draw_vehicle(axes, stage, pose)
     place_names(axes)
 
@@ -175,7 +175,7 @@ def _frame(axes: Axes3D, stage: Stage) -> None:
     axes.view_init(elev=stage.view.elevation_deg, azim=stage.view.azimuth_deg)
 
 
-def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray) -> None:
+def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray, *, is_named: bool) -> None:
     """Draw a zone as a body that can be seen through, or the geofence (None) as a line on the ground."""
     bottom_m, top_m = axes.get_zlim()
     if zone is None:
@@ -191,7 +191,8 @@ def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray) -> N
         look = {"facecolor": (FORBIDDEN, 0.10), "edgecolor": edge, "linewidth": 0.8, "zorder": 1.0}
         axes.add_collection3d(Poly3DCollection(faces, **look))
     axes.plot([], [], [], color=FORBIDDEN, linewidth=0.8, label="no-fly zone")
-    write_name(axes, zone.name, np.append(corners_m.mean(axis=0), high_m), is_area=True)
+    if is_named:
+        write_name(axes, zone.name, np.append(corners_m.mean(axis=0), high_m), is_area=True)
 
 
 def draw_set(axes: Axes3D, point: Jammer | Eavesdropper, colour: str, label: str) -> None:

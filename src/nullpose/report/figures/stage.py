@@ -21,7 +21,7 @@ _MARGIN = 0.12  # free ground around the scene
 _MARGIN_OF_ZONES = 0.03
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
-_MOST_NUMBERS = 6  # nodes with a number beside their name
+_MOST_NUMBERS = 4  # nodes with a number beside their name
 AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 
 
@@ -55,7 +55,7 @@ class View:
 
 PANELS = View(inches=(4.6, 3.7), elevation_deg=20.0, pattern=0.15)
 PAIR = View(inches=(4.8, 4.7), elevation_deg=38.0, pattern=0.11, zoom=0.97)
-ALONE = View(inches=(7.0, 5.4), elevation_deg=38.0, pattern=0.11)
+ALONE = View(inches=(6.6, 5.0), elevation_deg=38.0, pattern=0.11)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

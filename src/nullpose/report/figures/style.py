@@ -192,7 +192,7 @@ def draw_curve(
 
 
 def write_figure(
-    figure: Figure, folder: Path, stem: str, kinds: Iterable[str] = ("png", "svg")
+    figure: Figure, folder: Path, stem: str, kinds: Iterable[str] = ("png", "svg", "pdf")
 ) -> tuple[Path, ...]:
     """Write a figure to a file of each kind in an existing folder; return their paths."""
     return tuple(write_figure_file(figure, folder / f"{stem}.{kind}") for kind in kinds)

@@ -73,7 +73,7 @@ def _distributions(summary: Summary, points: Sequence[int]) -> Figure:
         axes.set_yticks(*_SHARES)
 
     note = f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
-    across = f"{summary.quantity.smallest} over the nodes  ({summary.quantity.unit})"
+    across = f"{summary.quantity.smallest} over the nodes ({summary.quantity.unit})"
     return _panels(
         summary, points, draw, across=across, up="CDF over scenes", note=note, height=2.2, looks=looks
     )
@@ -113,7 +113,7 @@ def _gains(summary: Summary, points: Sequence[int]) -> Figure:
         axes.grid(visible=False, axis="y")
 
     names = " or ".join(sorted(set(summary.cases.loc[compared, "against"])))
-    across = f"gain in the {summary.quantity.smallest} over {names}  ({summary.quantity.unit})"
+    across = f"gain in the {summary.quantity.smallest} over {names} ({summary.quantity.unit})"
     note = (
         f"Disc: median gain. Diamond: gain in the worst tenth. Lines: {percent(CONFIDENCE)} confidence. "
         "Bar: 10th to 90th percentile."

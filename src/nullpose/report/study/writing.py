@@ -110,7 +110,9 @@ def report_study(
         "words": point_words(spec, -1),
         "points": {point: point_words(spec, point) for point in shown_points(spec)},
         "captions": _CAPTIONS,
-        "images": {name: base64.b64encode(svg.read_bytes()).decode() for name, (_, svg) in figures.items()},
+        "images": {
+            name: base64.b64encode(svg.read_bytes()).decode() for name, (_, svg, _) in figures.items()
+        },
         "confidence": percent(CONFIDENCE),
         "percent": percent,
         "cell": partial(_cell, summary),
@@ -184,7 +186,7 @@ def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, ...]
     from nullpose.report.study.figures import figures_of
 
     for name in (*_CAPTIONS, "sweep", "best", "outage", "robustness", "effort"):
-        for suffix in (".png", ".svg"):
+        for suffix in (".png", ".svg", ".pdf"):
             (folder / f"{name}{suffix}").unlink(missing_ok=True)
     return {name: write_figure(figure, folder, name) for name, figure in figures_of(summary).items()}
 
