@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -48,6 +49,7 @@ class PatternArrays(NamedTuple):
     rounding: float
 
 
+@lru_cache(maxsize=8)
 def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
     """Return a pattern for the kernels, with the table of what it does within caps.
 

@@ -33,6 +33,16 @@ class Harmonics:
     cosine: FloatArray
     sine: FloatArray
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Harmonics) and self._terms == other._terms
+
+    def __hash__(self) -> int:
+        return hash(self._terms)
+
+    @property
+    def _terms(self) -> tuple[bytes, bytes]:
+        return self.cosine.tobytes(), self.sine.tobytes()
+
     @property
     def degree(self) -> int:
         """The highest n."""

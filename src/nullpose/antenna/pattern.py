@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -31,7 +31,7 @@ _STEP_DEG = 0.25  # of the grid where the least gain is looked for, then about i
 _MINIMA = 64
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class PatternAntenna:
     """An antenna whose gain over the sphere is a sum of spherical harmonics, and 0 where that is negative.
 
@@ -85,23 +85,7 @@ class PatternAntenna:
     @property
     def arrays(self) -> PatternArrays:
         """The pattern as the solver takes it, made once for the same harmonics."""
-        return _arrays(*(part.tobytes() for part in (self.harmonics.cosine, self.harmonics.sine)))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, PatternAntenna) and self._key() == other._key()
-
-    def __hash__(self) -> int:
-        return hash(self._key())
-
-    def _key(self) -> tuple[object, ...]:
-        return self.name, self.label, self.harmonics.cosine.tobytes(), self.harmonics.sine.tobytes()
-
-
-@lru_cache(maxsize=8)
-def _arrays(cosine: bytes, sine: bytes) -> PatternArrays:
-    side = math.isqrt(len(cosine) // 8)
-    parts = (np.frombuffer(part).reshape(side, side).copy() for part in (cosine, sine))
-    return pattern_arrays(Harmonics(*parts))
+        return pattern_arrays(self.harmonics)
 
 
 def harmonics_of_rows(rows: Sequence[Sequence[float]]) -> Harmonics:
