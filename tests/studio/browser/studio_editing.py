@@ -93,8 +93,9 @@ def test_points_and_zones_are_added_and_deleted_with_undo(hand: Hand) -> None:
 
 def test_a_scene_built_with_the_mouse_alone_is_solved_alike(hand: Hand, tmp_path: Path) -> None:
     """Two nodes, a jammer and a fence; saved, and solved from the file: the same value."""
-    hand.tab("Edit")
+    hand.tab("Files")
     hand.press("New scene")
+    hand.tab("Edit")
     hand.until(lambda: len(hand.scenario.nodes) == 1)
     hand.page.wait_for_timeout(1500)
     size_m = hand.ours.stage.size_m
