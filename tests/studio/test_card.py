@@ -90,7 +90,7 @@ def test_the_value_is_marked_at_its_place_on_the_scale(proved: State) -> None:
     assert f"<span>{low:g}</span><span>{high:g} dB</span>".replace("-", MINUS) in html
     assert "lines to nodes: the same colours<" in html
     other = card_html(_mapped(proved, -8.0, 2.0, MAPS[1]))
-    assert f"lines to nodes: the same colours from {low:g} to {high:g} dB<".replace("-", MINUS) in other
+    assert f"lines to nodes: {low:g} to {high:g} dB<".replace("-", MINUS) in other
     robust = case_named("Robust pose")
     guaranteed = _mapped(replace(proved, case=robust).with_event(replace(answer, case=robust)), -50.0, 50.0)
     for unmarked in (other, card_html(_mapped(proved, 20.0, 30.0)), card_html(guaranteed)):

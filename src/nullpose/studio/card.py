@@ -37,7 +37,7 @@ def _scale(state: State, scale: Scale) -> dict[str, object]:
         tick = 100.0 * (answer.shown_value - low) / (high - low)
     low_db, high_db = state.link_range_db
     is_shared = scale.of_value and unit == "dB"
-    links = "lines to nodes: the same colours" + ("" if is_shared else f" from {low_db:g} to {high_db:g} dB")
+    links = f"lines to nodes: {'the same colours' if is_shared else f'{low_db:g} to {high_db:g} dB'}"
     return {
         "gradient": _gradient(),
         "tick": tick,
