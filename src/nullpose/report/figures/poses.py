@@ -6,13 +6,10 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.gridspec import SubplotSpec
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d import Axes3D
@@ -39,9 +36,8 @@ from nullpose.study import ResultRow
 
 _PLAN_INCH = 4.2  # width of a plan on a screen
 _PLAN_SHARE = 0.64  # width of a plan over that of the scene beside it
-_Place: TypeAlias = tuple[float, float, float, float]
-_PLAN: _Place = (0.165, 0.3, 0.435, 0.68)  # in a column, of the figure
-_SOLID: _Place = (0.625, 0.36, 0.29, 0.6)
+_PLAN = {"left": 0.165, "right": 0.6, "bottom": 0.3, "top": 0.98}  # in a column, of the figure
+_SOLID = {"left": 0.625, "right": 0.915, "bottom": 0.36, "top": 0.96}
 _LEGEND_COLUMN_INCH = 1.7
 _PANEL_INCH = (3.3, 2.5)  # height on a page and in a column
 
@@ -79,18 +75,19 @@ def draw_panels(
         layout = None if is_small else ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.98, 1.0))
         figure = Figure(figsize=(wide, high), layout=layout)
         grid = figure.add_gridspec(1, len(shares), width_ratios=shares)
+        flat, solid = (figure.add_gridspec(1, 1, **place)[0] for place in (_PLAN, _SOLID))
         for index, pose in enumerate(stage.poses):
             if is_narrow and not plan:
                 axes = figure.add_subplot(grid[index])
                 draw_plan(axes, stage, pose)
             else:
-                axes = _axes(figure, _SOLID if is_small else grid[index], projection="3d")
+                axes = figure.add_subplot(solid if is_small else grid[index], projection="3d")
                 axes.patch.set_visible(False)  # it would cover what another panel has at its edge
                 draw_panel(axes, stage, pose, draw_vehicle)
             title = titles[index] if titles else ""
             axes.set_title(title.replace(", ", "\n") if is_narrow else title, fontsize="medium", y=0.96)
         if plan:
-            draw_plan(_axes(figure, _PLAN if is_small else grid[-1]), stage, stage.poses[0])
+            draw_plan(figure.add_subplot(flat if is_small else grid[-1]), stage, stage.poses[0])
         if width is None:
             figure.suptitle(head, fontsize=10, parse_math=False)
         once: dict[str, Artist] = {}
@@ -108,13 +105,6 @@ def draw_panels(
             text.set_parse_math(False)
         lay_out(figure)
     return figure
-
-
-def _axes(figure: Figure, place: SubplotSpec | _Place, projection: str | None = None) -> Axes:
-    """Add axes in a grid, or at a place of their own."""
-    if isinstance(place, tuple):
-        return figure.add_axes(place, projection=projection)
-    return figure.add_subplot(place, projection=projection)
 
 
 _LETTERS = 120  # in a line of a title

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
@@ -36,7 +37,7 @@ NULL_LINE: Look = {
 
 _SIDES = tuple(
     (far * x, far * y, across, up)
-    for far in (6.0, 14.0)
+    for far in (6.0, 11.0)
     for x, y, across, up in (
         (0.0, 1.0, "center", "bottom"),
         (1.0, 0.0, "left", "center"),
@@ -81,7 +82,9 @@ def place_names(axes: Axes | Axes3D) -> None:
     names = [text for text in axes.texts if isinstance(text, Annotation)]
     areas = [name for name in names if name.get_fontstyle() == "italic"]
     points = [name for name in names if name not in areas]
-    taken = [Bbox([at - half, at + half]) for at in axes.transData.transform([name.xy for name in points])]
+    marks = [np.asarray(each.get_offsets()) for each in axes.collections if isinstance(each, PathCollection)]
+    anchors = np.vstack([*marks, *([name.xy] for name in points)])
+    taken = [Bbox([at - half, at + half]) for at in axes.transData.transform(anchors)]
     for name in points + areas:
         sides = (_ON, *_SIDES) if name in areas else _SIDES
         costs = []
