@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.channel.buildings import shadows_of
-from nullpose.channel.model import CONSTANT, WIDTH
+from nullpose.channel.model import CONSTANT, CUSTOM, WIDTH
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
@@ -92,7 +92,8 @@ def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, Float
 def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[dict[str, Any], FloatArray]:
     """Return the fields of ratios for the points' channels and buildings, and the strengths, (m,).
 
-    There are no fields where no link's gain over free space changes with the position.
+    There are no fields where no link's gain over free space changes with the position, functions in Python
+    left aside.
 
     Args:
         scenario: with its points.
@@ -102,7 +103,7 @@ def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[dict[
     groups = [(getattr(scenario, f"{k}_channels"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
     parts = [(c.rows, c.strengths) if c else (np.zeros((n, WIDTH)), np.ones(n)) for c, n in groups]
     rows, strengths = (np.concatenate(part) for part in zip(*parts, strict=True))
-    if np.all(rows[:, 0] == CONSTANT) and scenario.prisms is None:
+    if np.isin(rows[:, 0], (CONSTANT, CUSTOM)).all() and scenario.prisms is None:
         return {}, strengths
     rows = np.vstack([rows, np.zeros((others, WIDTH))])
     if scenario.prisms is None:

@@ -66,15 +66,12 @@ def _refuse_channels(scenario: Scenario) -> None:
 
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
-    is_free = family.channels is None
-    if (
-        is_free and not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any()
-    ):  # wherever they are
-        return
+    channels = getattr(scenario, f"{scenario.objective_record.interferers.removesuffix('s')}_channels")
+    if channels is None and not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():
+        return  # wherever they are
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
     distance_m = np.maximum(distance_m, family.keep_out_m)
     over_noise = family.denominator_weight / distance_m**2
-    channels = getattr(scenario, f"{scenario.objective_record.interferers.removesuffix('s')}_channels")
     if channels is not None:  # its gain is largest right below the drone
         over_noise *= excess_gain(channels, distance_m[:, None] * [0.0, 0.0, -1.0]) / channels.strengths
     if not (over_noise > LOUDEST).any():

@@ -15,7 +15,6 @@ from itertools import count
 
 import numpy as np
 
-from nullpose.channel.model import CONSTANT, CUSTOM
 from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
 from nullpose.problem.axis_field import AxisField
@@ -48,8 +47,6 @@ class CustomSearch(PositionSearch):
     """
 
     def __init__(self, scenario: Scenario, family: Family, fields: Sequence[AxisField], seed: int) -> None:
-        if scenario.prisms is None and np.isin(family.channels[:, 0], (CONSTANT, CUSTOM)).all():
-            family = family.changed(channels=None)
         super().__init__(self.value_at, family, seed)
         points = (*scenario.nodes, *getattr(scenario, scenario.objective_record.interferers))
         laws = ((j, scenario.custom_law(point)) for j, point in enumerate(points))

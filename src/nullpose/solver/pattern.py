@@ -47,7 +47,8 @@ def solve_pattern(scenario: Scenario, family: Family, options: SolveOptions) -> 
     """
     antenna = scenario.antenna_record
     assert not antenna.is_quadratic, "the caller asks"
-    return PatternRun(family, antenna, reach_of(scenario, antenna), options).outcome()
+    reach = reach_of(scenario, antenna)
+    return PatternRun(family, antenna, reach, options).outcome()
 
 
 def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
