@@ -24,6 +24,7 @@ CARD_PX = (352.0, 336.0)
 
 _CANVAS_PX = (1000.0, 800.0)  # where none is known
 _AHEAD = -np.array([0.82, -0.52, 0.64]) / np.linalg.norm([0.82, -0.52, 0.64])  # the camera's view
+_FOV_RAD = math.radians(50.0)  # upright; a wider one bends the scene at its edges
 _MARGIN = 0.88  # of half the canvas, which leaves space for labels
 _ROUNDS = 6  # of centring
 _TURNS = 24  # directions from which a turning scene is seen whole
@@ -79,6 +80,7 @@ def aim(
         centre_m = centre_of_m(scenario)
         around = Rotation.from_rotvec(np.outer(np.linspace(0.0, math.tau, _TURNS), [0.0, 0.0, 1.0]))
         matter = np.vstack([turn.apply(matter - centre_m) + centre_m for turn in around])
+    camera.fov = _FOV_RAD
     canvas, (right_of, below) = canvas_px(camera), CARD_PX
     whole, *others = (
         _fit(canvas, camera.fov, matter, corner) for corner in ((0.0, 0.0), (right_of, 0.0), (0.0, below))

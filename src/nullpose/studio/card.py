@@ -7,6 +7,7 @@ from functools import cache
 from typing import NamedTuple
 
 from nullpose.report.numbers import MINUS
+from nullpose.solver import Status
 from nullpose.studio.answer import per_cent
 from nullpose.studio.camera import centre_of_m
 from nullpose.studio.field_map import Scale
@@ -24,9 +25,8 @@ def card_html(state: State) -> str:
     Args:
         state: of the page.
     """
-    scale = None if state.scale is None else _scale(state, state.scale)
-    centre = " ".join(f"{number:.3f}" for number in centre_of_m(state.scenario))
-    return str(macros().card(state, proof(state), scale, centre))
+    scale = state.scale and _scale(state, state.scale)
+    return str(macros().card(state, proof(state), scale, centre_of_m(state.scenario)))
 
 
 def _scale(state: State, scale: Scale) -> dict[str, object]:
@@ -80,8 +80,8 @@ def proof(state: State) -> Bar:
     """
     answer, progress = state.current(state.case), state.progress(state.case)
     if answer is not None and (gap := answer.result.objective.relative_gap) is not None:
-        return Bar(gap, f"{answer.result.stats.boxes:,} boxes examined")
+        is_proved = answer.result.status is Status.CERTIFIED  # to the gap that was aimed at
+        return Bar(0.0 if is_proved else gap, f"{answer.result.stats.boxes:,} boxes examined")
     if progress is not None:
-        words = f"gap {per_cent(progress.gap)} so far, {progress.boxes:,} boxes examined"
-        return Bar(progress.gap, words)
+        return Bar(progress.gap, f"gap {per_cent(progress.gap)} so far, {progress.boxes:,} boxes examined")
     return Bar(math.inf, "no bound yet")

@@ -89,8 +89,7 @@ def _point(key: Key, point: GroundPoint, state: State, size_m: float, look: Look
         halo = np.add(_circle(0.03 * size_m), [0.0, 0.0, 0.01 * size_m])
         shapes[f"{name}/halo"] = lines(halo, look.outline, 5.0 if is_selected else 2.5)
     if keep_out_m > 0.0 and is_selected:  # wires: what is see-through below the map would be hidden by it
-        ball = mesh(sphere_mesh(6, 10), look.wire, wireframe=True, scale=keep_out_m)
-        shapes[f"{name}/keep-out"] = ball
+        shapes[f"{name}/keep-out"] = mesh(sphere_mesh(6, 10), look.wire, wireframe=True, scale=keep_out_m)
     if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
         near = sphere_mesh(10, 16).placed(point.uncertainty_matrix_m)
         shapes[f"{name}/uncertainty"] = mesh(near, colour, wireframe=True)

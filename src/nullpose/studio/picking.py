@@ -44,11 +44,10 @@ def clicked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike)
         added = with_added(state, state.tool, place_m, size_m)
         return replace(added, tool="", selected=(kind, len(added.members(kind)) - 1))
     corners = state.corners_m
-    is_fence = state.tool == FENCE and len(corners) >= _LEAST_CORNERS
-    if is_fence and np.linalg.norm(place_m - corners[0]) < _CLOSE * size_m:
+    can_close = state.tool == FENCE and len(corners) >= _LEAST_CORNERS
+    if can_close and np.linalg.norm(place_m - corners[0]) < _CLOSE * size_m:
         return replace(with_fence(state, corners), tool="", corners_m=())
-    east_m, north_m = place_m.tolist()
-    return replace(state, corners_m=(*corners, (east_m, north_m)))
+    return replace(state, corners_m=(*corners, (float(place_m[0]), float(place_m[1]))))
 
 
 def picked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) -> Key | None:

@@ -38,8 +38,8 @@ def reading(
     if state.corners_m:
         lines.append(f"{np.linalg.norm(place_m - state.corners_m[-1]):.1f} m from the last corner")
     if field is not None:
-        axes, at = (field.north_m, field.east_m), place_m[::-1]
-        (value,) = interpn(axes, field.values, at, bounds_error=False, fill_value=math.nan)
+        grid = field.north_m, field.east_m
+        (value,) = interpn(grid, field.values, place_m[::-1], bounds_error=False, fill_value=math.nan)
         lines = [f"{signed(float(value))} {field.unit}"] * math.isfinite(value) + lines
     return None, lines
 
