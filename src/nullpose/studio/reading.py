@@ -37,11 +37,17 @@ def reading(
     lines = ["{} m east, {} m north".format(*(signed(number, 1) for number in place_m))]
     if state.corners_m:
         lines.append(f"{np.linalg.norm(place_m - state.corners_m[-1]):.1f} m from the last corner")
+    value = math.nan
     if field is not None:
-        grid = field.north_m, field.east_m
-        (value,) = interpn(grid, field.values, place_m[::-1], bounds_error=False, fill_value=math.nan)
+        (value,) = interpn(
+            (field.north_m, field.east_m),
+            field.values,
+            place_m[::-1],
+            bounds_error=False,
+            fill_value=math.nan,
+        )
         lines = [f"{signed(float(value))} {field.unit}"] * math.isfinite(value) + lines
-    return None, lines
+    return None, lines if state.tool or math.isfinite(value) else []
 
 
 def _link_lines(answer: Answer, key: Key, point_m: ArrayLike) -> list[str]:
