@@ -1,7 +1,7 @@
 """How much tilt do random scenes need? The table and the figure of the page on airframes.
 
-The scenes are those of a study: 2 to 6 nodes and 1 to 3 jammers on a square of 300 m. A scene counts as one
-that needs no more than a tilt, or more, only where that is proved within a number of boxes.
+The scenes are those of a study: 2 to 6 nodes and a jammer on a square of 300 m. A scene counts as one that
+needs no more than a tilt, or more, only where that is proved within a number of boxes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from nullpose.study.monte_carlo import StudySpec, draw_scene
 FOLDER = Path(__file__).parent
 MOUNTS_DEG = (0.0, 45.0, 90.0)
 TILTS_DEG = (0.0, 10.0, 20.0, 30.0)
-BOXES = 200_000  # of each proof: the same on every machine
+BOXES, GAP = 20_000, 1e-3  # of each proof: the same on every machine
 CHANNELS: dict[str, tuple[int, dict[str, object] | None]] = {
     "free space": (500, None),
     "power law 3": (200, {"model": "power-law", "exponent": 3.0}),
@@ -42,7 +42,7 @@ SPEC = StudySpec.from_dict(
             "receiver": {"noise_dbm": -95.0, "frequency_hz": 868e6},
         },
         "nodes": SQUARE | {"count": [2, 6], "height_m": 1.0, "power_dbm": 14.0},
-        "jammers": SQUARE | {"count": [1, 3], "height_m": 2.0, "power_dbm": 20.0},
+        "jammers": SQUARE | {"count": 1, "height_m": 2.0, "power_dbm": 20.0},
     }
 )
 Row = tuple[str, str, int, float, float, float]
@@ -73,7 +73,7 @@ def least(task: tuple[str, str, int]) -> list[Row]:
     """
     name, antenna, index = task
     scenario = scene(index, ANTENNAS[antenna], CHANNELS[name][1])
-    found = nullpose.least_tilt(scenario, mounts_deg=MOUNTS_DEG, node_limit=BOXES, threads=1)
+    found = nullpose.least_tilt(scenario, mounts_deg=MOUNTS_DEG, gap=GAP, node_limit=BOXES, threads=1)
     return [
         (
             name,
@@ -130,7 +130,7 @@ def draw(rows: list[Row]) -> Figure:
             axes.set_ylim(0.0, 100.0)
             axes.set_xlabel("tilt (deg)")
             axes.set_title("isotropic ground antennas" if antenna == "isotropic" else "upright whips")
-        figure.axes[0].set_ylabel("scenes in which no pose was found (%)")
+        figure.axes[0].set_ylabel("scenes in which a tilt is not proved to suffice (%)")
         figure.axes[1].legend(frameon=False)
     return figure
 
