@@ -8,7 +8,8 @@ from typing import Annotated, ClassVar, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
 
 from nullpose.scenario.faults import collected
 from nullpose.scenario.rules import MOST_MEMBERS, ListOf, Quantity, Rule
@@ -118,7 +119,11 @@ class Drawn(Rule):
             return value
         return Distribution(fixed=self.quantity.read(value))
 
-    def judge(self, value: Distribution) -> Distribution:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        drawn = Rule.__get_pydantic_core_schema__(self, source, handler)
+        return core_schema.no_info_after_validator_function(self._sound, drawn)
+
+    def _sound(self, value: Distribution) -> Distribution:
         """Refuse a distribution that draws a number which is not allowed."""
         ((key, numbers),) = value.to_dict().items()
         message = (
