@@ -80,6 +80,47 @@ def test_a_time_limit_holds_for_each_row(run: Run, paper: str, tmp_path: Path) -
     assert all(row["upper_bound"] >= row["min_sinr"] for row in rows)
 
 
+def test_least_tilts_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
+    """Both sides stand in the table, the file and the JSON object."""
+    arguments = ("--from", 1, "--to", 100, "--points", 2, "--mount", "0,90", "--out", tmp_path)
+    result = run("sweep", paper, "--set", "jammers.M.power_w", *arguments)
+    assert result.exit_code == 0, result.output
+    words = " ".join(result.stdout.split())
+    assert "Least tilt (deg)" in words
+    assert "75.4 6.1 too little: 75.3 too little: 6.0" in words
+    assert "proved to 0.1 degrees at 4 of 4 points" in words
+    with (tmp_path / "sweep.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["mount_deg"], row["least_tilt_deg"]) for row in rows[:2]] == [
+        ("0.0", "75.4"),
+        ("90.0", "6.1"),
+    ]
+    answer = json.loads(run("sweep", paper, "--set", "jammers.M.power_w", *arguments, "--json").stdout)
+    assert [row["too_little_deg"] for row in answer["rows"][:2]] == [75.3, 6.0]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--reach", "0"), "reach: got 0.0, must be a share"),
+        (("--reach", "1.2"), "reach: got 1.2, must be a share"),
+        (("--mount", "95"), "mount_deg: got 95.0, must be an angle in degrees from 0 to 90"),
+        (("--mount", "flat"), "--mount: given 'flat'; allowed: angles in degrees"),
+        (("--mount", "best"), "mounts: given best"),
+        (("--reach", "0.9", "--scheme", "optimum"), "--scheme: given with a least tilt"),
+    ],
+)
+def test_a_bad_least_tilt_is_refused_by_name(
+    run: Run, paper: str, tmp_path: Path, options: tuple[str, ...], message: str
+) -> None:
+    """In one message; the exit code is 2."""
+    ends = ("--from", 1, "--to", 3, "--points", 2, "--out", tmp_path)
+    result = run("sweep", paper, "--set", "jammers.M.power_w", *ends, *options)
+    assert result.exit_code == 2
+    assert message in " ".join(result.stderr.split())
+    assert result.stderr.count("must be") + result.stderr.count("given") == 1
+
+
 LAW = ["channel.model=power-law", "channel.exponent=2.5"]
 BY_HAND = ["channel.a=9.61", "channel.b=0.16", "channel.los_loss_db=1", "channel.nlos_loss_db=20"]
 

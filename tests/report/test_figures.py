@@ -15,6 +15,8 @@ from nullpose.report.figures.sweep import draw_sweep
 from nullpose.solver import Scheme
 from nullpose.study import ResultTable, sweep
 
+SIDES = ("least_tilt_deg", "too_little_deg")
+
 
 def test_curves_differ_in_more_than_colour() -> None:
     """Without colours, line and marker still tell any two schemes apart."""
@@ -55,6 +57,19 @@ def test_bounds_are_drawn_if_asked_for(paper: Scenario) -> None:
     assert "Each band ends" in figure.get_supxlabel()
     (legend,) = figure.legends
     assert len(legend.get_texts()) == 1
+
+
+def test_least_tilts_are_drawn_with_both_sides(paper: Scenario) -> None:
+    """A curve for each mount and a mark at each tilt that is too little; nothing where none is enough."""
+    table = sweep(paper, "jammers.M.power_w", [1.0, 10.0], mounts_deg=[0.0, 90.0])
+    (axes,) = draw_sweep(table).axes
+    assert axes.get_ylabel() == "Least tilt (deg)"
+    heights = [line.get_ydata().tolist() for line in axes.lines]
+    sides = [[row.tilts[key] for row in table.of(name)] for name in table.names for key in SIDES]
+    assert heights == sides
+    none = replace(table.rows[0], tilt=replace(table.rows[0].tilt, suffices_deg=None))
+    (axes,) = draw_sweep(ResultTable(table.path, (none, *table.rows[1:]))).axes
+    assert [np.isnan(line.get_ydata()).tolist() for line in axes.lines[:2]] == [[True, False]] * 2
 
 
 def test_hopeless_bounds_leave_the_curves_readable(paper: Scenario) -> None:

@@ -10,7 +10,7 @@ import pytest
 from nullpose import Scenario, ScenarioError, UsageError, load, solve
 from nullpose.scenario import apply_overrides
 from nullpose.solver.branch_and_bound import INTERRUPT
-from nullpose.study import sweep
+from nullpose.study import least_tilt, sweep
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 POWER = "jammers.M.power_w"
@@ -132,3 +132,57 @@ def test_an_interrupted_proof_ends_the_sweep(paper: Scenario, monkeypatch: pytes
     monkeypatch.setattr(sys.modules["nullpose.study.sweep"], "solve", lambda *_, **__: stopped)
     with pytest.raises(KeyboardInterrupt):
         sweep(paper, POWER, [1.0, 2.0], schemes=["optimum"])
+
+
+def test_a_sweep_of_least_tilts_is_so_many_least_tilts(paper: Scenario) -> None:
+    """Both sides of each mount at each value, in every form of the table."""
+    ticks: list[tuple[int, int]] = []
+    values, mounts_deg = [0.01, 1.0], [0.0, 90.0]
+    table = sweep(
+        paper,
+        POWER,
+        values,
+        mounts_deg=mounts_deg,
+        share=0.95,
+        on_progress=lambda *tick: ticks.append(tick),
+    )
+    alone = [
+        mount
+        for value in values
+        for mount in least_tilt(
+            apply_overrides(paper, [f"{POWER}={value}"]), share=0.95, mounts_deg=mounts_deg
+        ).mounts
+    ]
+    sides = [(mount.mount_deg, 0.95, mount.suffices_deg, mount.fails_deg) for mount in alone]
+    assert [tuple(row.tilts.values()) for row in table.rows] == sides
+    assert [row.objective.value for row in table.rows] == [mount.value for mount in alone]
+    assert [row.status for row in table.rows] == ["certified"] * 4
+    assert any(mount.fails_deg is None for mount in alone)
+    keys = ["mount_deg", "share", "least_tilt_deg", "too_little_deg"]
+    assert [tuple(row[key] for key in keys) for row in table.to_dict()["rows"]] == sides
+    assert list(table.frame()[keys[2]]) == [mount.suffices_deg for mount in alone]
+    assert table.to_xarray()[keys[2]].shape == (2, 2)
+    assert ticks == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_where_no_tilt_is_proved_to_be_enough_there_is_none(paper: Scenario) -> None:
+    """A proof that is cut short leaves no side, and the row says so."""
+    (row,) = sweep(paper, POWER, [1.0], mounts_deg=[0.0], node_limit=1).rows
+    assert (row.tilts["least_tilt_deg"], row.status) == (None, "gap-not-reached")
+    assert "not known" in row.reason
+
+
+@pytest.mark.parametrize(
+    ("path", "options"),
+    [
+        (POWER, {"mounts_deg": []}),
+        (POWER, {"mounts_deg": [0.0], "schemes": ["optimum"]}),
+        ("airframe.tilt_max_deg", {"mounts_deg": [0.0]}),
+    ],
+)
+def test_least_tilts_have_mounts_and_neither_schemes_nor_airframes(
+    paper: Scenario, path: str, options: dict[str, object]
+) -> None:
+    """What has no meaning beside mounts is refused."""
+    with pytest.raises(UsageError, match="mounts: given"):
+        sweep(paper, path, [1.0], **options)

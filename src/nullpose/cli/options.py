@@ -27,6 +27,8 @@ class FigureWidth(StrEnum):
     PAGE_SERIF = "page-serif"
 
 
+MOUNTS = "0,45,90"  # degrees; the mounts that are looked at unless others are stated
+
 ScenarioFile = Annotated[
     Path, typer.Argument(metavar="FILE", help="Scenario file (TOML).", show_default=False)
 ]
@@ -253,6 +255,24 @@ def error_sizes(text: str | None) -> ErrorSizes:
                 "attitude_deg=2,jammers_m=200"
             ) from None
     return ErrorSizes(**sizes)
+
+
+def mounts_of(text: str) -> tuple[float, ...]:
+    """Read mounts such as ``0,45,90``, or none from ``best``.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    from nullpose.errors import UsageError
+
+    if text.strip() == "best":
+        return ()
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise UsageError(
+            f"--mount: given {text!r}; allowed: angles in degrees from 0 to 90, as in 0,45,90, or best"
+        ) from None
 
 
 def refuse(where: str, **options: object) -> None:

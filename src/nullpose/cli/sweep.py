@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from nullpose.cli.options import (
+    MOUNTS,
     AllowOutside,
     Fast,
     JsonOutput,
@@ -16,6 +17,8 @@ from nullpose.cli.options import (
     SceneOptions,
     Width,
     expanded,
+    mounts_of,
+    refuse,
 )
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.printing import say
@@ -53,6 +56,25 @@ def sweep(
             show_default="the paper's four",
         ),
     ] = None,
+    reach: Annotated[
+        float | None,
+        typer.Option(
+            "--reach",
+            metavar="SHARE",
+            help="In place of schemes: find the least tilt with which a vehicle reaches this share of the "
+            "omnidirectional value, for each mount.",
+            show_default="0.99 with --mount",
+        ),
+    ] = None,
+    mount: Annotated[
+        str | None,
+        typer.Option(
+            "--mount",
+            metavar="DEG,DEG",
+            help="Mounts of the antenna for the least tilt: 0 upright, 90 flat.",
+            show_default=f"{MOUNTS} with --reach",
+        ),
+    ] = None,
     proof: ProofOptions,
     fast: Fast = False,
     width: Width = None,
@@ -76,6 +98,9 @@ def sweep(
     fixed = [setting if "=" in setting else f"{setting}={start!r}" for setting in settings]
     scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside)
     scenario = scene.read()
+    mounts_deg = None if reach is None and mount is None else mounts_of(mount or MOUNTS)
+    if mounts_deg is not None:
+        refuse("with a least tilt", scheme=scheme, fast=fast, bounds=bounds)
     options = proof.keywords(fast)
     SolveOptions(**options)
     values = spaced(start, stop, points, log=log)
@@ -83,7 +108,16 @@ def sweep(
     scene.check_outputs((f"--out ({name})", out / name) for name in files)
     schemes = [name.value for name in scheme] if scheme else None
     with compiling_announced(), Ticker(f"sweep of {varied[0]}") as ticker:
-        found = sweep_scenario(scenario, varied[0], values, schemes=schemes, on_progress=ticker, **options)
+        found = sweep_scenario(
+            scenario,
+            varied[0],
+            values,
+            schemes=schemes,
+            mounts_deg=mounts_deg,
+            share=0.99 if reach is None else reach,
+            on_progress=ticker,
+            **options,
+        )
     if scenario.array is not None:
         say("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep

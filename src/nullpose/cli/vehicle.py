@@ -7,7 +7,17 @@ from typing import Annotated
 
 import typer
 
-from nullpose.cli.options import FigureFile, JsonOutput, SceneOptions, Seed, TimeLimit, Width, expanded
+from nullpose.cli.options import (
+    MOUNTS,
+    FigureFile,
+    JsonOutput,
+    SceneOptions,
+    Seed,
+    TimeLimit,
+    Width,
+    expanded,
+    mounts_of,
+)
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import Ticker
 
@@ -39,7 +49,7 @@ def vehicle(
             help="Mounts of the antenna: angles from the body's vertical, 0 upright, 90 flat; or best, for "
             "the mount that needs least tilt alone.",
         ),
-    ] = "0,45,90",
+    ] = MOUNTS,
     figure: FigureFile = None,
     width: Width = None,
     time_limit: TimeLimit = 60.0,
@@ -54,7 +64,7 @@ def vehicle(
     from nullpose.report.vehicle import vehicle_view
     from nullpose.study.least_tilt import least_tilt, values_by_angle
 
-    share, mounts_deg = _share(reach, loss_db), _mounts_deg(mount)
+    share, mounts_deg = _share(reach, loss_db), mounts_of(mount)
     scenario = scene.read()
     prepare_outputs(scene, figure=figure, width=width)
     with compiling_announced(), Ticker("least tilt") as ticker:
@@ -91,21 +101,3 @@ def _share(reach: float | None, loss_db: float | None) -> float:
             raise UsageError(f"--loss-db: given {loss_db!r}; allowed: more than 0 dB, as in 0.05")
         return float(10.0 ** (-loss_db / 10.0))
     return 0.99 if reach is None else reach
-
-
-def _mounts_deg(text: str) -> tuple[float, ...]:
-    """Read mounts such as ``0,45,90``, or none from ``best``.
-
-    Raises:
-        UsageError: it is neither.
-    """
-    from nullpose.errors import UsageError
-
-    if text.strip() == "best":
-        return ()
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise UsageError(
-            f"--mount: given {text!r}; allowed: angles in degrees from 0 to 90, as in 0,45,90, or best"
-        ) from None

@@ -12,7 +12,6 @@ from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
 from nullpose.study.vehicles import (
     BEST_MOUNT,
     TOLERANCE,
-    arrays,
     difference,
     dipoles,
     verdict_on,
@@ -36,7 +35,7 @@ def answer_lines(comparison: ResultTable) -> list[str]:
     kinds = {
         kind: [row for row in dipoles(comparison) if row.name.endswith(end)] for kind, end in ends.items()
     }
-    kinds["an array"] = list(arrays(comparison))
+    kinds["an array"] = [row for row in comparison.rows if row.case.array is not None]
     lines = [_least_line(comparison, kind, found) for kind, found in kinds.items() if found]
     for row in comparison.rows:
         if row.name == FILE_VEHICLE:

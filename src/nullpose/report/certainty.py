@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from nullpose.files import PlainTable
 from nullpose.report.document import grouped
@@ -28,9 +28,12 @@ def counted(rows: Iterable[ResultRow]) -> PlainTable:
     }
 
 
-def _sentence(status: Status, rows: Iterable[ResultRow]) -> str:
+def _sentence(status: Status, rows: Sequence[ResultRow]) -> str:
     """Write what is true of every value of a status at least, with the widest gap."""
     counts = counted(rows)
+    if rows[0].tilt is not None:
+        known = f"{counts['certified']} of {counts['values']} points"
+        return f"the least tilt for {rows[0].case.reach:.7g} of the value is proved to 0.1 degrees at {known}"
     gap = "none" if counts["largest_relative_gap"] is None else rounded_up(counts["largest_relative_gap"])
     sentences = {
         Status.CERTIFIED: f"each point is certified optimal within {gap} (relative)",
@@ -50,7 +53,7 @@ def labelled_certainty(table: ResultTable) -> list[tuple[str, str]]:
     """Pair the label of each curve of a sweep with how certain it is, curves of one status together."""
     weakest = {name: max((row.status for row in table.of(name)), key=_ORDER.index) for name in table.names}
     sentences = {
-        status: _sentence(status, (row for row in table.rows if weakest[row.name] is status))
+        status: _sentence(status, [row for row in table.rows if weakest[row.name] is status])
         for status in weakest.values()
     }
     names = sorted(weakest, key=lambda name: _ORDER.index(weakest[name]))

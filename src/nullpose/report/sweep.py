@@ -8,7 +8,7 @@ from nullpose.problem.schemes import Scheme
 from nullpose.report.certainty import certainty_lines, rigour_lines
 from nullpose.report.document import View, document, grouped, table
 from nullpose.report.figures.style import curve_of, write_figure
-from nullpose.report.figures.sweep import draw_sweep, quantity_of
+from nullpose.report.figures.sweep import draw_sweep, value_label
 from nullpose.report.numbers import bound_text, capitalised
 from nullpose.solver import Status
 from nullpose.study import ResultRow, ResultTable
@@ -32,10 +32,12 @@ def write_sweep(
 
 def sweep_view(sweep: ResultTable) -> View:
     """Set a sweep as a table of the objective, a column for each scheme, and how certain it is."""
-    quantity = quantity_of(sweep)
     step = -(-len(sweep.values) // _SHOWN)
     labelled = [(row.label, row) for row in sweep.rows]
-    is_shared = [row.objective.upper_bound is not None and not row.stats.boxes for row in sweep.rows]
+    is_shared = [
+        row.objective.upper_bound is not None and not row.stats.boxes and row.tilt is None
+        for row in sweep.rows
+    ]
     apart = [pair for pair, shared in zip(labelled, is_shared, strict=True) if not shared]
     absent = [(Scheme(name).label, f"not applicable: {reason}") for name, reason in sweep.left_out.items()]
     lines = [
@@ -46,19 +48,21 @@ def sweep_view(sweep: ResultTable) -> View:
         *([_SHARED.format(sum(is_shared), len(is_shared))] if any(is_shared) else []),
         *grouped((label, row.reason) for label, row in labelled),
     ]
-    title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
-    return document(table(title, _rows(sweep, sweep.path)[::step]), "\n".join(lines))
+    return document(table(value_label(sweep), _rows(sweep, sweep.path)[::step]), "\n".join(lines))
 
 
 def _rows(sweep: ResultTable, heading: str) -> list[dict[str, str]]:
     """Set a row for each value of a sweep."""
     rows = {value: {heading: f"{value:.6g}"} for value in sweep.values}
     for row in sweep.rows:
-        rows[row.value][curve_of(row.scheme).label] = _cell(row)
+        rows[row.value][row.label if row.tilt else curve_of(row.scheme).label] = _cell(row)
     return list(rows.values())
 
 
 def _cell(row: ResultRow) -> str:
+    if row.tilt is not None:
+        enough_deg, little_deg = row.tilt.suffices_deg, row.tilt.fails_deg
+        return "\ntoo little: ".join("-" if deg is None else f"{deg:.1f}" for deg in (enough_deg, little_deg))
     value = f"{row.objective.quantity.in_unit(row.objective.value):.4f}"
     if row.status != Status.GAP_NOT_REACHED:
         return value

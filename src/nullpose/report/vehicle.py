@@ -38,9 +38,13 @@ def vehicle_view(found: LeastTilt) -> View:
         ),
         f"Bounds: {found.rigour.message}.",
     ]
-    name = found.omnidirectional.scenario.name
     return document(
-        head(name), "", table("Tilt that suffices", cells), "\n".join(lines), "", head(answer(found))
+        head(found.omnidirectional.scenario.name),
+        "",
+        table("Tilt that suffices", cells),
+        "\n".join(lines),
+        "",
+        head(answer(found)),
     )
 
 
@@ -48,9 +52,11 @@ def answer(found: LeastTilt) -> str:
     """Say in a sentence or two what vehicle suffices, of those with the mounts that were looked at."""
     sentences = [_sentence(mount) for mount in found.mounts]
     if found.best is not None:
-        mount = f"the antenna mounted at {found.best.mount_deg:.4g} degrees"
         if found.best.suffices_deg == 0.0:
-            sentences.append(f"With {mount}, a level vehicle suffices for this scene.")
+            sentences.append(
+                f"With the antenna mounted at {found.best.mount_deg:.4g} degrees, a level vehicle suffices "
+                "for this scene."
+            )
         else:
             sentences.append(
                 f"Of all mounts looked at, {_sentence(found.best)[0].lower()}{_sentence(found.best)[1:]}"

@@ -159,9 +159,9 @@ class Case(Section):
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield keys of a proof where there is none."""
-        if self.mount_scenes is not None and self.airframe is None:
+        if self.mount_scenes is not None and "airframe" not in raw:
             yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'
-        if self.reach is not None and self.airframe is None:
+        if self.reach is not None and "airframe" not in raw:
             yield ("reach",), 'has no meaning without airframe; add one with tilt_max_deg = "least"'
         for key in ("certify", "gap", "time_limit_s"):
             if self.pose is not None and getattr(self, key) is not None:
@@ -174,8 +174,7 @@ class Case(Section):
 
     @property
     def _is_free(self) -> bool:
-        is_other = self.array is not None or self.pose is not None or self.reach is not None
-        return not is_other and self.scheme in (None, Scheme.OPTIMUM)
+        return self.scheme in (None, Scheme.OPTIMUM) and not (self.array or self.pose or self.reach)
 
     @property
     def usual(self) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
@@ -19,7 +19,7 @@ from nullpose.files import PlainTable
 from nullpose.objectives import FloatArray
 from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Scenario, require_scenario
-from nullpose.solver import Result, SolveKeywords, solve
+from nullpose.solver import Result, SolveKeywords, Status, solve
 from nullpose.solver.rigour import Rigour
 from nullpose.study.vehicle_search import LEAST_GAP, VehicleSearch, Verdict, required
 
@@ -190,7 +190,7 @@ def tilt_search(scenario: Scenario, share: float, options: SolveKeywords) -> Til
     if options.get("gap") is None:
         options["gap"] = min(max(0.1 * (1.0 - share), LEAST_GAP), _GAP)
     search = TiltSearch(scenario.without_array.model_copy(update={"airframe": None}), share, options)
-    _uninterrupted(search.whole)
+    uninterrupted(search.whole)
     return search
 
 
@@ -227,7 +227,7 @@ def values_by_angle(
         level = Airframe(tilt_max_deg=0.0, mount_deg=angle_deg)
         options.setdefault("gap", _GAP)
         try:
-            result = _uninterrupted(solve(scenario.model_copy(update={"airframe": level}), **options))
+            result = uninterrupted(solve(scenario.model_copy(update={"airframe": level}), **options))
             values.append(result.objective.value)
         except SolveError:  # no pose at that angle reaches every node
             values.append(0.0)
@@ -258,7 +258,7 @@ class TiltSearch(VehicleSearch):
         while least - most > 1:
             tilt = Airframe(tilt_max_deg=_degrees(steps), mount_deg=mount_deg)
             try:
-                result = _uninterrupted(self.solved(tilt))
+                result = uninterrupted(self.solved(tilt))
             except SolveError:  # no pose was found that reaches every node, which proves nothing
                 break
             other = self._at_least_tilt(result, mount_deg)
@@ -282,6 +282,18 @@ class TiltSearch(VehicleSearch):
         flown = self.flown(result, Airframe(tilt_max_deg=180.0, mount_deg=mount_deg))
         return flown if self.judge(flown) is Verdict.SUFFICES else None
 
+    def result_of(self, mount: MountTilt) -> Result:
+        """Fly a mount's pose, certified where both sides are proved; the best of all without a tilt."""
+        result = mount.result or self.flown(
+            self.whole, Airframe(tilt_max_deg=180.0, mount_deg=mount.mount_deg)
+        )
+        return replace(
+            result,
+            status=Status.CERTIFIED if mount.is_known else Status.GAP_NOT_REACHED,
+            reason="" if mount.is_known else "the least tilt is not known to a step",
+            objective=replace(result.objective, rigour=self.rigour),
+        )
+
     def best(self) -> MountTilt:
         """Find the mount that needs least tilt: on a grid, or else that of the best pose."""
         angle_deg = min(90.0, angle_from_vertical_deg(self.whole))
@@ -301,8 +313,12 @@ def _degrees(steps: int) -> float:
     return round(steps * STEP_DEG, 6)
 
 
-def _uninterrupted(result: Result) -> Result:
-    """Go on with an interrupt that ended a proof."""
+def uninterrupted(result: Result) -> Result:
+    """Go on with an interrupt that ended a proof.
+
+    Raises:
+        KeyboardInterrupt: it did.
+    """
     if result.interrupted:
         raise KeyboardInterrupt
     return result

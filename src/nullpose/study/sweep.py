@@ -6,7 +6,7 @@ import math
 import re
 import time
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 from types import MappingProxyType
@@ -23,6 +23,7 @@ from nullpose.solver.objective import status_of
 from nullpose.solver.result import Stats
 from nullpose.study.case import Case
 from nullpose.study.evaluation import evaluated
+from nullpose.study.least_tilt import tilt_search, uninterrupted
 from nullpose.study.table import ResultRow, ResultTable
 
 _FREER = {
@@ -60,21 +61,25 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
         options: with the gap that is asked for.
     """
     began, solve_options = time.perf_counter(), options.of(scenario)
-    bounds = [(result.objective.upper_bound, result) for result in freer]
+    bounds = ((result.objective.upper_bound, result) for result in freer)
     proved = [(bound, result) for bound, result in bounds if bound is not None]
-    if not proved:
-        return None
-    bound, best = min(proved, key=lambda pair: pair[0])
+    bound, best = min(proved, key=lambda pair: pair[0], default=(0.0, None))
     airframe = scenario.airframe
-    if airframe is not None and best.pose.tilt_rad > airframe.tilt_max_rad:
+    if best is None or (airframe is not None and best.pose.tilt_rad > airframe.tilt_max_rad):
         return None
     here = evaluated(best, scenario, best.pose, bound)
     objective = replace(here.objective, rigour=Rigour.FLOATING_POINT)
     status, _ = status_of(objective, solve_options.target, "not solved by itself")
-    stats = Stats(wall_s=time.perf_counter() - began, starts=0, evaluations=1, boxes=0)
     if status is not Status.CERTIFIED:
         return None
-    return replace(here, scheme=best.scheme, note=best.note, status=status, objective=objective, stats=stats)
+    return replace(
+        here,
+        scheme=best.scheme,
+        note=best.note,
+        status=status,
+        objective=objective,
+        stats=Stats(wall_s=time.perf_counter() - began, evaluations=1),
+    )
 
 
 _DIGITS = 12  # significant digits kept, so that a decade lands on 0.01 and not on 0.009999999999999998
@@ -86,6 +91,8 @@ def sweep(
     values: Sequence[float],
     *,
     schemes: Sequence[str] | None = None,
+    mounts_deg: Sequence[float] | None = None,
+    share: float = 0.99,
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> ResultTable:
@@ -103,12 +110,15 @@ def sweep(
         values: what to set it to, in its own unit.
         schemes: which cases to solve, each of which must have a meaning at every value; without it all that
             have, the others being left out with the reason in the table.
+        mounts_deg: in place of schemes, mounts of the antenna, of each of which the least tilt is found as by
+            :func:`nullpose.study.least_tilt.least_tilt`.
+        share: of the omnidirectional value that suffices for the least tilt.
         on_progress: called after each solve with how many are done and how many there are.
         options: as for :func:`nullpose.solver.solve`.
 
     Raises:
         ScenarioError: the path does not exist, or a value makes no valid scenario.
-        UsageError: a scheme does not apply, or a bad limit.
+        UsageError: a scheme does not apply, a bad limit, or mounts with schemes or along the airframe.
         KeyboardInterrupt: Ctrl-C ended a proof.
 
     Example:
@@ -126,15 +136,23 @@ def sweep(
     require_scenario(scenario)
     chosen, sign = SolveOptions(**options), freedom(path, scenario)
     scenarios = _scenarios_along(scenario, path, values)
+    if mounts_deg is not None:
+        if schemes is not None or path.startswith("airframe") or not mounts_deg:
+            raise UsageError(
+                f"mounts: given {[*mounts_deg] or 'best'} along {path}; allowed: angles in degrees, without "
+                "schemes, along a setting other than the airframe's"
+            )
+        found_tilts = _least_tilts(scenarios, dict.fromkeys(mounts_deg), share, on_progress, options)
+        return ResultTable(path, tuple(found_tilts))
     cases: list[Case] = []
     left_out: dict[str, str] = {}
     for scheme in Scheme if schemes is None else map(Scheme, schemes):
-        reasons = [(value, scheme.not_applicable(varied)) for value, varied in scenarios]
-        value, reason = next(((value, reason) for value, reason in reasons if reason), (0.0, ""))
+        reasons = ((value, scheme.not_applicable(varied)) for value, varied in scenarios)
+        reason = next((f"{reason} (at {value:g})" for value, reason in reasons if reason), "")
         if reason and schemes is not None:
-            raise UsageError(f"scheme {scheme}: {reason} (at {value:g}); try another scheme")
+            raise UsageError(f"scheme {scheme}: {reason}; try another scheme")
         if reason:
-            left_out[scheme.value] = f"{reason} (at {value:g})"
+            left_out[scheme.value] = reason
         else:
             cases.append(Case(name=scheme.value, scheme=scheme))
 
@@ -144,15 +162,44 @@ def sweep(
     order = sorted(scenarios, key=lambda point: -sign * point[0])
     for (value, varied), case in product(order, cases):
         implied = from_freer(varied, found[case.name], chosen) if sign else None
-        result = implied or solve(varied, case.name, **options)
-        if result.interrupted:
-            raise KeyboardInterrupt
+        result = implied or uninterrupted(solve(varied, case.name, **options))
         found[case.name].append(result)
         rows[value, case.name] = ResultRow.of(value, result, case)
         if on_progress is not None:
             on_progress(len(rows), len(order) * len(cases))
     in_order = (rows[value, case.name] for value, _ in scenarios for case in cases)
     return ResultTable(path, tuple(in_order), MappingProxyType(left_out))
+
+
+def _least_tilts(
+    scenarios: Sequence[tuple[float, Scenario]],
+    mounts_deg: Collection[float],
+    share: float,
+    on_progress: Callable[[int, int], None] | None,
+    options: SolveKeywords,
+) -> Iterator[ResultRow]:
+    """Find the least tilt of every mount at every value.
+
+    Raises:
+        ScenarioError: a share or a mount that is not allowed, before the first solve.
+    """
+    cases = [
+        Case.from_dict(
+            {
+                "name": f"mount {mount_deg:.9g}",
+                "airframe": {"tilt_max_deg": "least", "mount_deg": mount_deg},
+                "reach": share,
+            }
+        )
+        for mount_deg in mounts_deg
+    ]
+    for point, (value, varied) in enumerate(scenarios):
+        search = tilt_search(varied, share, options)
+        for done, (mount_deg, case) in enumerate(zip(mounts_deg, cases, strict=True), start=1):
+            mount = search.sides(mount_deg)
+            yield ResultRow.of(value, search.result_of(mount), case, tilt=mount)
+            if on_progress is not None:
+                on_progress(point * len(cases) + done, len(scenarios) * len(cases))
 
 
 def _scenarios_along(
@@ -165,21 +212,22 @@ def _scenarios_along(
             long sweep gives a short message.
     """
     varied: list[tuple[float, Scenario]] = []
-    at: dict[str, list[float]] = defaultdict(list)
-    faults: dict[str, Fault] = {}
+    faults: dict[str, list[tuple[float, str]]] = defaultdict(list)
     for value in map(float, values):
         try:
             varied.append((value, apply_overrides(scenario, [Override(path, value)]).without_array))
         except ScenarioError as error:
             for fault in error.faults:
-                faults.setdefault(fault.path, fault)
-                at[fault.path].append(value)
-    others = {place: len(wrong) - 1 for place, wrong in at.items()}
-    more = {place: f" and {n} other value{'s' * (n > 1)}" if n else "" for place, n in others.items()}
-    found = [Fault(key, f"{each.message} (at {at[key][0]:g}{more[key]})") for key, each in faults.items()]
-    if found:
-        raise ScenarioError(found, source=f"sweep of {path}")
+                faults[fault.path].append((value, fault.message))
+    if faults:
+        raise ScenarioError([_first(place, wrong) for place, wrong in faults.items()], f"sweep of {path}")
     return tuple(varied)
+
+
+def _first(place: str, wrong: Sequence[tuple[float, str]]) -> Fault:
+    (value, message), *others = wrong
+    more = f" and {len(others)} other value{'s' * (len(others) > 1)}" if others else ""
+    return Fault(place, f"{message} (at {value:g}{more})")
 
 
 def spaced(start: float, stop: float, points: int, *, log: bool = False) -> tuple[float, ...]:

@@ -15,6 +15,7 @@ from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.solver import Result
 from nullpose.study.case import Case
+from nullpose.study.least_tilt import MountTilt
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,22 +48,29 @@ class ResultRow(Result):
         value: the swept setting, in the unit of its name; NaN if nothing is swept.
         case: how it was solved.
         guaranteed: what is left under errors; None if the scenario has none.
+        tilt: both sides of the least tilt, where that was the question.
     """
 
     value: float = math.nan
     case: Case
     guaranteed: Guaranteed | None = None
+    tilt: MountTilt | None = None
 
     @classmethod
     def of(
-        cls, value: float, result: Result, case: Case | None = None, kept: Guaranteed | None = None
+        cls,
+        value: float,
+        result: Result,
+        case: Case | None = None,
+        kept: Guaranteed | None = None,
+        tilt: MountTilt | None = None,
     ) -> ResultRow:
         """Make a row of a result; without a case the scheme says it."""
         if case is None:
             scheme = Scheme(result.scheme) if result.scheme in tuple(Scheme) else None
             case = Case(name=str(scheme or result.label), scheme=scheme)
         columns = {column.name: getattr(result, column.name) for column in fields(result)}
-        return cls(value=value, case=case, guaranteed=kept, **columns)
+        return cls(value=value, case=case, guaranteed=kept, tilt=tilt, **columns)
 
     @property
     def name(self) -> str:
@@ -92,6 +100,18 @@ class ResultRow(Result):
         quantity, bound = self.objective.quantity, self.objective.upper_bound
         return None if bound is None or quantity.is_rate else quantity.in_unit(bound)
 
+    @property
+    def tilts(self) -> PlainTable:
+        """The mount, the share and both sides of the least tilt, as columns; none in other rows."""
+        if self.tilt is None:
+            return {}
+        return {
+            "mount_deg": self.tilt.mount_deg,
+            "share": self.case.reach,
+            "least_tilt_deg": self.tilt.suffices_deg,
+            "too_little_deg": self.tilt.fails_deg,
+        }
+
     def record(self) -> PlainTable:
         """List the columns of the row in a file, its case apart; None for no number."""
         columns, axis = self.row(), self.pose.antenna_axis.tolist()
@@ -104,6 +124,7 @@ class ResultRow(Result):
             "relative_gap": self.objective.relative_gap,
         }
         return {
+            **self.tilts,
             "scheme": str(self.scheme),
             "status": self.status.value,
             "rigour": self.objective.rigour.value,
@@ -119,12 +140,12 @@ class ResultRow(Result):
         vehicle = {
             key: section.to_dict()
             for key, section in (("airframe", self.case.airframe), ("array", self.case.array))
-            if section is not None
+            if section is not None and self.tilt is None
         }
         return {
             "case": self.name,
             **({} if math.isnan(self.value) else {"value": self.value}),
-            **vehicle,
+            **(vehicle | self.tilts),
             "scheme": str(self.scheme),
             "status": self.status.value,
             "rigour": objective.rigour.value,
@@ -225,13 +246,14 @@ class ResultTable:
         return imported("pandas").DataFrame(self._records())
 
     def to_xarray(self) -> xr.Dataset:
-        """Return the table's numbers as arrays of xarray over the swept setting and the scheme.
+        """Return the table's numbers as arrays of xarray over the swept setting and the scheme or mount.
 
         Raises:
             UsageError: pandas or xarray is not installed.
         """
         imported("xarray")
-        return self.frame().set_index([*([self.path] if self.path else ["case"]), "scheme"]).to_xarray()
+        axes = [self.path or "case", "mount_deg" if self.rows[0].tilt else "scheme"]
+        return self.frame().set_index(axes).to_xarray()
 
     def __repr__(self) -> str:
         values = self.values
@@ -243,7 +265,7 @@ class ResultTable:
 
     def _repr_html_(self) -> str | None:
         return html_table(
-            [{self.path: row.value} | row.row() if self.path else row.row() for row in self.rows]
+            [({self.path: row.value} if self.path else {}) | row.tilts | row.row() for row in self.rows]
         )
 
     def _records(self) -> list[PlainTable]:

@@ -190,11 +190,6 @@ def dipoles(table: ResultTable) -> tuple[ResultRow, ...]:
     return tuple(row for row in table.rows if row.case.array is None)
 
 
-def arrays(table: ResultTable) -> tuple[ResultRow, ...]:
-    """Select the level vehicles with an array."""
-    return tuple(row for row in table.rows if row.case.array is not None)
-
-
 def difference(table: ResultTable, row: ResultRow) -> float:
     """Subtract the omnidirectional vehicle's value from a vehicle's, in dB or bits/s/Hz."""
     quantity, whole = row.objective.quantity, table.of(OMNIDIRECTIONAL)[0]

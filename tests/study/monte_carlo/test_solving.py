@@ -11,6 +11,7 @@ from nullpose.solver import solve
 from nullpose.study.evaluation import pose_faults
 from nullpose.study.least_tilt import least_tilt
 from nullpose.study.monte_carlo import StudySpec
+from nullpose.study.monte_carlo.chunk import rows_of
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.rows import Row, schema_of
 from nullpose.study.monte_carlo.solving import solved_row
@@ -53,6 +54,18 @@ def test_a_least_tilt_has_two_sides(spec: Spec) -> None:
     assert StudySpec.from_dict(study.to_dict()).digest == study.digest
     assert "least_tilt_deg" in schema_of(study).names
     assert "least_tilt_deg" not in schema_of(spec(cases=[{"robust": True}])).names
+
+
+def test_the_least_tilt_is_found_at_each_point_of_a_grid(spec: Spec) -> None:
+    """Of the first scene with each swept power, as by least_tilt."""
+    case = {"airframe": {"tilt_max_deg": "least", "mount_deg": 0}, "reach": 0.9}
+    study = spec(scenes=1, cases=[case], sweep={"jammers.*.power_w": [0.1, 10.0]})
+    rows = rows_of(study, 0, 0)
+    assert [row["status"] for row in rows] == ["certified"] * 2
+    for point, row in enumerate(rows):
+        scene = Draws(study).at(0, point)
+        (mount,) = least_tilt(scene, share=0.9, mounts_deg=[0.0], threads=1).mounts
+        assert (row["least_tilt_deg"], row["too_little_deg"]) == (mount.suffices_deg, mount.fails_deg)
 
 
 def test_a_given_pose_is_evaluated(spec: Spec) -> None:

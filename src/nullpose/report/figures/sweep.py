@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterable
+from dataclasses import replace
+from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,20 +24,30 @@ from nullpose.report.figures.style import (
     inches,
     is_column,
 )
+from nullpose.report.figures.vehicle import MOUNT_CURVES
 from nullpose.report.numbers import axis_label, capitalised
 from nullpose.study import ResultRow, ResultTable
 
 _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of the line
 _FREE = 3.0  # at least so many dB above the curves are shown
-_CARET_DOWN = 7  # Matplotlib's name for it
+_CARET_UP, _CARET_DOWN = 6, 7  # Matplotlib's names for them
 _CAPTION_LETTERS = 125  # letters in a line of the caption
 _ABOVE_CURVES = 5.0
+_MARKS: Look = {"linestyle": "", "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
 _MARKERS = 13  # at most so many markers on a curve, so that they do not merge into a band
 
 
 def quantity_of(table: ResultTable) -> Quantity:
     """Look up the quantity that a sweep of at least one row maximised."""
     return table.rows[0].objective.quantity
+
+
+def value_label(table: ResultTable) -> str:
+    """Name what a sweep found, with its unit."""
+    quantity = quantity_of(table)
+    if table.rows[0].tilt:
+        return "Least tilt (deg)"
+    return f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
 
 
 def _numbers(rows: Iterable[ResultRow]) -> FloatArray:
@@ -45,11 +57,21 @@ def _numbers(rows: Iterable[ResultRow]) -> FloatArray:
     return np.where(np.isfinite(found), found, math.nan).T
 
 
+def _draw_tilts(axes: Axes, table: ResultTable) -> None:
+    """Draw a curve of the least tilt for each mount, and a mark at each tilt that is proved too little."""
+    for look, name in zip(cycle(MOUNT_CURVES), table.names, strict=False):
+        columns = [[row.value, *row.tilts.values()] for row in table.of(name)]
+        values, _, _, enough_deg, little_deg = np.array(columns, dtype=float).T
+        every = math.ceil(len(values) / _MARKERS)
+        draw_curve(axes, replace(look, label=name), values, enough_deg, (little_deg, enough_deg), every=every)
+        shown_deg = np.where(np.isfinite(enough_deg), little_deg, math.nan)
+        axes.plot(values, shown_deg, color=look.colour, marker=_CARET_UP, markevery=every, **_MARKS)
+
+
 def draw_curves(axes: Axes, table: ResultTable, *, bounds: bool = False) -> None:
     """Draw a curve for each scheme, with a band up to its upper bounds if they are asked for."""
-    apart = _VISIBLE
-    if quantity_of(table).is_rate:
-        apart = 0.01 * float(np.max(_numbers(table.rows)[0]))
+    highest_rate = float(np.max(_numbers(table.rows)[0]))
+    apart = 0.01 * highest_rate if quantity_of(table).is_rate else _VISIBLE
     for index, scheme in enumerate(table.names):
         rows, look = table.of(scheme), curve_of(scheme)
         values, highest = _numbers(rows)
@@ -58,9 +80,8 @@ def draw_curves(axes: Axes, table: ResultTable, *, bounds: bool = False) -> None
         every = 1 if len(rows) <= _MARKERS else (index, step)  # staggered: curves that coincide stay visible
         draw_curve(axes, look, levels, values, (values, highest) if bounds else None, every=every)
         if bounds:  # no line: between two points nothing is proved
-            marks: Look = {"marker": _CARET_DOWN, "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
             seen = np.where(highest - values > apart, highest, math.nan)
-            axes.plot(levels, seen, color=look.colour, linestyle="", **marks)
+            axes.plot(levels, seen, color=look.colour, marker=_CARET_DOWN, **_MARKS)
 
 
 def draw_caption(figure: Figure, lines: Iterable[str], width: str | None = None) -> None:
@@ -92,8 +113,12 @@ def draw_sweep(
         bounds: draw a band from each curve up to its upper bounds.
     """
     lines = [f"{line}." for line in certainty_lines(table)]
-    if bounds:
-        lines.append("Each band ends at the upper bound, a small triangle.")
+    if bounds or table.rows[0].tilt:
+        lines.append(
+            "Each small triangle points to a tilt that is proved too little."
+            if table.rows[0].tilt
+            else "Each band ends at the upper bound, a small triangle."
+        )
     with house_style(width):
         size = inches((7.0, 4.6), width, 0.8 if is_column(width) else 0.5)
         figure = Figure(figsize=size, layout="constrained")
@@ -107,10 +132,12 @@ def draw_sweep(
 
 def draw_sweep_axes(axes: Axes, table: ResultTable, *, log: bool = False, bounds: bool = False) -> None:
     """Draw a sweep with the names of its axes."""
-    quantity = quantity_of(table)
-    draw_curves(axes, table, bounds=bounds)
-    if bounds:
-        _keep_curves_large(axes, table)
-    axes.set(xlabel=axis_label(table.path), xscale="log" if log else "linear")
-    axes.set_ylabel(f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})")
+    if table.rows[0].tilt is not None:
+        _draw_tilts(axes, table)
+    else:
+        draw_curves(axes, table, bounds=bounds)
+        if bounds:
+            _keep_curves_large(axes, table)
+    scale = "log" if log else "linear"
+    axes.set(xlabel=axis_label(table.path), xscale=scale, ylabel=value_label(table))
     axes.margins(x=0.02)

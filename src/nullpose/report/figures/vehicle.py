@@ -71,10 +71,8 @@ def _draw_shares(axes: Axes, found: LeastTilt, angles_deg: FloatArray, shares: F
         if mount.fails_deg is not None:
             axes.plot(mount.fails_deg, found.share, "|", color=look.colour, markersize=11.0, zorder=4.0)
     axes.axhline(found.share, color=GREY, linewidth=0.9, linestyle="--")
-    axes.set_xlim(0.0, 90.0)
-    axes.set_ylim(None, 1.02)
-    axes.set_xlabel("largest tilt (deg)")
-    axes.set_ylabel("share of the omnidirectional value")
+    axes.set(xlim=(0.0, 90.0), xlabel="largest tilt (deg)")
+    axes.set(ylim=(None, 1.02), ylabel="share of the omnidirectional value")
     axes.legend(frameon=False, loc="lower right")
     axes.set_title(f"dot: suffices for {found.share:.4g}; bar: proved too little", fontsize="small")
 
@@ -89,7 +87,6 @@ def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None
     middles = [max(parts, key=len) for parts in lines.allsegs if parts]
     places = [tuple(part[len(part) // 2]) for part in middles]
     axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=places)
-    axes.set_xlabel("largest tilt (deg)")
-    axes.set_ylabel("mount of the antenna (deg)")
+    axes.set(xlabel="largest tilt (deg)", ylabel="mount of the antenna (deg)")
     axes.set_title("loss against an omnidirectional vehicle", fontsize="small")
     axes.figure.colorbar(shown, ax=axes, label="dB", extend="max")

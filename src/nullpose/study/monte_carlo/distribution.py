@@ -73,23 +73,12 @@ class Distribution(Section):
         if kind == "normal":
             mean, deviation = numbers
             return np.asarray(mean + deviation * generator.standard_normal(count))
-        return _OF_SHARES[kind](generator.random(count), np.array(numbers))
-
-
-def _log_uniform(shares: FloatArray, ends: FloatArray) -> FloatArray:
-    return np.clip(np.exp(_uniform(shares, np.log(ends))), *ends)
-
-
-def _uniform(shares: FloatArray, ends: FloatArray) -> FloatArray:
-    return np.asarray(ends[0] + (ends[1] - ends[0]) * shares)
-
-
-def _choice(shares: FloatArray, numbers: FloatArray) -> FloatArray:
-    return np.asarray(numbers[(shares * len(numbers)).astype(int)])
-
-
-# What makes numbers of shares that are drawn evenly from 0 to 1, and of what the spec gives.
-_OF_SHARES = {"uniform": _uniform, "log_uniform": _log_uniform, "choice": _choice}
+        shares = generator.random(count)
+        if kind == "choice":
+            return np.asarray(np.array(numbers)[(shares * len(numbers)).astype(int)])
+        low, high = numbers if kind == "uniform" else np.log(numbers)
+        drawn = np.asarray(low + (high - low) * shares)
+        return drawn if kind == "uniform" else np.clip(np.exp(drawn), *numbers)
 
 
 @dataclass(frozen=True, slots=True)

@@ -124,32 +124,20 @@ def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
         weakest = min(evaluate(scene, pose), key=quantity.at)
         columns = _found(scene, Status.GIVEN, pose, quantity.at(weakest), None, None)
         return columns | {"reason": faults, "binding_node": weakest.node}
+    tilts: PlainTable = {}
     if case.reach is not None and scene.airframe is not None:
-        return _least_tilt(case.reach, scene.airframe, scene, options | {"gap": case.gap})
-    result = solve(scene, case.scheme or Scheme.OPTIMUM, robust=bool(case.robust), **options)
+        search = tilt_search(scene, case.reach, options | {"gap": case.gap})
+        mount = search.sides(scene.airframe.mount_deg)
+        result = search.result_of(mount)
+        tilts = {"least_tilt_deg": mount.suffices_deg, "too_little_deg": mount.fails_deg}
+    else:
+        result = solve(scene, case.scheme or Scheme.OPTIMUM, robust=bool(case.robust), **options)
     objective, pose, details = result.objective, result.pose, result.details
     columns = _found(
         scene, result.status, pose, objective.value, objective.upper_bound, objective.relative_gap
     )
     node = details.robust.binding_node if isinstance(details, RobustDetails) else result.binding_node
-    return columns | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
-
-
-def _least_tilt(share: float, airframe: Airframe, scene: Scenario, options: SolveKeywords) -> PlainTable:
-    """Find the least tilt of a mount; certified means that both of its sides are proved."""
-    search = tilt_search(scene, share, options)
-    mount = search.sides(airframe.mount_deg)
-    result = mount.result or search.flown(search.whole, airframe)
-    objective, status = result.objective, Status.CERTIFIED if mount.is_known else Status.GAP_NOT_REACHED
-    columns = _found(
-        scene, status, result.pose, objective.value, objective.upper_bound, objective.relative_gap
-    )
-    return columns | {
-        "reason": "" if mount.is_known else "the least tilt is not known to a step",
-        "binding_node": result.binding_node,
-        "least_tilt_deg": mount.suffices_deg,
-        "too_little_deg": mount.fails_deg,
-    }
+    return columns | tilts | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
 
 
 def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tuple[int, int, str], Row]:
