@@ -91,7 +91,7 @@ def draw() -> Figure:
     label(whole, "sensor", (weir[0] + 9.0, weir[1] + 1.0), NODE)
     draw_boxes(near, result, field, squares_m)
     near.set(xlim=(x - ZOOM_M, x + ZOOM_M), ylim=(y - ZOOM_M, y + ZOOM_M), xticks=[], yticks=[])
-    near.set_title(f"{2.0 * ZOOM_M:.0f} m square, the drone within", fontsize=8.5, pad=4.0)
+    near.set_title(f"{2.0 * ZOOM_M:.0f} m wide, at the drone", fontsize=8.5, pad=4.0)
     value_db, bound_db = result.objective.value_db, 10.0 * np.log10(result.objective.upper_bound)
     colours = figure.add_axes((0.735, 0.36, 0.24, 0.03))
     bar = figure.colorbar(whole.collections[0], cax=colours, orientation="horizontal", extend="min")
@@ -100,7 +100,7 @@ def draw() -> Figure:
     bar.ax.tick_params(labelsize=8.0, pad=1.0)
     figure.text(0.855, 0.23, "best SINR of the worst\nsensor at each place (dB)", **WORDS, ha="center")
     figure.text(0.855, 0.13, f"boxes at the drone's\naltitude, {up_m:.0f} m", **WORDS, ha="center")
-    head = "The best pose turns the antenna's null close to both jammers."
+    head = "The best pose keeps its null close to both jammers."
     figure.text(0.03, 0.93, head, fontsize=12.0, fontweight="bold")
     words = (
         f"Worst sensor: {value_db:.3f} dB. "
