@@ -111,7 +111,7 @@ def sweep(
         schemes: which cases to solve, each of which must have a meaning at every value; without it all that
             have, the others being left out with the reason in the table.
         mounts_deg: in place of schemes, mounts of the antenna, of each of which the least tilt is found as by
-            :func:`nullpose.study.least_tilt.least_tilt`.
+            ``nullpose.least_tilt``.
         share: of the omnidirectional value that suffices for the least tilt.
         on_progress: called after each solve with how many are done and how many there are.
         options: as for :func:`nullpose.solver.solve`.

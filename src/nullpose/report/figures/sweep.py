@@ -32,8 +32,8 @@ _VISIBLE = 0.02  # a bound closer to its value, in dB, lies within the width of 
 _FREE = 3.0  # at least so many dB above the curves are shown
 _CARET_UP, _CARET_DOWN = 6, 7  # Matplotlib's names for them
 _CAPTION_LETTERS = 125  # letters in a line of the caption
-_ABOVE_CURVES = 5.0
-_MARKS: Look = {"linestyle": "", "markersize": 3.5, "alpha": 0.7, "zorder": _ABOVE_CURVES}
+_MARKS: Look = {"linestyle": "", "markersize": 3.5, "alpha": 0.7, "zorder": 5.0}  # above curves
+_BELOW: Look = {"marker": _CARET_UP, "markersize": 7.0, "zorder": 1.5}  # seen below the curve's own marker
 _MARKERS = 13  # at most so many markers on a curve, so that they do not merge into a band
 
 
@@ -64,8 +64,8 @@ def _draw_tilts(axes: Axes, table: ResultTable) -> None:
         values, _, _, enough_deg, little_deg = np.array(columns, dtype=float).T
         every = math.ceil(len(values) / _MARKERS)
         draw_curve(axes, replace(look, label=name), values, enough_deg, (little_deg, enough_deg), every=every)
-        shown_deg = np.where(np.isfinite(enough_deg), little_deg, math.nan)
-        axes.plot(values, shown_deg, color=look.colour, marker=_CARET_UP, markevery=every, **_MARKS)
+        little_deg[np.isnan(enough_deg)] = math.nan
+        axes.plot(values, little_deg, color=look.colour, markevery=every, **_MARKS | _BELOW)
 
 
 def draw_curves(axes: Axes, table: ResultTable, *, bounds: bool = False) -> None:
