@@ -159,9 +159,9 @@ class Case(Section):
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield keys of a proof where there is none."""
-        if self.mount_scenes is not None and "airframe" not in raw:
+        if self.mount_scenes is not None and raw.get("airframe") is None:
             yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'
-        if self.reach is not None and "airframe" not in raw:
+        if self.reach is not None and raw.get("airframe") is None:
             yield ("reach",), 'has no meaning without airframe; add one with tilt_max_deg = "least"'
         for key in ("certify", "gap", "time_limit_s"):
             if self.pose is not None and getattr(self, key) is not None:
