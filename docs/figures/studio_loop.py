@@ -1,8 +1,8 @@
-"""Makes the loop that README shows; needs the extra ``studiotest`` and Chromium, and some minutes.
+"""Makes the loop on the studio's page of the manual; needs the extra ``studiotest``, Chromium, and minutes.
 
-Some seconds of the paper's scene in the studio: the jammer's power rises from 1 to 100 times a node's, then
-the jammer is dragged in an arc and back. Each frame waits for the proof of its own scene:
-every number in it is certified.
+Some seconds of the paper's scene in the studio: the jammer's power rises from 0.01 to 100 times a node's, and
+the SINR falls while the null is off the jammer, until it is on it; then the jammer is dragged in an arc and
+back. Each frame waits for the proof of its own scene: every number in it is certified.
 """
 
 from __future__ import annotations
@@ -21,39 +21,43 @@ sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports bel
 
 from benchmarks.chromium import opened  # noqa: E402
 
+import nullpose.studio.camera  # noqa: E402
 from nullpose import load  # noqa: E402
 from nullpose.physics import rotation_world_from_body  # noqa: E402
+from nullpose.report.numbers import MINUS  # noqa: E402
 from nullpose.studio.server import studio  # noqa: E402
 
 LOOP = ROOT / "docs" / "images" / "studio-loop.webp"
 WIDTH, HEIGHT = 960, 540
 VIEWPORT = {"width": WIDTH + 40, "height": HEIGHT}  # the folded panel is cut off
 EACH_MS = 80
-RISES, DRAGS, HOLDS = 26, 40, 6  # frames: 72 of 80 ms
-MOST_DB = 20.0
-TURN_RAD = np.radians(14.0)  # of the camera, forth and back
+RISES, HOLDS, DRAGS = 28, 6, 34  # frames of 80 ms
+LEAST_DB, MOST_DB = -20.0, 20.0
+TURN_RAD = np.radians(10.0)  # of the camera, forth and back
 QUALITY = 62
-NEARER = 0.92  # of the camera's distance
-ASIDE, ABOVE = 0.14, 0.05  # of the scene's size
+NEARER, BELOW = 0.9, 0.02  # of the camera's distance; of the scene's size, for the captions
 MOST_BYTES = 4_000_000
-CAPTIONS = (  # until which frame
-    (
-        RISES,
-        "1  The jammer M becomes 100 times as strong as a node. The drone turns its null, orange, to it.",
-    ),
-    (RISES + DRAGS + HOLDS, "2  M is moved. Position and attitude follow; each pose is proved best."),
+CAPTIONS = (
+    "The jammer M grows. The null, orange, is still off it, and the SINR falls.",
+    "The null turns onto M: now 100 times the power costs less than 0.2 dB.",
+    "M is dragged. Position and attitude follow; each pose is proved best.",
 )
-CAPTION = """words => {
+CAPTION = """([value, words]) => {
   let line = document.getElementById('loop-caption');
   if (!line) {
+    const hidden = document.createElement('style');
+    hidden.textContent = '#np-overlay{display:none!important}';
+    document.head.append(hidden);
     line = document.createElement('div');
     line.id = 'loop-caption';
-    line.style = 'position:fixed;left:12px;bottom:12px;width:230px;z-index:9;color:#f2f2f2;'
-      + 'background:#14181eeb;padding:8px 12px;border-radius:8px;'
-      + 'font:600 15px/1.35 sans-serif';
+    line.style = 'position:fixed;left:0;bottom:0;width:960px;box-sizing:border-box;z-index:9;color:#f2f2f2;'
+      + 'background:#14181ed8;padding:11px 24px;font:500 19px/1.3 sans-serif;display:flex;gap:22px;'
+      + 'align-items:center';
+    line.innerHTML = '<b style="font-size:27px;min-width:130px;white-space:nowrap"></b><span></span>';
     document.body.append(line);
   }
-  line.textContent = words;
+  line.firstChild.textContent = value;
+  line.lastChild.textContent = words;
 }"""
 
 
@@ -62,42 +66,38 @@ def frames(page: Any, ours: Any) -> Iterator[Image.Image]:
     session, client = ours.session, ours._client
     start = np.array(session.state.scenario.jammers[0].position_m)
     look_at, eye = np.array(client.camera.look_at), np.array(client.camera.position)
-    total = RISES + DRAGS + HOLDS
+    total, taken = RISES + HOLDS + DRAGS, 0
 
-    def shot(frame: int) -> Image.Image:
-        told = next(words for last, words in CAPTIONS if frame < last)
-        page.evaluate(CAPTION, told)
-        turn = rotation_world_from_body(0.0, 0.0, TURN_RAD * np.sin(2.0 * np.pi * frame / total))
+    def shot(caption: str) -> Image.Image:
+        nonlocal taken
+        settle(page, session)
+        value_db = session.state.current(session.state.case).shown_value
+        page.evaluate(CAPTION, [f"{value_db:.2f} dB".replace("-", MINUS), caption])
+        turn = rotation_world_from_body(0.0, 0.0, TURN_RAD * np.sin(2.0 * np.pi * taken / total))
+        taken += 1
         with client.atomic():
             client.camera.position = look_at + turn @ (eye - look_at)
             client.camera.look_at = look_at
         page.wait_for_timeout(700)
         return Image.open(BytesIO(page.screenshot(clip={"x": 0, "y": 0, "width": WIDTH, "height": HEIGHT})))
 
-    for i in range(RISES):
-        session.change(lambda view, i=i: view.with_power_db(MOST_DB * i / (RISES - 1)))
-        settle(page, session)
-        yield shot(i)
+    for power_db in np.append(np.linspace(LEAST_DB, MOST_DB, RISES), HOLDS * [MOST_DB]):
+        session.change(lambda view, power_db=float(power_db): view.with_power_db(power_db))
+        yield shot(CAPTIONS[int(power_db > 0.0)])
     for i in range(DRAGS):
         turn = np.sin(np.pi * (i + 1) / DRAGS)
         place = start + turn * np.array([4.0, 17.0, 0.0]) + (1.0 - turn) * turn * np.array([14.0, 0.0, 0.0])
         session.change(lambda view, place=place: view.moved(("jammers", 0), place))
-        settle(page, session)
-        yield shot(RISES + i)
-    for i in range(HOLDS):
-        yield shot(RISES + DRAGS + i)
+        yield shot(CAPTIONS[2])
 
 
 def nearer(client: Any, size_m: float) -> None:
-    """Bring the scene nearer, and to the right of the card."""
+    """Bring the scene nearer: it fills the picture above the captions."""
     camera = client.camera
     look_at, eye = np.array(camera.look_at), np.array(camera.position)
-    ahead = look_at - eye
-    right = np.cross(ahead, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    aside = size_m * np.array([-ASIDE * right[0], -ASIDE * right[1], ABOVE])
+    lower = look_at - [0.0, 0.0, BELOW * size_m]
     with client.atomic():
-        camera.position, camera.look_at = look_at + aside - NEARER * ahead, look_at + aside
+        camera.position, camera.look_at = lower + NEARER * (eye - look_at), lower
 
 
 def settle(page: Any, session: Any) -> None:
@@ -117,6 +117,7 @@ def main() -> None:
         ours: Any = next(iter(running.pages.values()))
         ours._client.gui.main_panel.minimize()
         page.wait_for_timeout(3000)
+        nullpose.studio.camera.CARD_PX = (0.0, 0.0)  # the captions stand for the card
         ours.aim()
         nearer(ours._client, ours.stage.size_m)
         page.mouse.move(600, 20)

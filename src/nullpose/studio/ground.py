@@ -21,7 +21,9 @@ from nullpose.study.value_map import map_extent_m
 
 FloatArray = NDArray[np.float64]
 
-_CROWD = 12  # of more nodes than this only the worst, the selected and the one pointed at have labels
+_CROWD = 8  # of more nodes than this only the worst, the selected and the one pointed at have labels
+_LABELS = ((0.0, 0.0, 0.062), "bottom-center"), ((0.0, 0.035, 0.0), "center-left")
+"""Where a point has its name, sizes of the scene; a jammer's is beside it, clear of nodes' above."""
 _RINGS = np.array([0.4, 0.7, 1.0])  # around a jammer, sizes of the largest
 _RING_LIFT_M = 0.1  # off the map on the ground
 _RING_SIZES = (0.02, 0.12)  # of the largest at the ends of the range of powers, sizes of the scene
@@ -84,7 +86,8 @@ def _point(key: Key, point: GroundPoint, state: State, size_m: float, look: Look
         f"{name}/mark": mesh(MARKS[kind], colour, flat_shading=True, scale=0.022 * size_m)._replace(key=key),
     }
     if text:
-        shapes[f"{name}/label"] = label(text, (0.0, 0.0, 0.062 * size_m), 1.1 if is_large else 0.9)
+        at, anchor = _LABELS[kind == "jammers"]
+        shapes[f"{name}/label"] = label(text, size_m * np.array(at), 1.1 if is_large else 0.9, anchor)
     if is_selected or key == state.pointed:
         halo = np.add(_circle(0.03 * size_m), [0.0, 0.0, 0.01 * size_m])
         shapes[f"{name}/halo"] = lines(halo, look.outline, 5.0 if is_selected else 2.5)
@@ -169,12 +172,14 @@ def _buildings(buildings: tuple[Building, ...], colour: Rgb) -> Shapes:
 
 def _label(key: Key, point: GroundPoint, state: State) -> tuple[str, bool]:
     """Return a point's name, for a node with its SINR, and whether it is written large."""
-    answer = state.current(state.case)
+    answer, nodes = state.current(state.case), len(state.scenario.nodes)
+    is_roomy = nodes <= _CROWD
     if answer is None or key[0] != "nodes":
-        return point.name, key[0] == "jammers"
-    nodes, worst = len(state.scenario.nodes), answer.worst_nodes
+        return point.name, is_roomy and key[0] == "jammers"
+    worst = answer.worst_nodes
     is_worst = point.name in worst
-    if nodes > _CROWD and not is_worst and key not in (state.selected, state.pointed):
+    if not (is_roomy or is_worst or key in (state.selected, state.pointed)):
         return "", False
     sinr = f" {signed(answer.result.links[key[1]].sinr_db)} dB"
-    return f"{point.name}{sinr}{', worst' if is_worst and len(worst) < nodes else ''}", is_worst
+    note = ", worst" if is_roomy and is_worst and len(worst) < nodes else ""
+    return f"{point.name}{sinr}{note}", is_roomy and is_worst
