@@ -30,6 +30,7 @@ _LEVELS = 8
 _FAR_M = 1e7  # of an airspace without an end
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # for labels and the colour bar
 _TALLEST_INCH = 8.0
+_SHORT = 3  # letters of a name that its number stands beside in a column
 
 
 def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = None) -> None:
@@ -67,7 +68,8 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         dashes, width = ("-", 0.8) if is_node else ((0, (3, 1.5)), 1.2)
         axes.plot([x, place[0]], [y, place[1]], color=colour, linestyle=dashes, linewidth=width, zorder=1.5)
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.0, label=kind, **rim)
-        words = " ".join(filter(None, (point.name, stage.numbers.get(point.name))))
+        line = "\n" if stage.view.is_small and len(point.name) > _SHORT else " "
+        words = line.join(filter(None, (point.name, stage.numbers.get(point.name))))
         is_worst = point.name in stage.worst
         is_named = is_worst or not (is_node and stage.is_crowded and stage.view.is_small)
         if is_named and np.all((low <= place) & (place <= high)):

@@ -76,22 +76,25 @@ def write_name(
 
 
 def place_names(axes: Axes | Axes3D) -> None:
-    """Move each name to the first side of its point where it is in the frame and over nothing else."""
+    """Move each name to a side where it is in the frame, over nothing else and nearest its own point."""
     frame = axes.figure.bbox if isinstance(axes, Axes3D) else axes.bbox
     half = 3.0 * axes.figure.dpi / 72.0
     names = [text for text in axes.texts if isinstance(text, Annotation)]
     areas = [name for name in names if name.get_fontstyle() == "italic"]
     points = [name for name in names if name not in areas]
     marks = [np.asarray(each.get_offsets()) for each in axes.collections if isinstance(each, PathCollection)]
-    anchors = np.vstack([*marks, *([name.xy] for name in points)])
-    taken = [Bbox([at - half, at + half]) for at in axes.transData.transform(anchors)]
+    places = axes.transData.transform(np.vstack([*marks, *([name.xy] for name in points)]))
+    taken = [Bbox([at - half, at + half]) for at in places]
     for name in points + areas:
         sides = (_ON, *_SIDES) if name in areas else _SIDES
+        here = axes.transData.transform(name.xy)
         costs = []
         for side in sides:
             box = _put(name, side)
             is_outside = not (frame.contains(*box.min) and frame.contains(*box.max))
-            costs.append(100 * is_outside + sum(box.overlaps(other) for other in taken))
+            nearest = min(_distance(box, at) for at in places if name in areas or not np.allclose(at, here))
+            is_strange = name in points and nearest < _distance(box, here)
+            costs.append(100 * is_outside + is_strange + sum(box.overlaps(other) for other in taken))
         taken.append(_put(name, sides[int(np.argmin(costs))]))
 
 
@@ -107,6 +110,10 @@ def _put(text: Annotation, side: tuple[float, float, str, str]) -> Bbox:
     """Put a name at a side of its point; return the box of its letters."""
     text.set(position=side[:2], ha=side[2], va=side[3])
     return text.get_window_extent().shrunk(0.96, 0.7)
+
+
+def _distance(box: Bbox, at: FloatArray) -> float:
+    return float(np.linalg.norm(np.maximum(np.maximum(box.min - at, at - box.max), 0.0)))
 
 
 def draw_line(axes: Axes3D, start: ArrayLike, stop: ArrayLike, **style: object) -> None:
@@ -144,7 +151,7 @@ def draw_panel(
             draw_line(axes, place, [*place[:2], floor_m], color=colour, linewidth=0.8, linestyle=":")
             if stage.uncertain and point.uncertainty_reach_m > 0.0:
                 draw_set(axes, point, colour, f"where the {kind} may be")
-        if not (is_small and stage.is_crowded and kind == "node" and point.name not in stage.worst):
+        if not is_small:  # the plan beside it has the names
             write_name(axes, point.name, place)
     draw_bodies(axes, stage.scenario)
     for zone, corners_m in stage.zones:
