@@ -20,8 +20,8 @@ VERBS = {
     "compare": f"{SCENE} {PROOF} --airframes --fast --figure --width --json",
     "evaluate": f"{SCENE} {PROOF} --pose --pose-lat-lon --attitude --poses --off --json",
     "map": f"{SCENE} {PROOF} --scheme --altitude --cells --fast --out --width --json",
-    "sweep": f"{SCENE} {PROOF} --from --to --points --log --linear --scheme --fast --bounds --out --width "
-    "--json",
+    "sweep": f"{SCENE} {PROOF} --from --to --points --log --linear --scheme --reach --mount --fast --bounds "
+    "--out --width --json",
     "verify": "--scenario --show --allow-outside --json",
     "reproduce": "--out --seed --json",
     "check": f"{SCENE} --json",

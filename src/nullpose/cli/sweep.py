@@ -63,7 +63,7 @@ def sweep(
             metavar="SHARE",
             help="In place of schemes: find the least tilt with which a vehicle reaches this share of the "
             "omnidirectional value, for each mount.",
-            show_default="0.99 with --mount",
+            show_default="0.99, if mounts are stated",
         ),
     ] = None,
     mount: Annotated[
@@ -72,7 +72,7 @@ def sweep(
             "--mount",
             metavar="DEG,DEG",
             help="Mounts of the antenna for the least tilt: 0 upright, 90 flat.",
-            show_default=f"{MOUNTS} with --reach",
+            show_default=f"{MOUNTS}, if a share is stated",
         ),
     ] = None,
     proof: ProofOptions,
