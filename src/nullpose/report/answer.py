@@ -68,7 +68,7 @@ def _least_line(comparison: ResultTable, kind: str, found: Sequence[ResultRow]) 
         return f"{capitalised(row.case.phrase)} {_reach(comparison, row)}. It is {how} to suffice{others}."
     nearest = max(found, key=lambda row: row.objective.value)
     are_short = all(verdict_on(comparison, row) is Verdict.FALLS_SHORT for row in found)
-    reach = f"{nearest.case.phrase} comes nearest: it {_reach(comparison, nearest)}"
+    reach = f"{nearest.case.phrase} comes nearest by the values found: it {_reach(comparison, nearest)}"
     all_of = "All" if are_short else "Not all"
     return f"Of the lesser vehicles compared with {kind}, {reach}. {all_of} are proved not to suffice."
 
