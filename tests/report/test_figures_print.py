@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from nullpose import Scenario, compare_airframes, load, solve, sweep
@@ -76,3 +77,26 @@ def test_the_same_figure_gives_the_same_file(paper: Scenario, tmp_path: Path, ki
     )
     assert first == again
     assert kind != "pdf" or (b"/FontFile2" in first and b"/Type3" not in first)
+
+
+@pytest.mark.parametrize("name", ["paper", "town", "whips", "requirements"])
+def test_a_name_stands_nearest_its_own_point(name: str) -> None:
+    """In a column, where names are close to each other, none stands at the mark of another point."""
+    figure = draw_pose(solve(load(EXAMPLES / f"{name}.toml"), certify=False), "column")
+    figure.draw_without_rendering()
+    plan = figure.axes[-1]
+    names = [text for text in plan.texts if text.get_fontstyle() != "italic"]
+    marks = plan.transData.transform([place for each in plan.collections for place in each.get_offsets()])
+    for text in names:
+        box, own = text.get_window_extent(), plan.transData.transform(text.xy)
+        away = [np.hypot(*np.fmax(np.fmax(box.min - at, at - box.max), 0.0)) for at in (own, *marks)]
+        assert away[0] <= min(away) + 6.0 * figure.dpi / 72.0, text.get_text()
+
+
+@WIDTHS
+def test_a_drone_straight_above_its_only_node(width: str) -> None:
+    """From above both are one point, whose names have no other to keep clear of."""
+    scene = {"airspace": {"altitude_m": [8.0, 30.0]}, "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0}}
+    node = {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}
+    result = solve(Scenario.from_dict(scene | {"nodes": [node]}), certify=False)
+    assert draw_pose(result, width).axes

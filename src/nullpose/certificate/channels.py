@@ -220,9 +220,9 @@ def excess(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Exc
     """
     if family.channels is None:
         return None
-    one, none = Interval(np.ones(len(boxes))), Interval(np.zeros((6, len(boxes))))
+    unity, zeros = Interval(np.ones(len(boxes))), Interval(np.zeros((6, len(boxes))))
     parts = ((BY_DISTANCE, _excess_by_distance), (BY_ELEVATION, _excess_by_elevation))
-    return _by_kind(Excess(one, none[:3], one, none[:3], none), parts, family, boxes, point, is_above)
+    return _by_kind(Excess(unity, zeros[:3], unity, zeros[:3], zeros), parts, family, boxes, point, is_above)
 
 
 def _by_kind(

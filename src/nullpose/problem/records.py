@@ -76,8 +76,7 @@ class Reach(NamedTuple):
 class ArrayProblem(NamedTuple):
     """What an array on a level vehicle receives; m points, the nodes first, and k elements."""
 
-    ratios: Ratios  # of the points, the nodes' first
-    points_m: FloatArray  # (m, 3)
+    ratios: Ratios  # with the points, (m, 3), and their channels
     strengths_m2: FloatArray  # (m,) power times path gain over noise, a node's divided by what it requires
     nodes: int
     base: FloatArray  # (k, 2) elements in body axes, wavelengths

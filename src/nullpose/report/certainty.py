@@ -10,6 +10,7 @@ from nullpose.report.document import grouped
 from nullpose.report.numbers import capitalised, rounded_up
 from nullpose.solver import Rigour, Status
 from nullpose.study import ResultRow, ResultTable
+from nullpose.study.least_tilt import STEP_DEG
 
 _ORDER = (Status.CERTIFIED, Status.GAP_NOT_REACHED, Status.BEST_FOUND)
 
@@ -32,8 +33,9 @@ def _sentence(status: Status, rows: Sequence[ResultRow]) -> str:
     """Write what is true of every value of a status at least, with the widest gap."""
     counts = counted(rows)
     if rows[0].tilt is not None:
-        known = f"{counts['certified']} of {counts['values']} points"
-        return f"the least tilt for {rows[0].case.reach:.7g} of the value is proved to 0.1 degrees at {known}"
+        count = f"{counts['certified']} of {counts['values']} points"
+        target = f"the least tilt for {rows[0].case.reach:.7g} of the value"
+        return f"{target} is proved to {STEP_DEG:g} degrees at {count}"
     gap = "none" if counts["largest_relative_gap"] is None else rounded_up(counts["largest_relative_gap"])
     sentences = {
         Status.CERTIFIED: f"each point is certified optimal within {gap} (relative)",

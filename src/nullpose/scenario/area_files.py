@@ -144,7 +144,7 @@ def _place(origin: PlainTable) -> Floats | None:
 
 
 def _bounds(airspace: PlainTable) -> Airspace:
-    """Return what bounds a raw airspace; None where it is at fault, which the scenario is refused for."""
+    """Read the borders of a raw airspace; None where it is at fault, which the scenario is refused for."""
     return Airspace._sound_part({key: airspace[key] for key in _BOUNDS & airspace.keys()})
 
 

@@ -126,10 +126,12 @@ class PointArrays:
     def channel_of(self, point: GroundPoint) -> LinkChannel:
         """Return the channel of a point's link: its own, or the scenario's."""
         whole = self.channel or Channel()
-        own = point.channel or whole
+        channel = point.channel or whole
         if self.prisms is None:
-            return own.make(point.is_interferer)
-        return own.in_sight(point.is_interferer, own.blocked_loss_db or whole.blocked_loss_db or BLOCKED_DB)
+            return channel.make(point.is_interferer)
+        return channel.in_sight(
+            point.is_interferer, channel.blocked_loss_db or whole.blocked_loss_db or BLOCKED_DB
+        )
 
     @property
     def has_channels(self) -> bool:

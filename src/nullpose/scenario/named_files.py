@@ -117,7 +117,7 @@ class NamedFiles:
     def _filled(
         self, key: str, file: object, fill: Callable[[list[Feature]], _Filled[_Found]]
     ) -> _Found | None:
-        """Return what a file of areas fills in, and tell what became of it; None where it is at fault.
+        """Read the keys that a file of areas fills in, and tell what became of it; None where it is at fault.
 
         Args:
             key: where it is named.

@@ -120,9 +120,9 @@ def _source(overrides: Sequence[str | Override]) -> str:
     return f"override {', '.join([str(override).strip() or '(blank)' for override in overrides])}"
 
 
-def _apply(stated: str | Override, data: PlainTable) -> None:
+def _apply(raw: str | Override, data: PlainTable) -> None:
     """Set one value of a raw scenario, and drop what it replaces."""
-    override = parse_override(stated) if isinstance(stated, str) else stated
+    override = parse_override(raw) if isinstance(raw, str) else raw
     path = override.path
     require(_PATH.fullmatch(path), path, "this is not a path")
     found = (step.groups(default="") for step in _STEP.finditer(path))

@@ -165,7 +165,7 @@ def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
         return upright
     from nullpose.solver.kernels.bounds.array_branch import branch_array
 
-    most = _WORK / (nodes * (1 + len(search.problem.points_m) - nodes) * search.elements)
+    most = _WORK / (nodes * (1 + len(search.problem.ratios.points_m) - nodes) * search.elements)
     low_m, high_m = search.box(search.best)
     half_m = 0.5 * (high_m - low_m) * (1.0 + _ROUNDING)
     root = np.array([[*(0.5 * (low_m + high_m)), 0.0], [*half_m, math.pi / search.symmetry]])

@@ -40,7 +40,7 @@ class ArraySearch(EpigraphSearch):
         places = element_positions(array.elements, array.layout, array.spacing_wavelengths)
         strengths_m2 = np.concatenate([family.numerator_weight, family.denominator_weight])
         base = np.ascontiguousarray(places[:, :2])
-        self.problem = ArrayProblem(family.arrays, family.points_m, strengths_m2, len(scenario.nodes), base)
+        self.problem = ArrayProblem(family.arrays, strengths_m2, len(scenario.nodes), base)
         self.elements = array.elements
         # by how many equal rotations the elements come to lie on each other
         self.symmetry = max(2, array.elements) if array.layout == "circular" else 2

@@ -67,13 +67,13 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
     airframe = scenario.airframe
     if best is None or (airframe is not None and best.pose.tilt_rad > airframe.tilt_max_rad):
         return None
-    here = evaluated(best, scenario, best.pose, bound)
-    objective = replace(here.objective, rigour=Rigour.FLOATING_POINT)
+    reused = evaluated(best, scenario, best.pose, bound)
+    objective = replace(reused.objective, rigour=Rigour.FLOATING_POINT)
     status, _ = status_of(objective, solve_options.target, "not solved by itself")
     if status is not Status.CERTIFIED:
         return None
     return replace(
-        here,
+        reused,
         scheme=best.scheme,
         note=best.note,
         status=status,

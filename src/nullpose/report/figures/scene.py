@@ -87,13 +87,12 @@ def place_names(axes: Axes | Axes3D) -> None:
     taken = [Bbox([at - half, at + half]) for at in places]
     for name in points + areas:
         sides = (_ON, *_SIDES) if name in areas else _SIDES
-        here = axes.transData.transform(name.xy)
+        point = axes.transData.transform(name.xy)
         costs = []
         for side in sides:
             box = _put(name, side)
             is_outside = not (frame.contains(*box.min) and frame.contains(*box.max))
-            nearest = min(_distance(box, at) for at in places if name in areas or not np.allclose(at, here))
-            is_strange = name in points and nearest < _distance(box, here)
+            is_strange = name in points and min(_distance(box, at) for at in places) < _distance(box, point)
             costs.append(100 * is_outside + is_strange + sum(box.overlaps(other) for other in taken))
         taken.append(_put(name, sides[int(np.argmin(costs))]))
 

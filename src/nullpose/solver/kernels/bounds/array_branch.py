@@ -20,8 +20,8 @@ def widest(problem, centre, half):
     radius, nearest = 0.0, math.inf
     for n in range(len(problem.base)):
         radius = max(radius, math.hypot(problem.base[n, 0], problem.base[n, 1]))
-    for i in range(len(problem.points_m)):
-        nearest = min(nearest, norm(minus(row(problem.points_m, i), centre)))
+    for i in range(len(problem.ratios.points_m)):
+        nearest = min(nearest, norm(minus(row(problem.ratios.points_m, i), centre)))
     phase = 2.0 * math.pi * radius
     rate = (1.0 + phase) / max(nearest, 1e-9)
     most, axis = phase * half[3], 3

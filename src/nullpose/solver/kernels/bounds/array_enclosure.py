@@ -49,13 +49,13 @@ def spans_over(problem, strengths_m2, channels, centre, half):
     The amplitude ``sqrt(strength) |flat| / r^2`` has second derivatives of at most ``sqrt(strength) (1 /
     |flat| + 10 / r) / r^2``; infinite, if the box reaches over the point.
     """
-    m = len(problem.points_m)
+    m = len(problem.ratios.points_m)
     table = np.full((4, m), math.inf)
     spans = Spans(np.abs(channels.values[:, 0]), np.zeros(m), table[0], table[1], table[2])
     for i in range(m):
         strength = strengths_m2[i]
-        least2, _ = square_range(problem.points_m[i], centre, half, 3)
-        least_flat2, most_flat2 = square_range(problem.points_m[i], centre, half, 2)
+        least2, _ = square_range(problem.ratios.points_m[i], centre, half, 3)
+        least_flat2, most_flat2 = square_range(problem.ratios.points_m[i], centre, half, 2)
         least, least_flat = math.sqrt(least2), math.sqrt(least_flat2)
         for axis in range(3):
             spans.linear[i] += abs(channels.leans[i, axis]) * spans.amplitude[i] * half[axis]
@@ -182,7 +182,7 @@ def box_bound(problem, centre, half):
         centre: (4,) east, north, up and yaw of the box's centre.
         half: (4,) its half widths.
     """
-    nodes, m = problem.nodes, len(problem.points_m)
+    nodes, m = problem.nodes, len(problem.ratios.points_m)
     strengths_m2 = problem.strengths_m2.copy()
     for i in range(m):
         low, high = excess_range(problem.ratios, problem.ratios.channels, i, centre[:3], half[:3])

@@ -46,7 +46,7 @@ class Nulls(NamedTuple):
 @inner_heap_kernel
 def channels_at(problem, strengths_m2, x):
     """Evaluate the channels; an amplitude is ``sqrt(strength) |flat| / |r|^2``, flat r's horizontal part."""
-    m, k = problem.points_m.shape[0], problem.base.shape[0]
+    m, k = problem.ratios.points_m.shape[0], problem.base.shape[0]
     elements, values = np.empty((k, 2)), np.empty((m, k), np.complex128)
     leans, ways, distances = np.empty((m, 3)), np.empty((m, 3)), np.empty(m)
     cosine, sine = math.cos(x[3]), math.sin(x[3])
@@ -54,7 +54,7 @@ def channels_at(problem, strengths_m2, x):
         elements[n, 0] = cosine * problem.base[n, 0] - sine * problem.base[n, 1]
         elements[n, 1] = sine * problem.base[n, 0] + cosine * problem.base[n, 1]
     for i in range(m):
-        r = minus(row(problem.points_m, i), x)
+        r = minus(row(problem.ratios.points_m, i), x)
         flat = r[0] * r[0] + r[1] * r[1]
         square = flat + r[2] * r[2]
         distances[i] = math.sqrt(square)
@@ -166,11 +166,11 @@ def respond(problem, x, logs, slopes):
         logs: output, (nodes,).
         slopes: output, (nodes, 4) or (0, 4).
     """
-    strengths_m2, leans = problem.strengths_m2.copy(), np.zeros((len(problem.points_m), 3))
+    strengths_m2, leans = problem.strengths_m2.copy(), np.zeros((len(problem.ratios.points_m), 3))
     add_excess(problem.ratios, problem.ratios.channels, x, strengths_m2, leans)
     channels = channels_at(problem, strengths_m2, x)
     channels.leans[:] += leans
-    nulls = nulls_towards(channels.values, np.arange(problem.nodes, len(problem.points_m)))
+    nulls = nulls_towards(channels.values, np.arange(problem.nodes, len(problem.ratios.points_m)))
     parts, none = np.empty(len(nulls.jammers), np.complex128), np.empty(0)
     worst = math.inf
     for q in range(problem.nodes):
