@@ -75,7 +75,7 @@
   // Where the pointer is, as shares of the canvas, for the studio to say what is there.
   const root = document.documentElement;
   const drawn = () => document.querySelector("canvas[data-engine]");
-  let pointer, told = "", telling; // the name of the control that takes it; what it was told; until when it waits
+  let pointer, sent = "", timer; // the control that takes the place; the last place sent; the delay
   function point(event) {
     const box = drawn()?.getBoundingClientRect();
     const isOver = event.target instanceof HTMLCanvasElement && event.pointerType === "mouse" && !event.buttons;
@@ -84,10 +84,10 @@
     if (!isOver) tip.hidden = true;
     tip.style.left = `${Math.min(event.clientX + 16, box.right - 220)}px`;
     tip.style.top = `${Math.min(event.clientY + 16, box.bottom - 120)}px`;
-    clearTimeout(telling);
-    telling = setTimeout(() => {
+    clearTimeout(timer);
+    timer = setTimeout(() => {
       const place = at.map((share) => share.toFixed(5)).join(" ");
-      if (place !== told) socket.type(pointer, told = place);
+      if (place !== sent) socket.type(pointer, sent = place);
     }, POINT_MS);
   }
   for (const kind of ["pointermove", "pointerdown"]) addEventListener(kind, point, true);
