@@ -113,10 +113,11 @@ class VehicleSearch:
         found = solve(scenario, **self.options | {"certify": False})
         best = self._bounded(self.whole, scenario, found.pose, found.stats)
         for share in _SHARES:
-            if whole.upper_bound is None or self.judge(best) is not Verdict.NOT_PROVED:
-                break
             value = best.objective.value
             missing = self.share * whole.value / value - 1.0 if value > 0.0 else math.inf
+            is_open = whole.upper_bound is not None and self.judge(best) is Verdict.NOT_PROVED
+            if not is_open or missing <= 0.0:  # no bound of its own could show that it falls short
+                break
             gap = min(max(share * missing, LEAST_GAP), _WIDEST_GAP)
             proof = solve(scenario, **self.options | {"gap": gap})
             self.rigour = max(self.rigour, proof.rigour, key=list(Rigour).index)
