@@ -8,12 +8,13 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import shapely
 
 from nullpose import Pose, Scenario
 from nullpose.antenna import PatternAntenna
 from nullpose.physics import attitude_from_axis
 from nullpose.scenario.buildings import Building
-from nullpose.studio.meshes import Mesh, building_mesh, floor_mesh, merged
+from nullpose.studio.meshes import Mesh, merged, prism_mesh
 
 _SPEED_OF_LIGHT = 299_792_458.0
 _DIPOLE, _HALF_WAVE = 1.5, 1.643  # largest gains of Sionna's dipoles over an isotropic antenna
@@ -35,10 +36,9 @@ def _version(path: str) -> int:
 
 def closed_mesh(building: Building, roof_m: float) -> Mesh:
     """Return walls, roof and floor of a building of this height."""
-    outline_m, courtyards_m = building.outline_m, building.courtyard_outlines_m
+    area_m = shapely.Polygon(building.outline_m, building.courtyard_outlines_m)
     floor_m = max(building.floor_m, _BELOW_GROUND_M)
-    walls = building_mesh(outline_m, courtyards_m, floor_m, roof_m)
-    return merged([walls, floor_mesh(outline_m, floor_m, courtyards_m)])
+    return prism_mesh(area_m, floor_m, roof_m)
 
 
 class Engine:

@@ -17,28 +17,30 @@ from studio_screens import ROOT, at_rest, opened
 from nullpose import load
 from nullpose.studio.server import Studio, studio
 
-SIZES = ((1280, 800), (1920, 1080), (390, 844))
+DEVICES = (((1280, 800), (1920, 1080)), ((390, 844),))  # the sizes of windows of each, and a touch phone
 SCHEMES = ("light", "dark")
 _NO_SCENE = "study"
 _ACROSS, _THUMB_PX, _HEAD_PX = 4, 480, 24
 
 
-def take(running: Studio, path: Path, size: tuple[int, int], scheme: str) -> None:
-    """Take one picture of what a studio shows to a browser that opens it.
+def take(running: Studio, paths: dict[tuple[int, int], Path], scheme: str) -> None:
+    """Take pictures of what a studio shows to a browser that opens it.
 
     Args:
         running: the studio.
-        path: of the picture.
-        size: of the browser's window, pixels.
+        paths: of the pictures, by the size of the browser's window in pixels, which is changed in turn.
         scheme: light or dark.
     """
-    viewport = dict(zip(("width", "height"), size, strict=True))
-    touch = {"has_touch": True, "is_mobile": True} if size[0] < size[1] else {}
-    with opened(running.address, scale=1.0, viewport=viewport, color_scheme=scheme, **touch) as page:
+    views = {size: dict(zip(("width", "height"), size, strict=True)) for size in paths}
+    touch = {"has_touch": True, "is_mobile": True} if len(paths) == 1 else {}
+    first = next(iter(views.values()))
+    with opened(running.address, scale=1.0, viewport=first, color_scheme=scheme, **touch) as page:
         ours: Any = next(reversed(running.pages.values()))
-        at_rest(page, ours.session)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        page.screenshot(path=path)
+        for size, path in paths.items():
+            page.set_viewport_size(views[size])
+            at_rest(page, ours.session)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            page.screenshot(path=path)
 
 
 def sheet(folder: Path) -> None:
@@ -62,12 +64,10 @@ def sheet(folder: Path) -> None:
 if __name__ == "__main__":
     into = Path(sys.argv[1]) if sys.argv[1:] else ROOT / "out" / "screens"
     found = sorted(path.stem for path in (ROOT / "examples").glob("*.toml"))
-    folders = {
-        (size, scheme): into / f"{size[0]}x{size[1]}-{scheme}" for size, scheme in product(SIZES, SCHEMES)
-    }
     for name in sys.argv[2:] or [one for one in found if not one.startswith(_NO_SCENE)]:
         with studio(load(ROOT / "examples" / f"{name}.toml", allow_outside=True), port=0) as one:
-            for (size, scheme), folder in folders.items():
-                take(one, folder / f"{name}.png", size, scheme)
-    for folder in folders.values():
+            for sizes, scheme in product(DEVICES, SCHEMES):
+                paths = {(w, h): into / f"{w}x{h}-{scheme}" / f"{name}.png" for w, h in sizes}
+                take(one, paths, scheme)
+    for folder in {path.parent for path in into.glob("*x*-*/*.png")}:
         sheet(folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ SCREENS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "studio-ten-nodes": ("field", lambda session: None),
     "studio-comparison": (
         "paper",
-        lambda session: session.change(lambda view: view.with_compared(case_named("Vertical"))),
+        lambda session: session.change(lambda view: replace(view, compared=case_named("Vertical"))),
     ),
     "studio-robust": (
         "robust",

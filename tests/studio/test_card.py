@@ -69,7 +69,7 @@ def test_while_the_solver_is_compiled_it_says_so() -> None:
 def test_two_cases_are_both_there(proved: State) -> None:
     """Each with its letter."""
     vertical = case_named("Vertical")
-    state = proved.with_compared(vertical)
+    state = replace(proved, compared=vertical)
     state = state.with_event(answer_of(1, vertical, solve(_PAPER, vertical.scheme)))
     html = card_html(state)
     assert re.findall(r'class="np-label">(\w: [^<]+)<', html) == [f"A: {OPTIMUM.label}", "B: Vertical"]

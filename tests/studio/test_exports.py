@@ -11,6 +11,7 @@ import pytest
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario
 from nullpose.studio import exports
+from nullpose.studio.answer import PowerCurve
 from nullpose.studio.exports import figure_png, pose_json
 from nullpose.studio.session import Session
 from nullpose.studio.state import State
@@ -26,7 +27,7 @@ def test_pose_and_figure_are_of_the_present_scene(paper: Scenario) -> None:
             export(session.state)
     session.start()
     until = time.monotonic() + 120.0
-    while session.state.curve is None or not session.state.curve.complete:
+    while (curve := session.state.latest(PowerCurve)) is None or not curve.complete:
         assert time.monotonic() < until
         time.sleep(0.02)
     answer = session.state.answer(session.state.case)

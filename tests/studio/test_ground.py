@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from nullpose import load
 from nullpose.scenario import Scenario
 from nullpose.studio.ground import ground_shapes
 from nullpose.studio.look import LIGHT
-from nullpose.studio.meshes import building_mesh
+from nullpose.studio.meshes import prism_mesh
 from nullpose.studio.state import State
 
 
@@ -26,10 +27,10 @@ def test_buildings_stand_on_the_ground_at_their_highest(paper: Scenario) -> None
 
 
 def test_a_courtyard_is_open() -> None:
-    """The roof has the area between the outlines."""
+    """Roof and floor have the area between the outlines."""
     outline, yard = [[0, 0], [10, 0], [10, 10], [0, 10]], [[4, 4], [6, 4], [6, 7], [4, 7]]
-    vertices, faces = building_mesh(outline, [yard], 0.0, 5.0)
+    vertices, faces = prism_mesh(shapely.Polygon(outline, [yard]), 0.0, 5.0)
     a, b, c = np.moveaxis(vertices[faces], 1, 0)
     areas = 0.5 * np.abs(np.cross(b - a, c - a))
-    assert areas[:, 2].sum() == pytest.approx(100.0 - 6.0)
+    assert areas[:, 2].sum() == pytest.approx(2.0 * (100.0 - 6.0))
     assert areas[:, :2].sum() == pytest.approx(5.0 * (40.0 + 10.0))

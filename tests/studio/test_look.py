@@ -39,13 +39,17 @@ def _pair(colour: str) -> list[str]:
 @LOOKS
 def test_what_is_drawn_stands_out(look: Look) -> None:
     """Points, drones, airspace, zones, curves and ring have a contrast of 3 to 1, and letters 4.5."""
-    drawn = [*look.kinds.values(), *look.slots, look.sketch, look.airspace, look.zone, look.wire]
-    for colour in map(css, drawn):
-        assert _contrast(colour, SCENES[look.dark]) >= 3.0, colour
-    assert len(set(look.kinds.values())) == 3
+    drawn = look.colours.keys() - {
+        "grid",
+        "contour",
+        "null",
+    }  # these guide the eye, lie on a map, or have an outline
+    for name in drawn:
+        assert _contrast(css(look.colours[name]), SCENES[look.dark]) >= 3.0, name
+    assert len({look.colours[kind] for kind in ("nodes", "jammers", "eavesdroppers")}) == 3
     for colour in (plot.RING, *(lit(curve.colour) for curve in CURVES.values())):
         assert _contrast(_pair(colour)[look.dark], PANELS[look.dark]) >= 3.0, colour
-    for colour in map(css, look.slots):
+    for colour in (css(look.colours[name]) for name in ("drone", "compared")):
         assert _contrast(colour, PANELS[look.dark]) >= 4.5, colour
 
 

@@ -4,6 +4,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,12 +12,13 @@ import numpy as np
 import pytest
 from hypothesis import given, seed, strategies as st
 
-from nullpose import load
+from nullpose import least_tilt, load
 from nullpose.errors import ScenarioError, SolveError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solver import Status, solve
-from nullpose.studio.answer import Answer, Progress
+from nullpose.studio.answer import Answer, LeastTilt, PowerCurve, Progress
+from nullpose.studio.card import card_html
 from nullpose.studio.case import CASES, OPTIMUM, case_named
 from nullpose.studio.session import History, Session
 from nullpose.studio.state import Event, Key, State
@@ -87,20 +89,26 @@ def test_everything_told_names_its_version(paper: Scenario) -> None:
 
 
 def test_maps_and_curve_follow_at_rest(session: Session) -> None:
-    """At rest the maps and the whole power curve of the present version come; a change outdates the maps."""
+    """At rest maps, power curve and least tilt of the present version come; a change outdates all."""
     wait(lambda: session.state.field_map is not None)
-    curve = session.state.curve
+    curve = session.state.latest(PowerCurve)
     assert curve is not None
     assert curve.complete
     assert curve.version == session.state.version
+    wait(lambda: session.state.present(LeastTilt) is not None)
+    (upright, *_) = least_tilt(session.state.scenario).mounts
+    card = card_html(session.state)
+    assert f"Least tilt {upright.suffices_deg:.1f}\N{DEGREE SIGN} (mount 0\N{DEGREE SIGN}) for 99 %" in card
+    assert f"; {upright.fails_deg:.1f}\N{DEGREE SIGN} is proved too little" in card
     session.change(lambda view: view.with_power_db(10.0))
     assert session.state.field_map is None
+    assert "Least tilt" not in card_html(session.state)
 
 
 def test_two_cases_are_answered(session: Session) -> None:
     """With a second case chosen both are certified, the free axis at least as good."""
     vertical = case_named("Vertical")
-    session.change(lambda view: view.with_compared(vertical))
+    session.change(lambda view: replace(view, compared=vertical))
     wait(lambda: session.state.status(vertical).startswith("Proved") and _certified(session))
     first, second = (session.state.answer(case).result.objective.value for case in (OPTIMUM, vertical))
     assert first >= second
@@ -172,9 +180,9 @@ def test_a_long_proof_tells_how_far_it_has_come() -> None:
     session = Session(State(scenario=many), rest_s=0.05, on_event=take)
     session.start()
     wait(lambda: len(told) > 2)
-    assert session.state.progress(OPTIMUM) is not None
+    assert session.state.present(Progress, OPTIMUM) is not None
     session.change(lambda view: view.moved(JAMMER, (30.0, 30.0, 4.0)))
-    assert session.state.progress(OPTIMUM) is None
+    assert session.state.present(Progress, OPTIMUM) is None
     assert session.close(_PATIENCE_S)
     assert all(event.gap > 0.0 and event.boxes > 0 for _, event in told)
     assert min(after[0] - before[0] for before, after in pairwise(told)) > 0.09

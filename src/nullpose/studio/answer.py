@@ -12,7 +12,7 @@ from nullpose.report.sensitivity import sensitivity_words, sizes_words
 from nullpose.solver import Result, Rigour, Status
 from nullpose.solver.robust import GuardedPose, RobustDetails
 from nullpose.studio.case import Case
-from nullpose.study import ResultTable
+from nullpose.study import MountTilt, ResultTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -80,6 +80,10 @@ class Notice:
     version: int
     case: Case | None
     words: str
+
+
+class LeastTilt(Notice):
+    """The least tilt that the vehicle needs, in words; empty where nothing is known of it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -157,9 +161,28 @@ def with_errors(answer: Answer) -> Answer:
         return answer
     quantity = found.quantity
     loss = signed(quantity.in_unit(found.nominal) - quantity.in_unit(found.all))
-    line = f"can lose {loss} {quantity.unit} or more with errors up to {sizes_words(result, found.sizes)}"
+    sizes = sizes_words(result, found.sizes).replace(" m", "\N{NO-BREAK SPACE}m")
+    line = f"can lose {loss} {quantity.unit} or more with errors up to {sizes}"
     sentence = (sensitivity_words(result) or "").partition(":")[0]
     return replace(answer, errors=(line, f"{sentence}.") if sentence else (line,))
+
+
+def tilt_words(mount: MountTilt, share: float) -> str:
+    """Say which least tilt suffices, and what is proved of less.
+
+    Args:
+        mount: the tilts of the vehicle's mount.
+        share: of the value that suffices.
+    """
+    at = f"(mount {mount.mount_deg:g}\N{DEGREE SIGN}) for {per_cent(share)} of the best value"
+    if mount.suffices_deg is None:
+        return (
+            "" if mount.fails_deg is None else f"Least tilt above {mount.fails_deg:.1f}\N{DEGREE SIGN} {at}"
+        )
+    less = "" if mount.fails_deg is None else f"; {mount.fails_deg:.1f}\N{DEGREE SIGN} is proved too little"
+    return (
+        f"Least tilt {'' if mount.is_known else 'at most '}{mount.suffices_deg:.1f}\N{DEGREE SIGN} {at}{less}"
+    )
 
 
 def status_words(answer: Answer | None) -> str:

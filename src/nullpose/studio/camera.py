@@ -4,33 +4,34 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from nullpose.physics import Pose
 from nullpose.scenario import Scenario
-from nullpose.studio.ground import grid_m, scene_size_m
+from nullpose.studio.ground import airspace_outline_m, grid_m, scene_size_m, ticks_m
 
 if TYPE_CHECKING:
     from viser import CameraHandle, InitialCameraConfig
 
 FloatArray = NDArray[np.float64]
 
-CARD_PX = (352.0, 336.0)
+CARD_PX = (352.0, 372.0)
 """Width and height of the canvas's upper left corner that the card covers for one case, pixels."""
 
 _CANVAS_PX = (1000.0, 800.0)  # where none is known
 _AHEAD = -np.array([0.82, -0.52, 0.64]) / np.linalg.norm([0.82, -0.52, 0.64])  # the camera's view
 _FOV_RAD = math.radians(50.0)  # upright; a wider one bends the scene at its edges
-_MARGIN = 0.88  # of half the canvas, which leaves space for labels
-_ROUNDS = 6  # of centring
+_EDGE_PX, _LABEL_PX = np.array([26.0, 12.0]), np.array([50.0, 16.0])  # around a number, and a label
+_CENTRED = 0.01  # a metre more on both sides is worth so many metres nearer
 _TURNS = 24  # directions from which a turning scene is seen whole
 _FAR = 100.0  # sizes of the scene that the camera sees, so that it can be moved away
 _TALL = 0.08  # of a point with its label, sizes of the scene
-_DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.13 * np.eye(3) for sign in (-1.0, 1.0))]
+_DRONE = [(0.0, 0.0, 0.2), *(tuple(sign * axis) for axis in 0.15 * np.eye(3) for sign in (-1.0, 1.0))]
 """Ends of the drone's label and pattern, from its position, sizes of the scene."""
 
 
@@ -67,7 +68,7 @@ def aim(
     """Point a camera at the whole of a scene: points, drone, and the ground between them.
 
     The card covers nothing of it: where it would, the scene stands right of it or below it, whichever is
-    nearer.
+    nearer. Ground, fence and the names of the axes are on the canvas too; the card may cover them.
 
     Args:
         camera: viser's.
@@ -75,52 +76,47 @@ def aim(
         pose: of the drone, if there is one.
         turns: whether all is to be seen too while the camera goes around the scene's centre.
     """
-    matter, size_m = matter_m(scenario, pose), scene_size_m(scenario)
+    matter, frame, size_m = matter_m(scenario, pose), frame_m(scenario), scene_size_m(scenario)
     if turns:
         centre_m = centre_of_m(scenario)
         around = Rotation.from_rotvec(np.outer(np.linspace(0.0, math.tau, _TURNS), [0.0, 0.0, 1.0]))
-        matter = np.vstack([turn.apply(matter - centre_m) + centre_m for turn in around])
+        matter = np.vstack(
+            [turn.apply(np.vstack([matter, frame[:4]]) - centre_m) + centre_m for turn in around]
+        )
     camera.fov = _FOV_RAD
-    canvas, (right_of, below) = canvas_px(camera), CARD_PX
-    whole, *others = (
-        _fit(canvas, camera.fov, matter, corner) for corner in ((0.0, 0.0), (right_of, 0.0), (0.0, below))
-    )
-    is_covered = canvas[0] < 2.0 * right_of or np.any(np.all(whole.seen_px < CARD_PX, axis=1))
-    fit = min(others, key=lambda other: other.distance_m) if is_covered else whole
-    camera.position = fit.position_m
+    corners_px = (CARD_PX[0], 0.0), (0.0, CARD_PX[1])
+    canvas = canvas_px(camera)
+    fits = [_position_m(canvas, matter, frame, np.array(corner_px)) for corner_px in corners_px]
+    camera.position = max(fits, key=_AHEAD.__matmul__)
     # on the ground, about which a hand turns it
-    camera.look_at = fit.position_m - _AHEAD * fit.position_m[2] / _AHEAD[2]
+    camera.look_at = camera.position - _AHEAD * camera.position[2] / _AHEAD[2]
     # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it
     # works out one by one though there is no image: about a sixth of a picture's time without a graphics card
     camera.near = 0.02 * size_m
     camera.far = _FAR * size_m
 
 
-class _Fit(NamedTuple):
-    """A camera's position, its distance, and where it sees points: (n, 2) pixels to the right and down."""
+def _position_m(
+    canvas: FloatArray, matter_m: FloatArray, frame_m: FloatArray, corner_px: FloatArray
+) -> FloatArray:
+    """Find the nearest position with all matter right of and below a corner, and the frame on the canvas.
 
-    position_m: FloatArray
-    distance_m: float
-    seen_px: FloatArray
-
-
-def _fit(canvas: FloatArray, fov_rad: float, points_m: FloatArray, corner_px: tuple[float, float]) -> _Fit:
-    """Find the nearest position with all points right of and below a corner."""
-    right = np.cross(_AHEAD, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    sides = np.stack([right, np.cross(right, _AHEAD)])
-    slope = 2.0 * math.tan(0.5 * fov_rad) / canvas[1]  # of a pixel, at a distance of one
-    half = 0.5 * _MARGIN * slope * (canvas - corner_px)
-    centre = 0.5 * slope * np.array(corner_px) * [1.0, -1.0]
-    middle = 0.5 * (points_m.min(axis=0) + points_m.max(axis=0))
-    for _ in range(_ROUNDS):
-        aside, depth = (points_m - middle) @ sides.T, (points_m - middle) @ _AHEAD[:, None]
-        distance_m = float(np.max(np.abs(aside - depth * centre) / half - depth))
-        seen = (aside + distance_m * centre) / (depth + distance_m)
-        off = 0.5 * (seen.min(axis=0) + seen.max(axis=0)) - centre
-        middle = middle + distance_m * off @ sides
-    position = middle - distance_m * (_AHEAD + centre @ sides)
-    return _Fit(position, distance_m, 0.5 * canvas + seen * [1.0, -1.0] / slope)
+    In its middle, as far as that brings it no farther away: a linear program, since all is linear in it.
+    """
+    right = np.cross(_AHEAD, [0.0, 0.0, 1.0]) / np.linalg.norm(_AHEAD[:2])
+    sides, slope = (right, np.cross(_AHEAD, right)), 2.0 * math.tan(0.5 * _FOV_RAD) / canvas[1]
+    corner = np.minimum(corner_px, canvas - 3.0 * _LABEL_PX)  # there is always some space
+    planes, offsets = [], []
+    for points_m, begin_px, edge_px in ((matter_m, corner, _LABEL_PX), (frame_m, 0.0 * canvas, _EDGE_PX)):
+        for sign, end_px in ((-1.0, begin_px + edge_px), (1.0, canvas - edge_px)):
+            for side, tangent, margin in zip(sides, slope * (end_px - 0.5 * canvas), np.eye(2), strict=True):
+                normal = sign * (side - tangent * _AHEAD)
+                planes.append([*-normal, *margin])
+                offsets.append(-np.max(points_m @ normal))
+    found = linprog(
+        [*-_AHEAD, -_CENTRED, -_CENTRED], planes, offsets, bounds=3 * [(None, None)] + 2 * [(0.0, None)]
+    )
+    return np.asarray(found.x[:3])
 
 
 def centre_of_m(scenario: Scenario) -> FloatArray:
@@ -133,14 +129,27 @@ def centre_of_m(scenario: Scenario) -> FloatArray:
 
 
 def matter_m(scenario: Scenario, pose: Pose | None) -> FloatArray:
-    """Return the ends of points with labels, of the drone and of the ground's grid, (n, 3) metres.
+    """Return the ends of points with labels and of the drone, (n, 3) metres.
 
     Args:
         scenario: the scene.
         pose: of the drone, if there is one.
     """
-    size_m, (low, high, _) = scene_size_m(scenario), grid_m(scenario)
+    size_m = scene_size_m(scenario)
     points = [point.position_m for point in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)]
-    ground = [[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])]
     drone = np.empty((0, 3)) if pose is None else pose.position_m + size_m * np.array(_DRONE)
-    return np.vstack([points, np.add(points, [0.0, 0.0, _TALL * size_m]), ground, drone])
+    return np.vstack([points, np.add(points, [0.0, 0.0, _TALL * size_m]), drone])
+
+
+def frame_m(scenario: Scenario) -> FloatArray:
+    """Return the corners of the grid and of the fence, as far as it is near, and the numbers, (n, 3) metres.
+
+    Args:
+        scenario: the scene.
+    """
+    (low, high, _), size_m, airspace = grid_m(scenario), scene_size_m(scenario), scenario.airspace
+    corners = np.clip(airspace_outline_m(scenario), low - 0.5 * size_m, high + 0.5 * size_m)
+    ends_m = airspace.lower_m[2], min(airspace.upper_m[2], size_m)
+    ground = [[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])]
+    ticks = [[x, y, 0.0] for _, x, y in ticks_m(scenario)]
+    return np.vstack([ground, *(np.insert(corners, 2, end_m, axis=1) for end_m in ends_m), ticks])

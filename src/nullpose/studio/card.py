@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from nullpose.report.numbers import MINUS
 from nullpose.solver import Status
-from nullpose.studio.answer import per_cent
+from nullpose.studio.answer import LeastTilt, Progress, per_cent
 from nullpose.studio.camera import centre_of_m
 from nullpose.studio.field_map import Scale
 from nullpose.studio.look import css, scale_colours
@@ -26,7 +26,9 @@ def card_html(state: State) -> str:
         state: of the page.
     """
     scale = state.scale and _scale(state, state.scale)
-    return str(macros().card(state, proof(state), scale, centre_of_m(state.scenario)))
+    return str(
+        macros().card(state, proof(state), state.present(LeastTilt), scale, centre_of_m(state.scenario))
+    )
 
 
 def _scale(state: State, scale: Scale) -> dict[str, object]:
@@ -78,7 +80,7 @@ def proof(state: State) -> Bar:
     Args:
         state: of the page.
     """
-    answer, progress = state.current(state.case), state.progress(state.case)
+    answer, progress = state.current(state.case), state.present(Progress, state.case)
     if answer is not None and (gap := answer.result.objective.relative_gap) is not None:
         is_proved = answer.result.status is Status.CERTIFIED  # to the gap that was aimed at
         return Bar(0.0 if is_proved else gap, f"{answer.result.stats.boxes:,} boxes examined")

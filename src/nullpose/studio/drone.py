@@ -63,15 +63,15 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
     mount = rotation_world_from_body(0.0, pose.mount_rad, 0.0)
     x, y, _ = (body @ mount).T @ np.subtract(eye_m, place_m)
     azimuth_rad = math.atan2(y, x)
-    ink = look.slots[slot]
+    ink = look.colours[("drone", "compared")[slot]]
     at_label_m = place_m + size_m * np.array(_LABEL_AT[slot])
     shapes = {
         "body": frame(place_m, body),
         "body/hull": mesh(BODY, ink, flat_shading=True, scale=0.055 * size_m, opacity=(None, 0.5)[slot]),
         "body/rotors": mesh(ROTORS, ink, opacity=0.45, scale=0.055 * size_m),
         "body/antenna": frame(rotation=mount),
-        "body/antenna/rod": mesh(ROD, look.null, scale=0.2 * size_m),
-        "drop": lines([place_m * [[1.0, 1.0, 1.0], [1.0, 1.0, 0.0]]], look.wire, 1.2),
+        "body/antenna/rod": mesh(ROD, look.colours["null"], scale=0.2 * size_m),
+        "drop": lines([place_m * [[1.0, 1.0, 1.0], [1.0, 1.0, 0.0]]], look.colours["wire"], 1.2),
         "label": label(drone_text(state, slot), at_label_m, 1.2, _ANCHORS[slot]),
     }
     if state.has_pattern and slot == 0:
@@ -104,9 +104,13 @@ def _null(
     below_m = min(_BELOW * size_m, place_m[2] / max(upwards[2, 2], 1e-6))
     ends = place_m + np.outer([_ABOVE * size_m, -below_m], upwards[:, 2])
     shapes = {
-        "null": lines(ends[None], look.null, 0.006 * size_m, "world"),
-        "null-outline": mesh(_tubes(ends[None], np.array([0.0045 * size_m])), look.outline, side="back"),
-        "beam": mesh(_BEAM.placed(below_m * upwards, place_m), look.null, opacity=0.3, side="back"),
+        "null": lines(ends[None], look.colours["null"], 0.006 * size_m, "world"),
+        "null-outline": mesh(
+            _tubes(ends[None], np.array([0.0045 * size_m])), look.colours["outline"], side="back"
+        ),
+        "beam": mesh(
+            _BEAM.placed(below_m * upwards, place_m), look.colours["null"], opacity=0.3, side="back"
+        ),
     }
     if has_angle:
         jammers = result.scenario.jammers
@@ -114,7 +118,7 @@ def _null(
         angle_rad, name = min(angles, default=(0.0, ""))
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""
         shapes["angle"] = frame(0.35 * place_m + 0.65 * ends[1])
-        shapes["angle/label"] = label(f"null{off}", (0.0, 0.0, 0.0), 0.9, "center-left")
+        shapes["angle/label"] = label(f"null{off}", (0.0, 0.0, 0.0), 0.9, "center-right")
     return shapes
 
 
@@ -127,7 +131,9 @@ def _links(result: Result, range_db: tuple[float, float], size_m: float, look: L
     quarter = np.digitize(sinr_db, np.linspace(*range_db, len(_WIDTHS) + 1)[1:-1])
     # one mesh, and no batch of instances: of those the browser misses a picture when their count changes
     tubes = _tubes(ends, size_m * (0.5 * _WIDTHS[quarter] + _OUTLINE))
-    shapes = {"links-outline": mesh(tubes, look.outline, side="back")}  # far sides, seen beside the links
+    shapes = {
+        "links-outline": mesh(tubes, look.colours["outline"], side="back")
+    }  # far sides, seen beside the links
     for i in np.unique(quarter):
         chosen = quarter == i
         shapes[f"links-{i}"] = lines(ends[chosen], colours[chosen], _WIDTHS[i] * size_m, "world")

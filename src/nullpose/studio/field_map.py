@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -30,7 +29,6 @@ MAPS = ("best value at each place", "pattern's footprint")
 
 _FINER_CELLS = 121  # along the longer side, among buildings, whose shadows on the ground have edges
 _ANY_NODE = new_scenario().nodes[0]  # without a channel of its own
-_asking = threading.Lock()
 
 
 class Scale(NamedTuple):
@@ -118,15 +116,9 @@ def _ground_gain(scenario: Scenario, pose: Pose, places_m: FloatArray) -> FloatA
     return np.asarray(gain / np.maximum(np.sum(to_places_m**2, axis=-1), 1e-12) / below)
 
 
-def map_kernel_is_ready() -> bool:
-    """Tell whether the map needs no compiling; the first call has another process compile its kernel."""
-    with _asking:
-        return not _compiler().is_busy()
-
-
 @cache
-def _compiler() -> BackgroundCompiler:
-    """Return the compiler of the kernel, after one call that needs it."""
+def map_compiler() -> BackgroundCompiler:
+    """Return the compiler, in another process, of the map's kernel, after one call that needs it."""
     from nullpose.solver.kernels.linear_algebra.axis import best_axis
 
     compiler = BackgroundCompiler()

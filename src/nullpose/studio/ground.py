@@ -6,6 +6,7 @@ import math
 from functools import lru_cache
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from nullpose.physics import to_db
@@ -15,7 +16,7 @@ from nullpose.scenario import Building, Eavesdropper, GroundPoint, Jammer, Scena
 from nullpose.studio.answer import signed
 from nullpose.studio.drawing import Shapes, frame, label, lines, mesh
 from nullpose.studio.look import Look, Rgb, round_steps
-from nullpose.studio.meshes import MARKS, building_mesh, floor_mesh, merged, prism_edges, sphere_mesh
+from nullpose.studio.meshes import MARKS, level_mesh, merged, prism_edges, prism_mesh, sphere_mesh
 from nullpose.studio.state import POWER_DB, Key, State
 from nullpose.study.value_map import map_extent_m
 
@@ -43,6 +44,13 @@ def grid_m(scenario: Scenario) -> tuple[FloatArray, FloatArray, float]:
     return step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m), step_m
 
 
+def airspace_outline_m(scenario: Scenario) -> FloatArray:
+    """Return the corners, (n, 2), of the fence that is drawn, or of the airspace over the grid, metres."""
+    if scenario.airspace.geofence_m is not None:
+        return scenario.airspace.geofence_outline_m
+    return np.asarray(shapely.get_coordinates(shapely.box(*flight_box_m(scenario).ravel()))[:-1])
+
+
 def flight_box_m(scenario: Scenario) -> FloatArray:
     """Return the low and the high corner, (2, 2), of the airspace that is drawn, metres."""
     (low, high, _), airspace = grid_m(scenario), scenario.airspace
@@ -62,14 +70,14 @@ def ground_shapes(state: State, size_m: float, look: Look) -> Shapes:
         look: the page's colours.
     """
     shapes = _grid(state.scenario, look) | _airspace(state.scenario, look)
-    shapes |= _buildings(state.scenario.buildings, look.building)
+    shapes |= _buildings(state.scenario.buildings, look.colours["building"])
     for key, point in state.points():
         shapes |= _point(key, point, state, size_m, look)
     if state.corners_m:
         corners = np.insert(np.array(state.corners_m), 2, 0.003 * size_m, axis=1)
         first = corners[0] + 0.012 * size_m * _CROSS
         sides = np.stack([corners[:-1], corners[1:]], axis=1)
-        shapes["/sketch"] = lines(np.concatenate([first, sides]), look.sketch, 4.0)
+        shapes["/sketch"] = lines(np.concatenate([first, sides]), look.colours["sketch"], 4.0)
         for i, (start, end) in enumerate(sides):
             length = f"{np.linalg.norm(end - start):.1f} m"
             shapes[f"/sketch/side-{i}"] = label(length, 0.5 * (start + end), 0.9, "center-center")
@@ -78,7 +86,7 @@ def ground_shapes(state: State, size_m: float, look: Look) -> Shapes:
 
 def _point(key: Key, point: GroundPoint, state: State, size_m: float, look: Look) -> Shapes:
     kind, is_selected = key[0], key == state.selected
-    name, colour = f"/points/{kind}-{key[1]}", look.kinds[kind]
+    name, colour = f"/points/{kind}-{key[1]}", look.colours[kind]
     keep_out_m = state.scenario.airspace.keep_out_m
     text, is_large = _label(key, point, state)
     shapes = {
@@ -90,9 +98,11 @@ def _point(key: Key, point: GroundPoint, state: State, size_m: float, look: Look
         shapes[f"{name}/label"] = label(text, size_m * np.array(at), 1.1 if is_large else 0.9, anchor)
     if is_selected or key == state.pointed:
         halo = np.add(_circle(0.03 * size_m), [0.0, 0.0, 0.01 * size_m])
-        shapes[f"{name}/halo"] = lines(halo, look.outline, 5.0 if is_selected else 2.5)
+        shapes[f"{name}/halo"] = lines(halo, look.colours["outline"], 5.0 if is_selected else 2.5)
     if keep_out_m > 0.0 and is_selected:  # wires: what is see-through below the map would be hidden by it
-        shapes[f"{name}/keep-out"] = mesh(sphere_mesh(6, 10), look.wire, wireframe=True, scale=keep_out_m)
+        shapes[f"{name}/keep-out"] = mesh(
+            sphere_mesh(6, 10), look.colours["wire"], wireframe=True, scale=keep_out_m
+        )
     if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
         near = sphere_mesh(10, 16).placed(point.uncertainty_matrix_m)
         shapes[f"{name}/uncertainty"] = mesh(near, colour, wireframe=True)
@@ -118,38 +128,45 @@ def _ring_radius_m(key: Key, state: State, size_m: float) -> float:
     return size_m * float(np.interp(power_db, POWER_DB, _RING_SIZES))
 
 
+def ticks_m(scenario: Scenario) -> list[tuple[str, float, float]]:
+    """Return the numbers at the grid and the names of its axes, each with its place, metres."""
+    low, high, step_m = grid_m(scenario)
+    middle, near_m, far_m = 0.5 * (low + high), 0.45 * step_m, 1.2 * step_m
+    east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low, high, strict=True))
+    every = max(1, (max(len(east), len(north)) + 2) // 4)
+    return [
+        ("east (m)", middle[0], low[1] - far_m),
+        ("north (m)", high[0] + far_m, middle[1]),
+        *((f"{x:g}", x, low[1] - near_m) for x in east[::every]),
+        *((f"{y:g}", high[0] + near_m, y) for y in north[::every]),
+    ]
+
+
 def _grid(scenario: Scenario, look: Look) -> Shapes:
     low, high, step_m = grid_m(scenario)
     east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low, high, strict=True))
     segments = [[[x, low[1], 0.0], [x, high[1], 0.0]] for x in east]
     segments += [[[low[0], y, 0.0], [high[0], y, 0.0]] for y in north]
-    every = max(1, (max(len(east), len(north)) + 2) // 4)
-    middle = 0.5 * (low + high)
-    labels = [
-        ("east (m)", middle[0], low[1] - 1.05 * step_m),
-        ("north (m)", high[0] + 1.3 * step_m, middle[1]),
-        *((f"{x:g}", x, low[1] - 0.45 * step_m) for x in east[::every]),
-        *((f"{y:g}", high[0] + 0.45 * step_m, y) for y in north[::every]),
-    ]
     ticks = {
         f"/ground/tick-{i}": label(text.replace("-", MINUS), (x, y, 0.0), 0.8, "center-center")
-        for i, (text, x, y) in enumerate(labels)
+        for i, (text, x, y) in enumerate(ticks_m(scenario))
     }
-    return ticks | {"/ground/grid": lines(segments, look.grid, 1.2)}
+    return ticks | {"/ground/grid": lines(segments, look.colours["grid"], 1.2)}
 
 
 def _airspace(scenario: Scenario, look: Look) -> Shapes:
-    airspace, ((west, south), (east, north)) = scenario.airspace, flight_box_m(scenario)
-    outline = np.array([[west, south], [east, south], [east, north], [west, north]])
-    if airspace.geofence_m is not None:
-        outline = airspace.geofence_outline_m
+    airspace, outline = scenario.airspace, airspace_outline_m(scenario)
     floor_m, ceiling_m = float(airspace.lower_m[2]), float(airspace.upper_m[2])
-    shapes = {"/airspace/edges": lines(prism_edges(outline, floor_m, ceiling_m), look.airspace, 1.4)}
+    shapes = {
+        "/airspace/edges": lines(prism_edges(outline, floor_m, ceiling_m), look.colours["airspace"], 1.4)
+    }
     for i, zone in enumerate(airspace.no_fly):
         low_m, high_m = max(0.0, zone.floor_m), max(0.0, zone.floor_m, min(ceiling_m, zone.ceiling_m))
         outline = zone_outline_m(zone)
-        floor = mesh(floor_mesh(outline, low_m), look.zone, opacity=0.25, side="double")
-        edges = lines(prism_edges(outline, low_m, high_m), look.zone, 1.8)
+        floor = mesh(
+            level_mesh(shapely.Polygon(outline), low_m), look.colours["zone"], opacity=0.25, side="double"
+        )
+        edges = lines(prism_edges(outline, low_m, high_m), look.colours["zone"], 1.8)
         top = label(f"no-fly {zone.name}", (*outline.mean(axis=0), high_m))
         parts = {"floor": floor, "edges": edges, "label": top}
         shapes |= {f"/airspace/zone-{i}/{part}": shape for part, shape in parts.items()}
@@ -162,7 +179,7 @@ def _buildings(buildings: tuple[Building, ...], colour: Rgb) -> Shapes:
     solids, edges = [], []
     for each in buildings:
         ends = max(0.0, each.floor_m), max(0.0, each.heights_m[1])
-        solids.append(building_mesh(each.outline_m, each.courtyard_outlines_m, *ends))
+        solids.append(prism_mesh(shapely.Polygon(each.outline_m, each.courtyard_outlines_m), *ends))
         edges += [prism_edges(ring, *ends) for ring in (each.outline_m, *each.courtyard_outlines_m)]
     if not solids:
         return {}

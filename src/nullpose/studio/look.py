@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import colorsys
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -21,83 +21,51 @@ _LEAST_RATE_SPAN = 0.5
 _MOST_SPAN = 30.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Look:
-    """The colours of a scene.
-
-    Args:
-        dark: whether they are for a dark background.
-        kinds: of the points, by the scenario's lists, as in figures; the shapes differ too.
-        slots: of the chosen case's drone and of the compared one's, also in the panel.
-        null: of the line and the cone without reception.
-        airspace: of its edges.
-        zone: of no-fly zones.
-        building: of buildings.
-        wire: of what surrounds a point, and of the line from the drone down to the ground.
-        outline: of the links, whose colours are the scale's.
-        grid: of the ground's lines, which only guide the eye.
-        contour: of the map's contours, which lie on its colours.
-        sketch: of what is fenced in or measured.
-        map_alpha: how opaque the map is, 0 to 255.
-    """
-
-    dark: bool
-    kinds: Mapping[str, Rgb]
-    slots: tuple[Rgb, Rgb]
-    null: Rgb
-    airspace: Rgb
-    zone: Rgb
-    building: Rgb
-    wire: Rgb
-    outline: Rgb
-    grid: Rgb
-    contour: Rgb
-    sketch: Rgb
-    map_alpha: int
-
-
 def _rgb(colour: str) -> Rgb:
     red, green, blue = bytes.fromhex(colour[1:])
     return red, green, blue
 
 
-LIGHT = Look(
-    dark=False,
-    kinds=MappingProxyType(
-        {"nodes": _rgb(NODE), "jammers": _rgb(JAMMER), "eavesdroppers": _rgb(EAVESDROPPER)}
-    ),
-    slots=(_rgb(DRONE), _rgb(GREY)),
-    null=_rgb(NULL),
-    airspace=(74, 138, 178),
-    zone=(160, 60, 60),
-    building=(128, 128, 128),
-    wire=(120, 120, 120),
-    outline=(20, 20, 20),
-    grid=(190, 190, 190),
-    contour=(22, 25, 29),
-    sketch=(170, 30, 110),
-    map_alpha=200,
+COLOURS: Mapping[str, tuple[Rgb, Rgb]] = MappingProxyType(
+    {
+        "nodes": (_rgb(NODE), (86, 180, 233)),
+        "jammers": (_rgb(JAMMER), (240, 110, 30)),
+        "eavesdroppers": (_rgb(EAVESDROPPER), (222, 145, 190)),
+        "drone": (_rgb(DRONE), (241, 243, 245)),  # of the chosen case
+        "compared": (_rgb(GREY), (160, 165, 172)),  # of the second one
+        "null": (_rgb(NULL), (240, 178, 40)),
+        "airspace": ((74, 138, 178), (70, 120, 155)),
+        "zone": ((160, 60, 60), (235, 105, 105)),
+        "building": ((128, 128, 128), (136, 140, 148)),
+        "wire": ((120, 120, 120), (150, 150, 150)),  # around a point, and from the drone to the ground
+        "outline": ((20, 20, 20), (245, 245, 245)),  # of links, whose colours are the scale's
+        "grid": ((190, 190, 190), (52, 64, 82)),  # only guides the eye
+        "contour": ((22, 25, 29), (205, 215, 225)),  # on the map's colours
+        "sketch": ((170, 30, 110), (255, 120, 200)),  # what is fenced in or measured
+    }
 )
-"""For viser's white background."""
+"""The colours of marks on viser's white background and on its dark one; points, drone, null as in figures."""
 
-DARK = Look(
-    dark=True,
-    kinds=MappingProxyType(
-        {"nodes": (86, 180, 233), "jammers": (240, 110, 30), "eavesdroppers": (222, 145, 190)}
-    ),
-    slots=((241, 243, 245), (160, 165, 172)),
-    null=(240, 178, 40),
-    airspace=(70, 120, 155),
-    zone=(235, 105, 105),
-    building=(136, 140, 148),
-    wire=(150, 150, 150),
-    outline=(245, 245, 245),
-    grid=(52, 64, 82),
-    contour=(205, 215, 225),
-    sketch=(255, 120, 200),
-    map_alpha=215,
+
+class Look(NamedTuple):
+    """The colours of a scene.
+
+    Args:
+        dark: whether they are for a dark background.
+        map_alpha: how opaque the map is, 0 to 255; it glows on a dark background.
+        colours: of marks, as in :data:`COLOURS`.
+    """
+
+    dark: bool
+    map_alpha: int
+    colours: Mapping[str, Rgb]
+
+
+LIGHT, DARK = (
+    Look(bool(i), alpha, {name: pair[i] for name, pair in COLOURS.items()})
+    for i, alpha in enumerate((200, 215))
 )
-"""For viser's dark background, on which the map glows."""
+"""For viser's two backgrounds."""
 
 
 def either(light: str, dark: str) -> str:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 import shapely
+import trimesh
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
 from nullpose.antenna import Antenna
+from nullpose.physics import rotation_world_from_body
 
 _SAME_AXES = np.eye(3)
 
@@ -43,26 +45,7 @@ def merged(meshes: Iterable[Mesh]) -> Mesh:
     Args:
         meshes: at least one.
     """
-    vertices, faces = zip(*meshes, strict=True)
-    starts = np.cumsum([0, *map(len, vertices[:-1])])
-    shifted = [face + start for face, start in zip(faces, starts, strict=True)]
-    return Mesh(np.vstack(vertices), np.vstack(shifted))
-
-
-def lofted(rings_m: ArrayLike, *, is_closed: bool = True) -> Mesh:
-    """Return the surface from each of several lines to the next.
-
-    Args:
-        rings_m: (n, k, 3) points of each line; the lines go counter-clockwise seen from the last one.
-        is_closed: whether each line leads back to its first point.
-    """
-    rings = np.asarray(rings_m, dtype=float)
-    index = np.arange(rings.shape[0] * rings.shape[1]).reshape(rings.shape[:2])
-    beside = np.roll(index, -1, axis=1)
-    steps = slice(None if is_closed else -1)
-    a, b, c, d = index[:-1, steps], beside[:-1, steps], index[1:, steps], beside[1:, steps]
-    faces = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([b, d, c], -1).reshape(-1, 3)])
-    return Mesh(rings.reshape(-1, 3), faces)
+    return Mesh(*trimesh.util.append_faces(*zip(*meshes, strict=True)))
 
 
 def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int, open_rad: float = 0.0) -> Mesh:
@@ -75,11 +58,9 @@ def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int, open_ra
         around: steps about the axis.
         open_rad: angle that is left out, its middle along x, radians.
     """
-    is_closed, ends = open_rad == 0.0, (0.5 * open_rad, math.tau - 0.5 * open_rad)
-    azimuth = np.linspace(*ends, around + (not is_closed), endpoint=not is_closed)
-    radius, height = (np.asarray(each)[:, None] for each in (radius_m, height_m))
-    points = np.broadcast_arrays(radius * np.cos(azimuth), radius * np.sin(azimuth), height)
-    return lofted(np.stack(points, axis=-1), is_closed=is_closed)
+    line = np.column_stack([radius_m, height_m])
+    surface = trimesh.creation.revolve(line, math.tau - open_rad, sections=around, process=False)
+    return Mesh(surface.vertices, surface.faces).placed(turn_about_z(0.5 * open_rad))
 
 
 def sphere_mesh(rings: int = 16, around: int = 24, open_rad: float = 0.0) -> Mesh:
@@ -119,8 +100,7 @@ def turn_about_z(angle_rad: float) -> NDArray[np.float64]:
     Args:
         angle_rad: radians.
     """
-    c, s = math.cos(angle_rad), math.sin(angle_rad)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return rotation_world_from_body(0.0, 0.0, angle_rad)
 
 
 def relative_gain(antenna: Antenna, directions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -135,57 +115,37 @@ def relative_gain(antenna: Antenna, directions: NDArray[np.float64]) -> NDArray[
     return np.asarray(antenna.gain(1.0 - np.minimum(1.0, directions[:, 2] ** 2)))
 
 
-def prism_mesh(outline_m: ArrayLike, low_m: float, high_m: float) -> Mesh:
-    """Return an upright solid's walls, floor and ceiling.
-
-    Args:
-        outline_m: (n, 2) vertices of a convex polygon, counter-clockwise, metres.
-        low_m: its floor, metres.
-        high_m: its ceiling, metres.
-    """
-    outline = np.asarray(outline_m, dtype=float)
-    middle = np.broadcast_to(outline.mean(axis=0), outline.shape)
-    ends = (middle, low_m), (outline, low_m), (outline, high_m), (middle, high_m)
-    return lofted([_raised(*end) for end in ends])
-
-
-def floor_mesh(outline_m: ArrayLike, height_m: float, holes_m: Sequence[ArrayLike] = ()) -> Mesh:
-    """Return a level surface.
-
-    Args:
-        outline_m: (n, 2) vertices of any simple polygon, metres.
-        height_m: where it is, metres.
-        holes_m: vertices of polygons inside that are left out, metres.
-    """
-    return level_mesh(shapely.Polygon(np.asarray(outline_m), list(map(np.asarray, holes_m))), height_m)
-
-
 def level_mesh(area_m: BaseGeometry, height_m: float = 0.0) -> Mesh:
-    """Return a level surface, whole or in parts.
+    """Return a level surface, whole or in parts, seen from above.
 
     Args:
         area_m: shapely's polygon, or several, metres.
         height_m: where it is, metres.
     """
     triangles = shapely.constrained_delaunay_triangles(area_m)
-    corners = [shapely.get_coordinates(triangle)[:3] for triangle in triangles.geoms]
+    corners = [shapely.get_coordinates(triangle)[:3] for triangle in shapely.orient_polygons(triangles).geoms]
     return Mesh(_raised(np.vstack(corners), height_m), np.arange(3 * len(corners)).reshape(-1, 3))
 
 
-def building_mesh(
-    outline_m: ArrayLike, courtyards_m: Sequence[ArrayLike], low_m: float, high_m: float
-) -> Mesh:
-    """Return the walls and the roof of an upright solid.
+def prism_mesh(area_m: shapely.Polygon, low_m: float, high_m: float) -> Mesh:
+    """Return an upright solid's walls, floor and ceiling.
 
     Args:
-        outline_m: (n, 2) vertices of any simple polygon, counter-clockwise, metres.
-        courtyards_m: vertices of what is open inside it, metres.
-        low_m: its lower end, metres.
-        high_m: its roof, metres.
+        area_m: its outline, with what is open inside it, metres.
+        low_m: its floor, metres.
+        high_m: its ceiling, metres.
     """
-    rings = [np.asarray(ring, dtype=float) for ring in (outline_m, *courtyards_m)]
-    walls = [lofted([_raised(ring, z_m) for z_m in (low_m, high_m)]) for ring in rings]
-    return merged([*walls, floor_mesh(rings[0], high_m, courtyards_m)])
+    area, ends = shapely.orient_polygons(area_m), (low_m, high_m)
+    floor, ceiling = (level_mesh(area, height_m) for height_m in ends)
+    walls = [_wall_mesh(np.asarray(ring.coords), ends) for ring in (area.exterior, *area.interiors)]
+    return merged([floor._replace(faces=floor.faces[:, ::-1]), ceiling, *walls])
+
+
+def _wall_mesh(ring_m: NDArray[np.float64], ends_m: tuple[float, float]) -> Mesh:
+    """Build the wall on a line that ends where it begins, (n, 2), its outside on the right."""
+    below, count = np.arange(len(ring_m) - 1), len(ring_m)
+    faces = np.add.outer(below, [[0, 1, count], [1, count + 1, count]]).reshape(-1, 3)
+    return Mesh(np.vstack([_raised(ring_m, height_m) for height_m in ends_m]), faces)
 
 
 def _raised(outline_m: NDArray[np.float64], height_m: float) -> NDArray[np.float64]:
@@ -223,17 +183,18 @@ _SLANT = np.array(
 ) / math.sqrt(3.0)
 
 MARKS = {
-    "nodes": prism_mesh([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]], 0.0, 1.0),
+    "nodes": prism_mesh(shapely.box(-0.5, -0.5, 0.5, 0.5), 0.0, 1.0),
     "jammers": merged(_four(_tube(0.22, -1.15, 1.15, 8).placed(_SLANT, [0.0, 0.0, 0.8]))),
     "eavesdroppers": revolved_mesh([0.0, 0.8, 0.0], [0.0, 1.0, 2.0], 4),
 }
 """On the origin: a cube, a cross of four diagonals, which is an X from every side, an octahedron."""
 
-_ARM = prism_mesh([[0.0, -0.05], [1.0, -0.05], [1.0, 0.05], [0.0, 0.05]], -0.02, 0.06)
+_HULL = shapely.Polygon([(0.42, 0.0), (0.2, 0.26), (-0.34, 0.26), (-0.34, -0.26), (0.2, -0.26)])
+_ARM = prism_mesh(shapely.box(0.0, -0.05, 1.0, 0.05), -0.02, 0.06)
 
 BODY = merged(
     [
-        prism_mesh([[0.42, 0.0], [0.2, 0.26], [-0.34, 0.26], [-0.34, -0.26], [0.2, -0.26]], -0.08, 0.12),
+        prism_mesh(_HULL, -0.08, 0.12),
         *_four(merged([_ARM, _tube(0.09, -0.05, 0.16).placed(offset_m=[1.0, 0.0, 0.0])])),
         *(_tube(0.03, -0.42, -0.05, 8).placed(offset_m=[0.0, y, 0.0]) for y in (-0.3, 0.3)),
     ]

@@ -162,7 +162,7 @@ class Page:
         controls |= {
             "case": lambda label: self.change(lambda state: state.with_case(case_named(label))),
             "compared": lambda label: self.change(
-                lambda state: state.with_compared(None if label == NO_CASE else case_named(label))
+                lambda state: replace(state, compared=None if label == NO_CASE else case_named(label))
             ),
             "power": self._slid,
             "power_text": self._power_typed,

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from nullpose.objectives import Quantity
+from nullpose.studio.answer import PowerCurve
 from nullpose.studio.card import card_html
 from nullpose.studio.case import cases_of
 from nullpose.studio.controls import NO_CASE, TABS, Control
@@ -100,7 +101,7 @@ class Panel(SimpleNamespace):
         put(self.overlay, content=card_html(state))
         answer = state.current(state.case)
         svg = power_plot_svg(
-            state.curve,
+            state.latest(PowerCurve),
             version=state.version,
             power_db=power_db,
             # while a hand moves the plot is grey and stays as it is

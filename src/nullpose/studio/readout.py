@@ -11,7 +11,7 @@ import numpy as np
 from nullpose.errors import ScenarioError
 from nullpose.physics import Pose
 from nullpose.studio.answer import Answer, signed
-from nullpose.studio.look import DARK, LIGHT, css, either
+from nullpose.studio.look import COLOURS, css, either
 from nullpose.studio.state import State
 
 if TYPE_CHECKING:
@@ -141,8 +141,5 @@ def macros(template: str = "page.html.jinja") -> TemplateModule:
     )
     filters = (signed, tone, letter, node_rows, attitude_words)
     environment.filters |= {function.__name__: function for function in filters}
-    environment.globals["slot_colours"] = [either(css(LIGHT.slots[i]), css(DARK.slots[i])) for i in (0, 1)]
-    environment.globals["kind_colours"] = {
-        kind: either(css(LIGHT.kinds[kind]), css(DARK.kinds[kind])) for kind in LIGHT.kinds
-    }
+    environment.globals["colours"] = {name: either(*map(css, pair)) for name, pair in COLOURS.items()}
     return environment.get_template(template).module

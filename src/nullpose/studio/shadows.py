@@ -16,7 +16,7 @@ from nullpose.studio.drawing import Shape, Shapes, frame, lines, mesh
 from nullpose.studio.ground import flight_box_m
 from nullpose.studio.look import Look, Rgb
 from nullpose.studio.meshes import level_mesh
-from nullpose.studio.state import State
+from nullpose.studio.state import KINDS, State
 
 _OPACITY = 0.1  # of one node's: the darker, the more are blocked
 _LIFT = 2e-4  # of each above the one before, sizes of the scene: what lies in one plane flickers
@@ -32,7 +32,11 @@ def shadow_shapes(state: State, size_m: float, look: Look) -> Shapes:
         look: the page's colours.
     """
     answer = state.shadowing
-    return {} if answer is None else _shapes(answer, size_m, tuple(look.kinds.items()))
+    return (
+        {}
+        if answer is None
+        else _shapes(answer, size_m, tuple((kind, look.colours[kind]) for kind in KINDS[:-1]))
+    )
 
 
 @lru_cache(4)

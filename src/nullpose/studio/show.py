@@ -15,7 +15,6 @@ from nullpose.solver import Result, Scheme, solve
 from nullpose.solver.robust import RobustDetails
 from nullpose.studio.answer import answer_of, with_errors
 from nullpose.studio.case import OPTIMUM, Case
-from nullpose.studio.exports import scene_html
 from nullpose.studio.field_map import field_map
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.opening import require_viser
@@ -64,6 +63,8 @@ def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> 
 
 def _page(result: Result, *, dark: bool) -> str:
     """Write the scene of a result as HTML."""
+    from nullpose.studio.exports import scene_html
+
     if hasattr(result.details, "weights"):
         raise UsageError("show: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM

@@ -67,7 +67,7 @@ class Stage:
         for slot in range(len(state.cases)):
             shapes |= drone_shapes(state, slot, self.size_m, self.eye_m, self._look)
         if state.scale is not None:
-            contour = self._look.contour if state.scenario.prisms is None else None
+            contour = self._look.colours["contour"] if state.scenario.prisms is None else None
             shapes |= _map_shapes(state.scale, self._look.map_alpha, contour)
         self._show(shapes)
 

@@ -97,42 +97,35 @@ class State:
             events.pop((Notice, None), None)
         return replace(self, events=events)
 
-    def _last(self, kind: type[_E], case: Case | None = None) -> _E | None:
+    def latest(self, kind: type[_E], case: Case | None = None) -> _E | None:
+        """Return what was last found of a kind, for whatever version, or None."""
         event = self.events.get((kind, case))
         return event if isinstance(event, kind) else None
 
-    def _current(self, kind: type[_E], case: Case | None = None) -> _E | None:
-        event = self._last(kind, case)
+    def present(self, kind: type[_E], case: Case | None = None) -> _E | None:
+        """Return what was found of a kind for the present version of the scene, or None."""
+        event = self.latest(kind, case)
         return event if event is not None and event.version == self.version else None
 
     def answer(self, case: Case) -> Answer | None:
         """Return the latest answer for a case, of whatever version; see :meth:`current`."""
-        return self._last(Answer, case)
+        return self.latest(Answer, case)
 
     def current(self, case: Case) -> Answer | None:
         """Return the answer for a case to the present version of the scene, or None."""
-        return self._current(Answer, case)
-
-    def progress(self, case: Case) -> Progress | None:
-        """Return the progress of a case's proof for the present version, or None."""
-        return self._current(Progress, case)
+        return self.present(Answer, case)
 
     def status(self, case: Case) -> str:
         """Say how far the solve of a case has come."""
         answer = self.current(case)
-        compiling = self._last(Notice) if answer is None else None
-        notice = self._current(Notice, case) or compiling
+        compiling = self.latest(Notice) if answer is None else None
+        notice = self.present(Notice, case) or compiling
         return status_words(answer) if notice is None else notice.words
-
-    @property
-    def curve(self) -> PowerCurve | None:
-        """The latest power curve, of whatever version, or None."""
-        return self._last(PowerCurve)
 
     @property
     def field_map(self) -> FieldMap | None:
         """The maps of the present version, or None."""
-        return self._current(FieldMap)
+        return self.present(FieldMap)
 
     @property
     def scale(self) -> Scale | None:
@@ -150,7 +143,7 @@ class State:
     @property
     def link_range_db(self) -> tuple[float, float]:
         """Ends of the links' colours, dB: those of the map of the best values."""
-        maps = self._last(FieldMap)
+        maps = self.latest(FieldMap)
         scale = None if maps is None else maps.scale(MAPS[0])
         return scale.ends if scale is not None and scale.field.unit == "dB" else _LINK_RANGE_DB
 
@@ -270,7 +263,3 @@ class State:
     def with_case(self, case: Case) -> State:
         """Return the state with another case chosen."""
         return replace(self, case=case, compared=None if self.compared == case else self.compared)
-
-    def with_compared(self, case: Case | None) -> State:
-        """Return the state with another case set beside the chosen one, or none."""
-        return replace(self, compared=None if case == self.case else case)

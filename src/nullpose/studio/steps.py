@@ -7,20 +7,29 @@ from dataclasses import replace
 
 import numpy as np
 
-from nullpose.solver import Scheme, solve
-from nullpose.studio.answer import Answer, PowerCurve, answer_of, with_errors
+from nullpose.solver import Scheme, SolveKeywords, solve
+from nullpose.studio.answer import Answer, LeastTilt, PowerCurve, answer_of, tilt_words, with_errors
 from nullpose.studio.case import OPTIMUM, Case
 from nullpose.studio.state import POWER_DB, State
 from nullpose.study import ResultRow, ResultTable
+from nullpose.study.least_tilt import tilt_search
 
 POWER_LABEL = "strongest jammer over strongest node (dB)"
 """What the power curve is drawn over."""
 
 _PROOF_LIMIT_S = 30.0
 _ROBUST_LIMIT_S = 20.0
+_TILT_LIMIT_S = 5.0  # of each proof
+_SHARE = 0.99  # of the best value, with which a tilt suffices
 _CURVE_POINTS = 15
 _CURVE_SHOWN = 4  # a growing plot is drawn after so many points more
 _QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
+
+
+class _Watched(SolveKeywords, total=False):
+    """Options of solves that can be ended."""
+
+    on_progress: Callable[..., None]
 
 
 def quick_answers(state: State, case: Case) -> Iterator[Answer]:
@@ -64,6 +73,22 @@ def proved_answers(state: State, case: Case, on_progress: Callable[[float, int],
             scenario, robust=True, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
         )
         yield answer_of(state.version, case, guarded)
+
+
+def least_tilts(state: State, go_on: Callable[..., None]) -> Iterator[LeastTilt]:
+    """Yield the least tilt that the chosen case's vehicle needs; nothing for a robust case or a pattern.
+
+    Args:
+        state: with the scene.
+        go_on: called now and then; what it raises ends the search.
+    """
+    scenario = state.case.on(state.scenario)
+    if state.case.robust or not scenario.antenna_record.is_quadratic:
+        return
+    mount_deg = 0.0 if scenario.airframe is None else scenario.airframe.mount_deg
+    search = tilt_search(scenario, _SHARE, _Watched(time_limit_s=_TILT_LIMIT_S, on_progress=go_on))
+    words = tilt_words(search.sides(mount_deg), _SHARE)
+    yield LeastTilt(version=state.version, case=None, words=words)
 
 
 def power_curves(state: State, go_on: Callable[[], None] = lambda: None) -> Iterator[PowerCurve]:

@@ -15,9 +15,9 @@ from nullpose.objectives import Quantity
 from nullpose.solver import announce_compiling
 from nullpose.studio.answer import Answer, Notice, Progress
 from nullpose.studio.case import Case
-from nullpose.studio.field_map import field_map, map_kernel_is_ready
+from nullpose.studio.field_map import field_map, map_compiler
 from nullpose.studio.state import Event, State
-from nullpose.studio.steps import power_curves, proved_answers, quick_answers
+from nullpose.studio.steps import least_tilts, power_curves, proved_answers, quick_answers
 
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
@@ -104,9 +104,10 @@ class Worker:
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._publish_all(state, state.case, power_curves(state, self._go_on))
         if best is not None:
-            while not map_kernel_is_ready():
+            while map_compiler().is_busy():
                 self._rest()
             self._publish_all(state, best.case, [field_map(best, self._go_on)])
+            self._publish_all(state, best.case, least_tilts(state, self._go_on))
 
     def _publish_all(
         self, state: State, case: Case, events: Iterable[_E], *, late: bool = False
