@@ -16,8 +16,8 @@ from proof_boxes import CELLS, GAP, SCENARIO, boxes_m, draw_boxes
 from twins import write
 
 import nullpose
+from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.scene import place_names
 from nullpose.report.figures.stage import Stage, View
 from nullpose.report.figures.style import INK, VEHICLES, house_style
 from nullpose.solver import solve

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError
 from nullpose.report.figures.dots import draw_dots
+from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_field, draw_plan
 from nullpose.report.figures.poses import draw_dipole
 from nullpose.report.figures.scene import draw_panel
@@ -73,6 +74,7 @@ def pose(result: Result, ax: Axes | None = None) -> Axes:
         raise UsageError("pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
     with _axes(ax, ALONE.inches, solid=True) as axes:
         draw_panel(axes, Stage.of(result), result.pose, draw_dipole)
+        place_names(axes)
     return axes
 
 
@@ -93,6 +95,7 @@ def plan(result: Result, ax: Axes | None = None) -> Axes:
     """
     with _axes(ax, (5.0, 5.0)) as axes:
         draw_plan(axes, Stage.of(result), result.pose)
+        place_names(axes)
     return axes
 
 
@@ -115,6 +118,7 @@ def heat_map(result: Result, ax: Axes | None = None, *, field: Field | None = No
     field = value_map(result, cells=_CELLS) if field is None else field
     with _axes(ax, (6.0, 6.0)) as axes:
         draw_field(axes, result, field)
+        place_names(axes)
     return axes
 
 

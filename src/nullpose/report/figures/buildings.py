@@ -70,8 +70,6 @@ def draw_bodies(axes: Axes3D, scenario: Scenario) -> None:
             roofs += [np.insert(shapely.get_coordinates(face), 2, high_m, axis=1) for face in flat]
     if walls:
         colours = [_WALL] * len(walls) + [_ROOF] * len(roofs)
-        look = {"linewidth": 0.4, "alpha": 0.85, "zorder": 1.0}
         edges = [_EDGE] * len(walls) + ["none"] * len(roofs)
-        axes.add_collection3d(Poly3DCollection(walls + roofs, facecolors=colours, edgecolors=edges, **look))
-        box: Look = {"marker": "s", "markeredgecolor": GREY, "linestyle": ""}
-        axes.plot([], [], [], color=_ROOF, label="building", **box)
+        look: Look = {"facecolors": colours, "edgecolors": edges, "linewidth": 0.4, "alpha": 0.85}
+        axes.add_collection3d(Poly3DCollection(walls + roofs, zorder=1.0, label="building", **look))

@@ -16,7 +16,8 @@ from scipy.ndimage import distance_transform_edt
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_outlines, draw_shadows
-from nullpose.report.figures.scene import NULL_LINE, lay_out, place_names, write_name
+from nullpose.report.figures.names import place_names, write_name
+from nullpose.report.figures.scene import NULL_LINE
 from nullpose.report.figures.stage import AXIS, Stage, limits_m
 from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, MARKS, Look, house_style, inches
 from nullpose.report.geometry import outline_m
@@ -30,7 +31,6 @@ _LEVELS = 8
 _FAR_M = 1e7  # of an airspace without an end
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # for labels and the colour bar
 _TALLEST_INCH = 8.0
-_SHORT = 3  # letters of a name that its number stands beside in a column
 
 
 def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = None) -> None:
@@ -44,9 +44,7 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         pose: of the drone.
         box_m: low and high corner of what is shown, (2, 2), metres; the whole stage if left out.
     """
-    low, high = np.stack(limits_m(stage))[:, :2] if box_m is None else box_m
-    if stage.view.is_small:
-        low, high = _filled(axes, np.stack([low, high]))
+    low, high = _filled(axes, np.stack(limits_m(stage))[:, :2]) if box_m is None else box_m
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="East x (m)", ylabel="North y (m)")
     axes.set_aspect("equal")
     if box_m is None:  # a map has its own colours
@@ -61,19 +59,17 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
                 write_name(axes, zone.name, middle, is_area=True)
         axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
     x, y = pose.position_m[:2]
+    write_name(axes, f"drone {pose.position_m[2]:.3g} m up", pose.position_m)
     rim: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 30}
     for kind, point in stage.points:
         place, (colour, marker) = np.asarray(point.position_m[:2]), MARKS[kind]
         is_node = kind == "node"
-        dashes, width = ("-", 0.8) if is_node else ((0, (3, 1.5)), 1.2)
-        axes.plot([x, place[0]], [y, place[1]], color=colour, linestyle=dashes, linewidth=width, zorder=1.5)
+        line: Look = {"linewidth": 0.8} if is_node else {"linewidth": 1.2, "linestyle": (0, (3, 1.5))}
+        axes.plot([x, place[0]], [y, place[1]], color=colour, zorder=1.5, label=kind, **line)
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.0, label=kind, **rim)
-        line = "\n" if stage.view.is_small and len(point.name) > _SHORT else " "
-        words = line.join(filter(None, (point.name, stage.numbers.get(point.name))))
-        is_worst = point.name in stage.worst
-        is_named = is_worst or not (is_node and stage.is_crowded and stage.view.is_small)
-        if is_named and np.all((low <= place) & (place <= high)):
-            write_name(axes, words, place, is_bold=is_worst)
+        if np.all((low <= place) & (place <= high)):
+            number, is_worst = stage.numbers.get(point.name, ""), point.name in stage.worst
+            write_name(axes, point.name, place, number=number, is_bold=is_worst)
         if stage.uncertain and not isinstance(point, Node):
             words = f"where the {kind} may be"
             axes.plot(*_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=words)
@@ -83,9 +79,6 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
     is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None
     axes.plot(*ends.T, zorder=6.5, label="antenna axis (null)" if is_null else None, **NULL_LINE)
     axes.scatter(x, y, color=DRONE, zorder=7, label="drone", **rim)
-    write_name(axes, f"drone {pose.position_m[2]:.3g} m up", pose.position_m)
-    axes.apply_aspect()
-    place_names(axes)
 
 
 def _outline_of_set_m(point: Jammer | Eavesdropper) -> FloatArray:
@@ -123,7 +116,7 @@ def draw_value_map(result: Result, field: Field, width: str | None = None) -> Fi
         if width is None:
             title = f"{result.scenario.name}\n{result.label}: {field.title}"
             axes.set_title(title, fontsize=9, parse_math=False)
-        lay_out(figure)
+        place_names(axes)
     return figure
 
 

@@ -6,9 +6,10 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import zip_longest
+from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
@@ -19,9 +20,10 @@ from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.physics.array import placed_elements
 from nullpose.physics.types import FloatArray
+from nullpose.report.figures.names import place_names
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.scene import NULL_LINE, draw_line, draw_panel, lay_out
+from nullpose.report.figures.scene import NULL_LINE, draw_line, draw_panel
 from nullpose.report.figures.stage import ALONE, AXIS, PAIR, PANELS, Stage
 from nullpose.report.figures.style import DRONE, INK, SURFACE, Look, house_style, inches, is_column
 from nullpose.report.geometry import axis_angle_rad
@@ -36,10 +38,9 @@ from nullpose.study import ResultRow
 
 _PLAN_INCH = 4.2  # width of a plan on a screen
 _PLAN_SHARE = 0.64  # width of a plan over that of the scene beside it
-_PLAN = {"left": 0.165, "right": 0.6, "bottom": 0.3, "top": 0.98}  # in a column, of the figure
-_SOLID = {"left": 0.625, "right": 0.915, "bottom": 0.36, "top": 0.96}
+_COLUMN = {"width_ratios": (1.75, 1.0), "height_ratios": (1.2, 1.0)}  # of the plan and the scene beside it
 _LEGEND_COLUMN_INCH = 1.7
-_PANEL_INCH = (3.3, 2.5)  # height on a page and in a column
+_PAGE_INCH, _COLUMN_INCH = 3.3, (2.9, 2.45)  # heights: of a column without a plan beside the scene, and with
 
 
 def draw_panels(
@@ -64,47 +65,68 @@ def draw_panels(
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     count, is_narrow = len(stage.poses), is_column(width)
-    shares = [1.0] * count + [_PLAN_SHARE] * plan
-    wide, high = stage.view.inches[0] * count + _PLAN_INCH * plan, stage.view.inches[1]
-    if width is not None:
-        wide, high = inches((0.0, 0.0), width, 0.0)[0], _PANEL_INCH[is_column(width)]
     is_small = is_narrow and plan
+    size = (stage.view.inches[0] * count + _PLAN_INCH * plan, stage.view.inches[1])
+    if width is not None:
+        size = (inches(size, width, 0.0)[0], _COLUMN_INCH[plan] if is_narrow else _PAGE_INCH)
     stage = replace(stage, view=replace(stage.view, is_small=is_narrow))
     with house_style(width):
         # the name of z is beyond its panel
-        layout = None if is_small else ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.98, 1.0))
-        figure = Figure(figsize=(wide, high), layout=layout)
-        grid = figure.add_gridspec(1, len(shares), width_ratios=shares)
-        flat, solid = (figure.add_gridspec(1, 1, **place)[0] for place in (_PLAN, _SOLID))
-        for index, pose in enumerate(stage.poses):
-            if is_narrow and not plan:
-                axes = figure.add_subplot(grid[index])
-                draw_plan(axes, stage, pose)
-            else:
-                axes = figure.add_subplot(solid if is_small else grid[index], projection="3d")
+        layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0 if is_narrow else 0.98, 1.0))
+        figure = Figure(figsize=size, layout=layout)
+        row = figure.add_gridspec(1, count + plan, width_ratios=[1.0] * count + [_PLAN_SHARE] * plan)
+        places = [row[index] for index in range(count + plan)]
+        if is_small:  # the legend has the corner
+            grid = figure.add_gridspec(2, 2, **_COLUMN)
+            places = [grid[0, 1], grid[:, 0]]
+        for pose, place, title in zip_longest(stage.poses, places[:count], titles):
+            axes = figure.add_subplot(place, projection=None if is_narrow and not plan else "3d")
+            if axes.name == "3d":
                 axes.patch.set_visible(False)  # it would cover what another panel has at its edge
                 draw_panel(axes, stage, pose, draw_vehicle)
-            title = titles[index] if titles else ""
-            axes.set_title(title.replace(", ", "\n") if is_narrow else title, fontsize="medium", y=0.96)
+            else:
+                draw_plan(axes, stage, pose)
+            axes.set_title(
+                (title or "").replace(", ", "\n") if is_narrow else title, fontsize="medium", y=0.96
+            )
         if plan:
-            draw_plan(figure.add_subplot(flat if is_small else grid[-1]), stage, stage.poses[0])
+            draw_plan(figure.add_subplot(places[-1]), stage, stage.poses[0])
         if width is None:
             figure.suptitle(head, fontsize=10, parse_math=False)
-        once: dict[str, Artist] = {}
-        for handles, names in (axes.get_legend_handles_labels() for axes in figure.axes):
-            once = dict(zip(names, handles, strict=True)) | once
-        if is_narrow:
-            del once["drone"]  # it has its name in the plan
-        else:
-            once[surface] = Patch(color=SURFACE, alpha=0.8)
-        look: Look = {"handlelength": 1.4, "columnspacing": 1.0, "borderaxespad": 0.1, "handletextpad": 0.5}
-        columns = 3 if is_small else min(len(once), int(wide / _LEGEND_COLUMN_INCH))
-        look["loc"] = "lower center" if is_small else "outside lower center"
-        legend = figure.legend(once.values(), once.keys(), frameon=False, ncols=columns, **look)
-        for text in legend.get_texts():
-            text.set_parse_math(False)
-        lay_out(figure)
+        _draw_legend(figure, stage, None if is_narrow else surface)
+        for axes in figure.axes:
+            place_names(axes)
     return figure
+
+
+def _draw_legend(figure: Figure, stage: Stage, surface: str | None) -> None:
+    """Draw the legend of all panels: below them, or in a column in the corner beside the plan."""
+    marks: dict[str, dict[type, Any]] = {}
+    for axes in figure.axes:
+        drawn: dict[str, dict[type, Any]] = {}
+        for mark, name in zip(*axes.get_legend_handles_labels(), strict=True):
+            drawn.setdefault(name, {})[type(mark)] = mark
+        marks |= drawn  # those of the plan, if there is one
+    if surface is None:
+        del marks["drone"]  # it has its name in the plan
+    else:
+        marks[surface] = {Patch: Patch(color=SURFACE, alpha=0.8)}
+    look: Look = {
+        "handlelength": 1.7,
+        "frameon": False,
+        "alignment": "left",
+        "columnspacing": 1.0,
+        "borderaxespad": 0.1,
+        "handletextpad": 0.5,
+    }
+    is_corner = surface is None and len(stage.poses) == 1
+    note = stage.note if is_corner else stage.note.replace("\n", " ")
+    columns = 1 if is_corner else min(len(marks), int(figure.get_figwidth() / _LEGEND_COLUMN_INCH))
+    look["loc"] = "lower right" if is_corner else "outside lower center"
+    handles: Any = [tuple(each.values()) for each in marks.values()]
+    legend = figure.legend(handles, marks, ncols=columns, title=note, **look)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
 
 
 _LETTERS = 120  # in a line of a title

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import outline_m
 from nullpose.report.links import binding_nodes
-from nullpose.report.numbers import with_unit
+from nullpose.report.numbers import capitalised, with_unit
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
 from nullpose.solver import Result
 
@@ -21,7 +21,7 @@ _MARGIN = 0.12  # free ground around the scene
 _MARGIN_OF_ZONES = 0.03
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
-_MOST_NUMBERS = 4  # nodes with a number beside their name
+_MOST_NUMBERS, _MOST_LETTERS = 4, 45  # nodes, and letters of all their names, with numbers beside them
 AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 
 
@@ -69,6 +69,7 @@ class Stage:
         uncertain: whether sets are drawn that jammers and eavesdroppers may be anywhere in.
         numbers: what each node gets, by its name.
         worst: nodes that get the least.
+        note: how the nodes' names and numbers are to be read.
     """
 
     scenario: Scenario
@@ -77,19 +78,23 @@ class Stage:
     uncertain: bool = False
     numbers: Mapping[str, str] = field(default_factory=dict)
     worst: frozenset[str] = frozenset()
+    note: str = ""
 
     @classmethod
     def of(cls, result: Result, view: View = ALONE) -> Stage:
-        """Set the stage of a result with what each node gets, of many nodes the worst alone."""
-        quantity, worst = result.objective.quantity, binding_nodes(result)
-        links = [link for link in result.links if link.node in worst or len(result.links) <= _MOST_NUMBERS]
-        numbers = {link.node: with_unit(quantity.in_unit(quantity.at(link)), quantity) for link in links}
-        return cls(scenario=result.scenario, poses=(result.pose,), view=view, numbers=numbers, worst=worst)
-
-    @property
-    def is_crowded(self) -> bool:
-        """Whether there are too many nodes for a number beside each."""
-        return len(self.scenario.nodes) > _MOST_NUMBERS
+        """Set the stage of a result: with what each node gets, or of many with the names of the worst."""
+        quantity, numbers = result.objective.quantity, dict[str, str]()
+        note = f"At nodes: {quantity.noun},\nthe smallest in bold"
+        names = [link.node for link in result.links]
+        if len(names) > _MOST_NUMBERS or len("".join(names)) > _MOST_LETTERS:
+            least = with_unit(quantity.in_unit(result.objective.value), quantity)
+            note = f"{capitalised(quantity.smallest)}: {least},\nat nodes in bold"
+        else:
+            numbers = {
+                link.node: with_unit(quantity.in_unit(quantity.at(link)), quantity) for link in result.links
+            }
+        stage = cls(scenario=result.scenario, poses=(result.pose,), view=view, numbers=numbers, note=note)
+        return replace(stage, worst=binding_nodes(result))
 
     @property
     def points(self) -> list[tuple[str, Node | Jammer | Eavesdropper]]:

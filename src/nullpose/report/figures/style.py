@@ -120,6 +120,7 @@ _PRINT = {
     "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0,
     "legend.fontsize": 7.0,
+    "legend.title_fontsize": 7.0,
     "figure.titlesize": 8.0,
 }
 

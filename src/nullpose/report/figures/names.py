@@ -1,0 +1,121 @@
+"""Names beside points: apart from each other, from marks and from all other letters."""
+
+from __future__ import annotations
+
+import textwrap
+from itertools import product
+
+import numpy as np
+from matplotlib import rcParams
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
+from matplotlib.text import Annotation, Text
+from mpl_toolkits.mplot3d import Axes3D, proj3d
+
+from nullpose.physics.types import FloatArray
+from nullpose.report.figures.style import INK, Look
+
+_LETTERS, _SHORT = 16, 2  # in a line of a name, and in one that its number is beside
+_SIDES = (0.0, -0.25, 0.25, -0.5, 0.5, -1.0, 1.0)
+_PLACES = np.array(
+    [(0.0, 0.0, 0.0, 0.0)]
+    + [
+        (x, y, gap_pt, cost)
+        for gap_pt, cost in ((4.5, 0.0), (9.0, 0.6), (16.0, 2.0))
+        for x, y in product(_SIDES, reversed(_SIDES))
+        if max(abs(x), abs(y)) == 1.0
+    ]
+)
+"""Where a name may stand: from its point, over its half size, with a gap in points, and what that costs."""
+_SAMPLES, _CROSSED, _BESIDE = 60, 0.05, 0.5  # points on a line; costs of one below a name, of a mark beside
+_MARK_PT, _BESIDE_PT, _TINY_PT = 3.0, 9.0, 18.0  # half of a mark; how far one is beside a name; a small zone
+_TRIES = 6
+
+
+def write_name(
+    axes: Axes | Axes3D,
+    name: str,
+    point_m: FloatArray,
+    *,
+    number: str = "",
+    is_bold: bool = False,
+    is_area: bool = False,
+) -> None:
+    """Write a name at its point as it is, no part of it a formula, for ``place_names`` to move.
+
+    Args:
+        axes: in 3-D or seen from above, with its view set.
+        name: of the point or the area.
+        point_m: shape ``(2,)`` or ``(3,)``, metres.
+        number: beside it, or below a long one.
+        is_bold: whether it is that of the worst node.
+        is_area: whether it is slanted.
+    """
+    x, y = float(point_m[0]), float(point_m[1])
+    if isinstance(axes, Axes3D):
+        x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
+    words = ("\n" if len(name) > _SHORT else " ").join(filter(None, (textwrap.fill(name, _LETTERS), number)))
+    look: Look = {"fontsize": rcParams["xtick.labelsize"], "color": INK, "zorder": 8}
+    look |= {"fontweight": "bold" if is_bold else "normal", "fontstyle": "italic" if is_area else "normal"}
+    look |= {"textcoords": "offset points", "annotation_clip": False, "parse_math": False, "in_layout": False}
+    halo = [withStroke(linewidth=2.0, foreground="white")]
+    axes.annotate(words, (x, y), xytext=(0.0, 0.0), ha="center", va="center", path_effects=halo, **look)
+
+
+def place_names(axes: Axes | Axes3D) -> None:
+    """Move each name to where it is in the frame, over no mark and no letters, and nearest its own point.
+
+    Names of the worst nodes are placed first, those of areas last. In the next try those are first that found
+    no place. In the end these are not drawn.
+    """
+    names = [text for text in axes.texts if isinstance(text, Annotation)]
+    names.sort(key=lambda name: (name.get_fontstyle() == "italic", name.get_fontweight() != "bold"))
+    for name in names:
+        name.set_visible(True)
+    root = axes.get_figure(root=True)
+    assert root is not None, "axes are in a figure"
+    root.draw_without_rendering()  # for the layout, and where points in 3-D are seen
+    to_px, point_px = axes.transData.transform, root.dpi / 72.0
+    groups = [each.get_offsets() for each in axes.collections if isinstance(each, PathCollection)]
+    marks, points = to_px(np.vstack(groups)), to_px([name.xy for name in names])
+    lines = np.vstack([to_px(_along(line)) for line in axes.lines])
+    letters = [text for text in axes.findobj(Text) if text.get_text() and text not in names]
+    boxes = [text.get_window_extent() for text in (*names, *letters)]
+    zones = [zone.get_window_extent() for zone in axes.patches]
+    boxes += [box for box in zones if max(box.size) < _TINY_PT * point_px]
+    corners = np.array([(box.min, box.max) for box in boxes])
+    rims = point_px * _MARK_PT * np.array([[-1.0], [1.0]])
+    corners = np.concatenate([corners, marks[:, None] + rims])
+    middles, halves = corners.mean(axis=1), 0.5 * np.ptp(corners, axis=1)
+    weights = np.array([1.0 if name.get_fontstyle() == "italic" else 10.0 for name in names])
+    order, least = list(range(len(names))), np.inf
+    for _ in range(_TRIES):
+        middles[: len(names)] = np.nan
+        for index in order:
+            point, half = points[index], halves[index]
+            places = point + _PLACES[:, :2] * (half + point_px * _PLACES[:, 2:3])
+            low, high = axes.bbox.min + half + point_px, axes.bbox.max - half - point_px
+            places = np.clip(places, low, high)[:, None]
+            beyond = np.maximum(np.abs(places - [point, *points, *marks]) - half, 0.0)
+            is_wrong = np.argmin(np.linalg.norm(beyond, axis=-1), axis=1) > 0  # nearer to another
+            is_wrong |= np.any(np.all(np.abs(places - middles) < halves + half, axis=-1), axis=1)
+            crossed = np.all(np.abs(places - lines) < half, axis=-1).sum(axis=1)
+            beside = np.all(np.abs(places - marks) < half + _BESIDE_PT * point_px, axis=-1).sum(axis=1)
+            costs = _PLACES[:, 3] + _CROSSED * crossed + _BESIDE * beside + np.where(is_wrong, np.inf, 0.0)
+            best = int(np.argmin(costs))
+            middles[index] = places[best, 0] if costs[best] < np.inf else np.nan
+        is_lost = np.isnan(middles[: len(names), 0])
+        if weights @ is_lost < least:
+            least = float(weights @ is_lost)
+            for name, point, middle, lost in zip(names, points, middles, is_lost, strict=False):
+                name.set(position=(middle - point) / point_px, visible=not lost)
+        order.sort(key=lambda index: (-weights[index], not is_lost[index]))
+
+
+def _along(line: Line2D) -> FloatArray:
+    """List points along a line as it is seen, (n, 2)."""
+    ends = np.asarray(line.get_xydata())
+    steps = np.linspace(0.0, len(ends) - 1.0, _SAMPLES)
+    return np.stack([np.interp(steps, np.arange(len(ends)), each) for each in ends.T], axis=-1)
