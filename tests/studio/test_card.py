@@ -47,7 +47,8 @@ def test_it_says_how_good_the_pose_is(proved: State) -> None:
     answer, html = proved.current(OPTIMUM), card_html(proved)
     assert answer is not None
     assert f">{signed(answer.shown_value, 4)} dB<" in html
-    assert f"{answer.bound_text} dB" in html
+    bound_db = 10.0 * np.log10(answer.result.objective.upper_bound)
+    assert f"upper bound {signed(bound_db, 4)} dB" in html
     assert "Proved optimal (gap 0.0001 %)" in html
     assert "np-old" not in html
     older = card_html(replace(proved, version=2))  # numbers of an older scene are grey

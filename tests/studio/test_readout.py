@@ -17,7 +17,7 @@ from nullpose.solver import solve
 from nullpose.studio.answer import Answer, answer_of
 from nullpose.studio.card import card_html
 from nullpose.studio.case import OPTIMUM, case_named
-from nullpose.studio.readout import failure_html, readout_html
+from nullpose.studio.readout import macros, readout_html
 from nullpose.studio.state import State
 from nullpose.studio.steps import quick_answers
 
@@ -80,7 +80,7 @@ def test_faults_are_listed_by_their_path() -> None:
     """Each fault of a file stands with its path, markup in it being harmless."""
     with pytest.raises(ScenarioError) as raised:
         scenario_from_text(b'[[nodes]]\n"<b>x" = 1\n', "<i>.toml")
-    html = failure_html(raised.value, "<i>.toml")
+    html = str(macros().faults(raised.value, "<i>.toml"))
     assert "<i>.toml was not taken" in _text(html)
     assert "airspace" in html
     assert not re.search("<i>|<b>x", html)

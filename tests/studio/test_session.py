@@ -17,11 +17,11 @@ from nullpose.errors import ScenarioError, SolveError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solver import Status, solve
-from nullpose.studio.answer import Answer, LeastTilt, PowerCurve, Progress
+from nullpose.studio.answer import Answer, Event, LeastTilt, PowerCurve, Progress
 from nullpose.studio.card import card_html
 from nullpose.studio.case import CASES, OPTIMUM, case_named
 from nullpose.studio.session import History, Session
-from nullpose.studio.state import Event, Key, State
+from nullpose.studio.state import Key, State
 
 _PATIENCE_S = 120.0
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -16,11 +16,21 @@ from nullpose.study import MountTilt, ResultTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Answer:
-    """A result and what is said of it, for one version of a scene.
+class Event:
+    """What a worker finds for a version of a scene.
 
     Args:
         version: the version of the scene that it belongs to.
+    """
+
+    version: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Answer(Event):
+    """A result and what is said of it, for one version of a scene.
+
+    Args:
         case: the case it answers.
         result: what the solver returned; the value of a robust one is what its pose guarantees.
         worst_nodes: those with the smallest value; of a robust pose the one with the smallest guarantee.
@@ -29,7 +39,6 @@ class Answer:
             before it is worked out.
     """
 
-    version: int
     case: Case
     result: Result
     worst_nodes: frozenset[str]
@@ -54,30 +63,21 @@ class Answer:
         return self.result.objective.quantity.unit
 
     @property
-    def bound_text(self) -> str:
-        """The upper bound as a text, as in "upper bound 4.1234"; empty without one."""
-        objective = self.result.objective
-        bound = objective.upper_bound
-        return "" if bound is None else f"upper bound {signed(objective.quantity.in_unit(bound), 4)}"
-
-    @property
     def value_words(self) -> str:
         """What the value is called."""
         quantity = self.result.objective.quantity
         return quantity.smallest if self.guarded is None else f"guaranteed {quantity.noun}"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Notice:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Notice(Event):
     """Why there is no answer: a case that cannot be solved, or kernels that are being compiled.
 
     Args:
-        version: the version of the scene.
         case: the case that cannot be solved; None while the kernels are compiled, once after an installation.
         words: what to show.
     """
 
-    version: int
     case: Case | None
     words: str
 
@@ -87,32 +87,28 @@ class LeastTilt(Notice):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PowerCurve:
+class PowerCurve(Event):
     """The objective of several schemes against the jamming power, as far as it has been worked out.
 
     Args:
-        version: the version of the scene.
         table: one row for each power, in dB, and scheme.
         complete: whether all powers are there.
     """
 
-    version: int
     table: ResultTable
     complete: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Progress:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Progress(Event):
     """How far a proof that runs has come.
 
     Args:
-        version: the version of the scene.
         case: the case that is proved.
         gap: the bound above the value, relative.
         boxes: how many were examined.
     """
 
-    version: int
     case: Case
     gap: float
     boxes: int

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-CARD_PX = (352.0, 372.0)
+CARD_PX = (352.0, 392.0)
 """Width and height of the canvas's upper left corner that the card covers for one case, pixels."""
 
 _CANVAS_PX = (1000.0, 800.0)  # where none is known
 _AHEAD = -np.array([0.82, -0.52, 0.64]) / np.linalg.norm([0.82, -0.52, 0.64])  # the camera's view
 _FOV_RAD = math.radians(50.0)  # upright; a wider one bends the scene at its edges
-_EDGE_PX, _LABEL_PX = np.array([26.0, 12.0]), np.array([50.0, 16.0])  # around a number, and a label
+_EDGE_PX, _LABEL_PX = np.array([26.0, 12.0]), np.array([72.0, 16.0])  # around a number, and a label
 _CENTRED = 0.01  # a metre more on both sides is worth so many metres nearer
 _TURNS = 24  # directions from which a turning scene is seen whole
 _FAR = 100.0  # sizes of the scene that the camera sees, so that it can be moved away
@@ -85,8 +85,7 @@ def aim(
         )
     camera.fov = _FOV_RAD
     corners_px = (CARD_PX[0], 0.0), (0.0, CARD_PX[1])
-    canvas = canvas_px(camera)
-    fits = [_position_m(canvas, matter, frame, np.array(corner_px)) for corner_px in corners_px]
+    fits = [_position_m(canvas_px(camera), matter, frame, np.array(corner_px)) for corner_px in corners_px]
     camera.position = max(fits, key=_AHEAD.__matmul__)
     # on the ground, about which a hand turns it
     camera.look_at = camera.position - _AHEAD * camera.position[2] / _AHEAD[2]

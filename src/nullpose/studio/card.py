@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import NamedTuple
 
 from nullpose.report.numbers import MINUS
@@ -41,18 +40,13 @@ def _scale(state: State, scale: Scale) -> dict[str, object]:
     is_shared = scale.of_value and unit == "dB"
     links = f"lines to nodes: {'the same colours' if is_shared else f'{low_db:g} to {high_db:g} dB'}"
     return {
-        "gradient": _gradient(),
+        "gradient": ",".join(map(css, scale_colours([share / 8 for share in range(9)], 0.0, 1.0))),
         "tick": tick,
         "low": f"{low:g}".replace("-", MINUS),
         "high": f"{high:g} {unit}".replace("-", MINUS),
         "title": scale.field.title,
         "links": links.replace("-", MINUS),
     }
-
-
-@cache
-def _gradient() -> str:
-    return ",".join(css(colour) for colour in scale_colours([share / 8 for share in range(9)], 0.0, 1.0))
 
 
 class Bar(NamedTuple):

@@ -62,9 +62,11 @@ class Case:
             sentences.append("The array of the file is not shown: this is the pose of one antenna.")
         if scenario.is_uncertain and not self.robust:
             refused = ROBUST.missing(scenario)
-            advice = "the case Robust pose guards against them"
-            if refused is not None:
-                advice = f"robust poses do not allow for its {refused.partition(':')[0]}"
+            advice = (
+                "the case Robust pose guards against them"
+                if refused is None
+                else f"robust poses do not allow for its {refused.partition(':')[0]}"
+            )
             sentences.append(f"The errors of the file are left out; {advice}.")
         return " ".join(sentences)
 

@@ -72,8 +72,7 @@ def coloured_mesh(surface: Mesh, colours: ArrayLike) -> Shape:
     # without a material of its own the surface is of metal, which is dark where nothing is mirrored
     matt = trimesh.visual.material.PBRMaterial(metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
     visual = trimesh.visual.TextureVisuals(material=matt)
-    opaque = np.full((len(surface.vertices), 1), 255, dtype=np.uint8)
-    visual.vertex_attributes["color"] = np.hstack([linear_colours(colours), opaque])
+    visual.vertex_attributes["color"] = np.insert(linear_colours(colours), 3, 255, axis=1)  # opaque
     coloured = trimesh.Trimesh(surface.vertices, surface.faces, process=False, visual=visual)
     _ = coloured.vertex_normals  # once asked for they are sent; without them every triangle is seen
     return Shape("mesh_trimesh", {"mesh": coloured} | FLAT)
@@ -91,8 +90,10 @@ def lines(
         units: which of the two.
     """
     points, colours = np.asarray(segments_m, dtype=np.float32), np.asarray(colour, dtype=np.uint8)
-    width = {"thickness": thickness, "thickness_units": units}
-    return Shape("line_segments", {"points": points, "colors": colours, **width})
+    return Shape(
+        "line_segments",
+        {"points": points, "colors": colours, "thickness": thickness, "thickness_units": units},
+    )
 
 
 def label(text: str, position_m: ArrayLike, scale: float = 0.9, anchor: str = "bottom-center") -> Shape:
@@ -104,5 +105,5 @@ def label(text: str, position_m: ArrayLike, scale: float = 0.9, anchor: str = "b
         scale: of its letters.
         anchor: the part of it that is at that place.
     """
-    position = np.asarray(position_m, dtype=float)
-    return Shape("label", {"text": text, "position": position, "font_screen_scale": scale, "anchor": anchor})
+    style = {"font_screen_scale": scale, "anchor": anchor}
+    return Shape("label", {"text": text, "position": np.asarray(position_m, dtype=float)} | style)

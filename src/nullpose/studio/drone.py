@@ -12,8 +12,8 @@ from nullpose.antenna import Antenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.solver import Result
-from nullpose.studio.answer import Answer
 from nullpose.studio.drawing import Shape, Shapes, coloured_mesh, frame, label, lines, mesh
+from nullpose.studio.ground import CROWD
 from nullpose.studio.look import Look, linear_colours, scale_colours
 from nullpose.studio.meshes import (
     BODY,
@@ -54,7 +54,7 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
         eye_m: (3,) where the camera stands, towards which the pattern is open, metres.
         look: the page's colours.
     """
-    answer = state.answer(state.cases[slot])
+    first, answer = state.answer(state.case), state.answer(state.cases[slot])
     if answer is None or len(answer.result.links) != len(state.scenario.nodes):
         return {}
     result, pose = answer.result, answer.result.pose
@@ -80,8 +80,8 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
         surface = _pattern(antenna, turn_rad)
         sized = surface._replace(values={**surface.values, "scale": _FULL * size_m})
         shapes |= {"body/antenna/pattern": frame(rotation=towards), "body/antenna/pattern/surface": sized}
-    if _has_null(antenna) and not (slot and _coincides(pose, state.answer(state.case), size_m)):
-        shapes |= _null(result, body @ mount, size_m, look, has_angle=slot == 0)
+    if _has_null(antenna) and not (slot and first and _coincides(pose, first.result.pose, size_m)):
+        shapes |= _null(result, body @ mount, size_m, look, is_first=slot == 0)
     shapes |= _links(result, state.link_range_db, size_m, look)
     return {f"/drone-{'ab'[slot]}/{name}": shape for name, shape in shapes.items()}
 
@@ -96,9 +96,9 @@ def _pattern(antenna: Antenna, towards_rad: float) -> Shape:
 
 
 def _null(
-    result: Result, attitude: NDArray[np.float64], size_m: float, look: Look, *, has_angle: bool
+    result: Result, attitude: NDArray[np.float64], size_m: float, look: Look, *, is_first: bool
 ) -> Shapes:
-    """Draw the null to the ground, the cone of little gain around it, and its angle to a jammer."""
+    """Draw the null to the ground, its cone of little gain, and of the first its angle to a jammer."""
     place_m, sign = result.pose.position_m, 1.0 if attitude[2, 2] >= 0.0 else -1.0
     upwards = attitude * [1.0, sign, sign]  # its third axis is the upper half of the antenna's
     below_m = min(_BELOW * size_m, place_m[2] / max(upwards[2, 2], 1e-6))
@@ -112,13 +112,14 @@ def _null(
             _BEAM.placed(below_m * upwards, place_m), look.colours["null"], opacity=0.3, side="back"
         ),
     }
-    if has_angle:
+    if is_first:
         jammers = result.scenario.jammers
         angles = [(axis_angle_rad(result.pose, jammer.position_m), jammer.name) for jammer in jammers]
         angle_rad, name = min(angles, default=(0.0, ""))
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""
         shapes["angle"] = frame(0.35 * place_m + 0.65 * ends[1])
-        shapes["angle/label"] = label(f"null{off}", (0.0, 0.0, 0.0), 0.9, "center-right")
+        if len(result.links) <= CROWD:
+            shapes["angle/label"] = label(f"null{off}", (0.0, 0.0, 0.0), 0.9, "center-right")
     return shapes
 
 
@@ -152,16 +153,14 @@ def _tubes(ends_m: NDArray[np.float64], radius_m: NDArray[np.float64]) -> Mesh:
     return Mesh(vertices.reshape(-1, 3), (_TUBE.faces + starts).reshape(-1, 3))
 
 
-def _coincides(pose: Pose, first: Answer | None, size_m: float) -> bool:
+def _coincides(pose: Pose, first: Pose, size_m: float) -> bool:
     """Tell whether a pose's cone would be drawn into that of the first drone."""
-    if first is None:
-        return False
-    away_m = np.linalg.norm(pose.position_m - first.result.pose.position_m)
-    along = abs(pose.antenna_axis @ first.result.pose.antenna_axis)
+    away_m = np.linalg.norm(pose.position_m - first.position_m)
+    along = abs(pose.antenna_axis @ first.antenna_axis)
     return bool(away_m < _SAME * size_m and along > math.cos(_SAME))
 
 
 def _has_null(antenna: Antenna) -> bool:
     """Tell whether an antenna has next to no gain along its axis, both ways."""
-    poles = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+    poles = np.outer([1.0, -1.0], [0.0, 0.0, 1.0])
     return antenna.is_axisymmetric and bool(np.all(relative_gain(antenna, poles) < _FAINT))

@@ -52,7 +52,6 @@ _ALIKE = (
 )
 _ANY = "any"  # typed for a tilt without a limit
 _FREE = Override("airframe.preset", "omnidirectional")
-_FREE_AIRFRAME = Airframe(preset="omnidirectional")
 _VEHICLE = {
     "airframe.tilt_max_deg": "tilt limit (deg)",
     "airframe.mount_deg": "antenna mount (deg)",
@@ -179,7 +178,7 @@ def _keys(member: GroundPoint | NoFlyZone) -> dict[str, str]:
 
 
 def _vehicle_entries(scenario: Scenario) -> Iterator[Entry]:
-    airframe, airspace = scenario.airframe or _FREE_AIRFRAME, scenario.airspace
+    airframe, airspace = scenario.airframe or Airframe(preset="omnidirectional"), scenario.airspace
     tilt_deg = math.degrees(airframe.tilt_max_rad)
     values = (
         _ANY if tilt_deg >= 180.0 else tilt_deg,

@@ -16,23 +16,15 @@ from nullpose.studio.guard import look_html
 from nullpose.studio.look import LIGHT, Look
 from nullpose.studio.opening import LOOPBACK, open_server, unannounced
 from nullpose.studio.state import State
-from nullpose.studio.toml_like import toml_like
 
 if TYPE_CHECKING:
     from viser import CameraHandle
-
-_PHONE_PX = {"image_width": 390, "image_height": 844}
 
 _ON_A_PHONE = """if (innerWidth < 600 && innerWidth < innerHeight) {
   const seen = { initialCameraPosition: %s, initialCameraLookAt: %s }, { get } = URLSearchParams.prototype;
   URLSearchParams.prototype.get = function (name) { return seen[name]?.join() ?? get.call(this, name); };
 }"""
 """Gives viser, which asks the address of a page for it, a camera that sees the whole scene on a phone."""
-
-
-def scenario_toml(state: State) -> bytes:
-    """Write the scene as a scenario file, in the text of the file that it is from."""
-    return toml_like(state.text, state.scenario).encode()
 
 
 def pose_json(state: State) -> bytes:
@@ -98,7 +90,7 @@ def scene_html(state: State, look: Look = LIGHT, camera: CameraHandle | None = N
         stage.eye_m = first.position
         stage.render(replace(state, selected=None, pointed=None))
         page = str(server.scene.as_html(dark_mode=look.dark))
-        phone = SimpleNamespace(fov=first.fov, **_PHONE_PX)
+        phone = SimpleNamespace(image_width=390, image_height=844)
         aim(phone, state.scenario, pose)
     finally:
         with unannounced():

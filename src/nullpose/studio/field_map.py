@@ -15,7 +15,7 @@ from nullpose.physics import Pose, antenna_gain
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
 from nullpose.solver.background_compiler import BackgroundCompiler
-from nullpose.studio.answer import Answer
+from nullpose.studio.answer import Answer, Event
 from nullpose.studio.case import new_scenario
 from nullpose.studio.look import scale_range
 from nullpose.study import Field, value_map
@@ -46,16 +46,14 @@ class Scale(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FieldMap:
+class FieldMap(Event):
     """The two maps of a version of the scene.
 
     Args:
-        version: the version of the scene.
         best: the objective at the best axis of each position, on a plane at the drone's altitude.
         footprint: the drone's gain over the path loss of a node's link, on the ground.
     """
 
-    version: int
     best: Field
     footprint: Field
 

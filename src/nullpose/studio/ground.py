@@ -22,7 +22,7 @@ from nullpose.study.value_map import map_extent_m
 
 FloatArray = NDArray[np.float64]
 
-_CROWD = 8  # of more nodes than this only the worst, the selected and the one pointed at have labels
+CROWD = 4  # with more nodes than this only the worst, the selected and the point pointed at have labels
 _LABELS = ((0.0, 0.0, 0.062), "bottom-center"), ((0.0, 0.035, 0.0), "center-left")
 """Where a point has its name, sizes of the scene; a jammer's is beside it, clear of nodes' above."""
 _RINGS = np.array([0.4, 0.7, 1.0])  # around a jammer, sizes of the largest
@@ -33,13 +33,13 @@ _CROSS = np.array([[[-1, 0, 0], [1, 0, 0]], [[0, -1, 0], [0, 1, 0]]])
 
 def scene_size_m(scenario: Scenario) -> float:
     """Return the larger side of the ground that the points take up with their margin, metres."""
-    low, high = _extent_m(scenario)
+    low, high = map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
     return float(np.max(high - low))
 
 
 def grid_m(scenario: Scenario) -> tuple[FloatArray, FloatArray, float]:
     """Return the low and the high corner, each (2,), of the grid on the ground, and its step, metres."""
-    low, high = _extent_m(scenario)
+    low, high = map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
     step_m = float(np.diff(round_steps(0.0, float(np.max(high - low)), 12))[0])
     return step_m * np.floor(low / step_m), step_m * np.ceil(high / step_m), step_m
 
@@ -55,10 +55,6 @@ def flight_box_m(scenario: Scenario) -> FloatArray:
     """Return the low and the high corner, (2, 2), of the airspace that is drawn, metres."""
     (low, high, _), airspace = grid_m(scenario), scenario.airspace
     return np.stack([np.maximum(low, airspace.lower_m[:2]), np.minimum(high, airspace.upper_m[:2])])
-
-
-def _extent_m(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
-    return map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
 
 
 def ground_shapes(state: State, size_m: float, look: Look) -> Shapes:
@@ -138,7 +134,9 @@ def ticks_m(scenario: Scenario) -> list[tuple[str, float, float]]:
         ("east (m)", middle[0], low[1] - far_m),
         ("north (m)", high[0] + far_m, middle[1]),
         *((f"{x:g}", x, low[1] - near_m) for x in east[::every]),
-        *((f"{y:g}", high[0] + near_m, y) for y in north[::every]),
+        *(
+            (f"{y:g}", high[0] + near_m, y) for y in north[::every][1:]
+        ),  # the first would touch the last of the others
     ]
 
 
@@ -162,14 +160,13 @@ def _airspace(scenario: Scenario, look: Look) -> Shapes:
     }
     for i, zone in enumerate(airspace.no_fly):
         low_m, high_m = max(0.0, zone.floor_m), max(0.0, zone.floor_m, min(ceiling_m, zone.ceiling_m))
-        outline = zone_outline_m(zone)
-        floor = mesh(
-            level_mesh(shapely.Polygon(outline), low_m), look.colours["zone"], opacity=0.25, side="double"
-        )
-        edges = lines(prism_edges(outline, low_m, high_m), look.colours["zone"], 1.8)
-        top = label(f"no-fly {zone.name}", (*outline.mean(axis=0), high_m))
-        parts = {"floor": floor, "edges": edges, "label": top}
-        shapes |= {f"/airspace/zone-{i}/{part}": shape for part, shape in parts.items()}
+        outline, name, colour = zone_outline_m(zone), f"/airspace/zone-{i}", look.colours["zone"]
+        floor = level_mesh(shapely.Polygon(outline), low_m)
+        shapes |= {
+            f"{name}/floor": mesh(floor, colour, opacity=0.25, side="double"),
+            f"{name}/edges": lines(prism_edges(outline, low_m, high_m), colour, 1.8),
+            f"{name}/label": label(f"no-fly {zone.name}", (*outline.mean(axis=0), high_m)),
+        }
     return shapes
 
 
@@ -189,14 +186,11 @@ def _buildings(buildings: tuple[Building, ...], colour: Rgb) -> Shapes:
 
 def _label(key: Key, point: GroundPoint, state: State) -> tuple[str, bool]:
     """Return a point's name, for a node with its SINR, and whether it is written large."""
-    answer, nodes = state.current(state.case), len(state.scenario.nodes)
-    is_roomy = nodes <= _CROWD
-    if answer is None or key[0] != "nodes":
-        return point.name, is_roomy and key[0] == "jammers"
-    worst = answer.worst_nodes
-    is_worst = point.name in worst
+    answer = state.current(state.case) if key[0] == "nodes" else None
+    nodes, worst = len(state.scenario.nodes), frozenset() if answer is None else answer.worst_nodes
+    is_roomy, is_worst = nodes <= CROWD, point.name in worst
     if not (is_roomy or is_worst or key in (state.selected, state.pointed)):
         return "", False
-    sinr = f" {signed(answer.result.links[key[1]].sinr_db)} dB"
+    sinr = "" if answer is None else f" {signed(answer.result.links[key[1]].sinr_db)} dB"
     note = ", worst" if is_roomy and is_worst and len(worst) < nodes else ""
-    return f"{point.name}{sinr}{note}", is_roomy and is_worst
+    return f"{point.name}{sinr}{note}", is_roomy and (is_worst or key[0] == "jammers")

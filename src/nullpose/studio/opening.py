@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 LOOPBACK = "127.0.0.1"
 """The address that only programs on this machine reach."""
 
-_M_TRIM_THRESHOLD = -1  # of glibc's malloc.h
-_KEPT_BYTES = 1 << 20
 _PIP = f"{sys.executable} -m pip install"
 _INSTALL = f"the studio needs viser, which is not installed; run: {_PIP} 'nullpose[studio]'"
 
@@ -70,29 +68,16 @@ def open_server(host: str, port: int) -> tuple[ViserServer, str]:
             f"viser {viser.__version__} opens its server in a way that nullpose cannot guard; any web page "
             f"could use the studio; run: {_PIP} 'viser>=1.1,<2'"
         )
-    if port not in (0, server.get_port()):  # taken in the meantime, and viser moved on to the next
-        server.stop()
-        raise UsageError(_port_in_use(port))
     server.request_share_url = lambda verbose=True: None  # a page could ask for a tunnel from the internet
     # no shadows, nothing mirrored: without a graphics card those two took half of the time of a picture
     server.scene.configure_default_lights(cast_shadow=False)
     server.scene.configure_environment_map(hdri=None)
     server.scene.add_light_ambient("/light", intensity=1.6)
-    _keep_little()
-    return server, guard.address(server.get_port())
-
-
-def _keep_little() -> None:
-    """Let glibc give back to the system what long proofs free.
-
-    Its own setting follows the largest array freed so far: up to 64 MB then stay with every thread's heap.
-    """
+    # what long proofs free goes back to the system: glibc's own setting follows the largest array freed, and
+    # up to 64 MB then stay with every thread's heap
     with suppress(AttributeError, OSError, TypeError):  # another C library has no such setting
-        ctypes.CDLL(None).mallopt(_M_TRIM_THRESHOLD, _KEPT_BYTES)
-
-
-def _port_in_use(port: int) -> str:
-    return f"--port: {port} is in use by another program; choose another, as in --port {port + 1}"
+        ctypes.CDLL(None).mallopt(-1, 1 << 20)  # M_TRIM_THRESHOLD of malloc.h, bytes
+    return server, guard.address(server.get_port())
 
 
 def _require_free(host: str, port: int) -> str:
@@ -108,7 +93,9 @@ def _require_free(host: str, port: int) -> str:
     except OSError as error:
         if isinstance(error, socket.gaierror) or error.errno in _NO_SUCH_ADDRESS:
             raise UsageError(f"--host: given {host}; allowed: a name or address of this machine") from error
-        raise UsageError(_port_in_use(port)) from error
+        raise UsageError(
+            f"--port: {port} is in use by another program; choose another, as in --port {port + 1}"
+        ) from error
     return str(address[0])
 
 

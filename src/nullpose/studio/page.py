@@ -26,13 +26,15 @@ from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.panel import Panel, by_hand
 from nullpose.studio.picking import clicked, dragged_to_m
 from nullpose.studio.reading import reading
-from nullpose.studio.readout import failure_html, macros
+from nullpose.studio.readout import macros
 from nullpose.studio.session import History, Session
 from nullpose.studio.stage import Drag, Stage
 from nullpose.studio.state import Key, State
+from nullpose.studio.toml_like import toml_like
 
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
+_NARROW_PX = 600.0  # width of the canvas below which it is a phone's
 _NOTICE_S = 8.0  # how long a notice stays
 
 _log = logging.getLogger("nullpose.studio")
@@ -86,7 +88,7 @@ class Page:
         try:
             self.session.change(lambda state: replace(change(state), faults=""), gesture)
         except ScenarioError as error:
-            faults = failure_html(error, name)
+            faults = str(macros().faults(error, name))
             self.session.change(lambda state: replace(state, faults=faults))
             return False
         return True
@@ -99,6 +101,7 @@ class Page:
             aim(camera, state.scenario, answer.result.pose if answer else None, turns=state.is_presented)
         self._aimed, self.stage.eye_m = (state.opened, answer is not None), camera.position
         self._fit = canvas_px(camera), np.array(camera.position)
+        self.stage.is_narrow = self._fit[0][0] < _NARROW_PX
 
     def render(self) -> None:
         """Send the browser what differs between the state and what it shows."""
@@ -155,11 +158,10 @@ class Page:
 
     def _listen(self) -> None:
         panel, session, client = self.panel, self.session, self._client
-        switches = ("map_name", "has_pattern", "has_shadows")
         controls: dict[str, Callable[[Any], object]] = {
-            name: partial(self._switch, name) for name in switches
-        }
-        controls |= {
+            "map_name": lambda value: self.change(lambda state: replace(state, map_name=value)),
+            "has_pattern": lambda value: self.change(lambda state: replace(state, has_pattern=value)),
+            "has_shadows": lambda value: self.change(lambda state: replace(state, has_shadows=value)),
             "case": lambda label: self.change(lambda state: state.with_case(case_named(label))),
             "compared": lambda label: self.change(
                 lambda state: replace(state, compared=None if label == NO_CASE else case_named(label))
@@ -175,7 +177,9 @@ class Page:
             "new": lambda: self.change(lambda state: state.with_scenario(new_scenario(), "")),
             "aim": self.aim,
             "present": self._present,
-            "save": lambda: self._export("scenario.toml", exports.scenario_toml),
+            "save": lambda: self._export(
+                "scenario.toml", lambda state: toml_like(state.text, state.scenario).encode()
+            ),
             "pose": lambda: self._export("pose.json", exports.pose_json),
             "figure": lambda: self._export("figure.png", exports.figure_png),
             "html": lambda: self._export(
@@ -192,7 +196,7 @@ class Page:
             ("Undo", session.undo, "Z", "cmd/ctrl"),
             ("Redo", session.redo, "Z", "cmd/ctrl+shift"),
             ("Delete what is selected", self._delete, "delete", None),
-            ("End adding and presenting, select nothing", self._escape, "escape", None),
+            ("End adding and presenting, select nothing", partial(self.take_tool, ""), "escape", None),
             ("Begin or end presenting", self._present, "P", None),
         ]
         for label, act, key, modifier in commands:
@@ -202,22 +206,15 @@ class Page:
         client.scene.on_click()(self._clicked)
 
     def take_tool(self, tool: str) -> None:
-        """Take up a tool, or none, which selects nothing either.
+        """Take up a tool, or none, which selects nothing either; presenting ends.
 
         Args:
             tool: what is to be added; empty for nothing.
         """
-        self.change(lambda state: replace(state, tool=tool, selected=None, corners_m=()))
-
-    def _escape(self) -> None:
-        self.take_tool("")
-        self._switch("is_presented", False)
+        self.change(lambda state: replace(state, tool=tool, selected=None, corners_m=(), is_presented=False))
 
     def _present(self) -> None:
         self.change(lambda state: replace(state, is_presented=not state.is_presented))
-
-    def _switch(self, name: str, value: Any) -> None:
-        self.change(lambda state: replace(state, **{name: value}))
 
     def _slid(self, values: tuple[float]) -> None:
         now = time.monotonic()

@@ -14,7 +14,7 @@ from nullpose.studio.case import cases_of
 from nullpose.studio.controls import NO_CASE, TABS, Control
 from nullpose.studio.edits import Entry, entries_of
 from nullpose.studio.plot import power_plot_svg
-from nullpose.studio.readout import failure_html, macros, readout_html
+from nullpose.studio.readout import macros, readout_html
 from nullpose.studio.session import History
 from nullpose.studio.state import POWER_DB
 
@@ -46,7 +46,7 @@ class Panel(SimpleNamespace):
         self.tip = gui.add_html("", visible=False)
         self.pointer = gui.add_text("Pointer", "", visible=False)
         self.readout = gui.add_html("")
-        self.faults = gui.add_html(failure_html(None))
+        self.faults = gui.add_html("")
         self.selected_values = gui.add_folder("Selected", visible=False)
         with self.selected_values:
             hint = "Take it out of the scene (key: Delete)."
@@ -74,32 +74,10 @@ class Panel(SimpleNamespace):
         Args:
             history: of the page.
         """
-        state = history.present
-        labels = tuple(case.label for case in cases_of(state.scenario))
+        state, answer = history.present, history.present.current(history.present.case)
+        labels, power_db = tuple(case.label for case in cases_of(state.scenario)), state.power_db
         others = (NO_CASE, *(label for label in labels if label != state.case.label))
-        put(self.case, options=labels, value=state.case.label)
-        put(self.compared, options=others, value=NO_CASE if state.compared is None else state.compared.label)
-        power_db = state.power_db
-        put(self.power, disabled=power_db is None)
-        put(self.power_text, disabled=power_db is None, value=state.power_text)
-        if power_db is not None:
-            put(self.power, value=(round(min(max(power_db, POWER_DB[0]), POWER_DB[1]), 6),))
-        for name in ("map_name", "has_pattern", "has_shadows"):
-            put(getattr(self, name), value=getattr(state, name))
-        put(self.has_shadows, visible=state.scenario.prisms is not None)
-        put(self.undo, disabled=not history.past)
-        put(self.redo, disabled=not history.future)
-        entries: tuple[Entry, ...] = () if state.selected is None else entries_of(state, state.selected)
-        put(self.selected_values, visible=bool(entries))
-        if entries:
-            put(self.selected_values, label=f"Selected: {entries[0].text}")
-        self._selected.render(entries)
-        self._vehicle.render(entries_of(state, None))
-        put(self.tool, content=str(macros().tool(state)))
-        put(self.faults, content=state.faults or failure_html(None))
-        put(self.readout, content=readout_html(state))
-        put(self.overlay, content=card_html(state))
-        answer = state.current(state.case)
+        entries = () if state.selected is None else entries_of(state, state.selected)
         svg = power_plot_svg(
             state.latest(PowerCurve),
             version=state.version,
@@ -108,7 +86,31 @@ class Panel(SimpleNamespace):
             value=answer.shown_value if answer and state.dragged is None else None,
             unit=Quantity.of(state.scenario).unit,
         )
-        put(self.plot, content=svg)
+        shown: dict[str, dict[str, object]] = {
+            "case": {"options": labels, "value": state.case.label},
+            "compared": {"options": others, "value": state.compared.label if state.compared else NO_CASE},
+            "power": {"disabled": power_db is None},
+            "power_text": {"disabled": power_db is None, "value": state.power_text},
+            "map_name": {"value": state.map_name},
+            "has_pattern": {"value": state.has_pattern},
+            "has_shadows": {"value": state.has_shadows, "visible": state.scenario.prisms is not None},
+            "undo": {"disabled": not history.past},
+            "redo": {"disabled": not history.future},
+            "selected_values": {"visible": bool(entries)},
+            "tool": {"content": str(macros().tool(state))},
+            "faults": {"content": state.faults or str(macros().faults(None))},
+            "readout": {"content": readout_html(state)},
+            "overlay": {"content": card_html(state)},
+            "plot": {"content": svg},
+        }
+        if power_db is not None:
+            shown["power"]["value"] = (round(min(max(power_db, POWER_DB[0]), POWER_DB[1]), 6),)
+        if entries:
+            shown["selected_values"]["label"] = f"Selected: {entries[0].text}"
+        for name, values in shown.items():
+            put(getattr(self, name), **values)
+        self._selected.render(entries)
+        self._vehicle.render(entries_of(state, None))
 
 
 class _Fields:
@@ -125,9 +127,7 @@ class _Fields:
 
     def render(self, entries: Iterable[Entry]) -> None:
         """Show values; what is being typed stays while they are as they were."""
-        before, self._entries = self._entries, {(entry.label, entry.options): entry for entry in entries}
-        if self._entries == before:
-            return
+        self._entries = {(entry.label, entry.options): entry for entry in entries}
         for look, field in self._fields.items():
             put(field, visible=look in self._entries)
         for place, (look, entry) in enumerate(self._entries.items()):

@@ -19,7 +19,6 @@ _NEAR_RAD = 0.025  # a point is hit within so much: about a finger's breadth on 
 _TALL = 0.06  # of the scene's size: a point's mark with its label
 _MOST_SIZES = 20.0  # of the scene: farther away there is no ground to build on
 _CLOSE = 0.03  # of the scene's size: so near its first corner a click closes a fence
-_LEAST_CORNERS = 3
 
 
 def clicked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) -> State:
@@ -44,7 +43,7 @@ def clicked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike)
         added = with_added(state, state.tool, place_m, size_m)
         return replace(added, tool="", selected=(kind, len(added.members(kind)) - 1))
     corners = state.corners_m
-    can_close = state.tool == FENCE and len(corners) >= _LEAST_CORNERS
+    can_close = state.tool == FENCE and len(corners) > 2
     if can_close and np.linalg.norm(place_m - corners[0]) < _CLOSE * size_m:
         return replace(with_fence(state, corners), tool="", corners_m=())
     return replace(state, corners_m=(*corners, (float(place_m[0]), float(place_m[1]))))

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
+import numpy as np
+
 from nullpose.problem.schemes import Scheme
 from nullpose.report.figures.style import CURVES, curve_of
 from nullpose.report.numbers import MINUS
@@ -60,8 +62,10 @@ def power_plot_svg(
         now = x, y if math.isfinite(y) else None
     is_old = curve is None or curve.version != version
     state = "outdated" if is_old else "current" if curve is not None and curve.complete else "growing"
-    powers_db = range(int(POWER_DB[0]), int(POWER_DB[1]) + 1, 10)
-    powers = [(frame.at(tick_db, 0.0)[0], f"{tick_db}".replace("-", MINUS)) for tick_db in powers_db]
+    powers = [
+        (frame.at(tick_db, 0.0)[0], f"{tick_db:g}".replace("-", MINUS))
+        for tick_db in np.arange(POWER_DB[0], POWER_DB[1] + 1.0, 10.0)
+    ]
     steps = round_steps(*frame, 6)[1:-1]
     values = [(frame.at(0.0, step)[1], f"{step:g}".replace("-", MINUS)) for step in steps]
     curves = [_curve(scheme, points, frame) for scheme, points in lines.items()]

@@ -51,9 +51,8 @@ def reading(
 
 
 def _link_lines(answer: Answer, key: Key, point_m: ArrayLike) -> list[str]:
-    result = answer.result
-    pose, antenna = result.pose, result.scenario.antenna_record
-    lines = [f"SINR {signed(result.links[key[1]].sinr_db)} dB"] if key[0] == "nodes" else []
+    pose, antenna = answer.result.pose, answer.result.scenario.antenna_record
+    lines = [f"SINR {signed(answer.result.links[key[1]].sinr_db)} dB"] if key[0] == "nodes" else []
     lines.append(f"{distance_m(pose, point_m):.1f} m from the drone")
     if antenna.is_quadratic:
         lines.append(f"{math.degrees(axis_angle_rad(pose, point_m)):.1f}\u00b0 off the null")

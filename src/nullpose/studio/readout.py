@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nullpose.errors import ScenarioError
 from nullpose.physics import Pose
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.look import COLOURS, css, either
@@ -88,8 +87,8 @@ def attitude_words(pose: Pose) -> str:
         pose: of the drone.
     """
     angles = np.degrees([pose.roll_rad, pose.pitch_rad, pose.yaw_rad, pose.tilt_rad])
-    words = "roll {}\u00b0, pitch {}\u00b0, yaw {}\u00b0 (tilt {}\u00b0)"
-    return words.format(*(signed(angle, 1) for angle in angles))
+    roll, pitch, yaw, tilt = (f"{signed(angle, 1)}\N{DEGREE SIGN}" for angle in angles)
+    return f"roll {roll}, pitch {pitch}, yaw {yaw} (tilt {tilt})"
 
 
 def readout_html(state: State) -> str:
@@ -111,16 +110,6 @@ def _difference(state: State) -> tuple[str, str] | None:
         robust, other = "AB" if first.case.robust else "BA"
         unlike = f" ({robust} guaranteed, {other} without errors)"
     return f"A over B: {signed(first.shown_value - second.shown_value)} {first.unit}", unlike
-
-
-def failure_html(error: ScenarioError | None, name: str = "") -> str:
-    """Write the faults of a scenario as a list, each with its path; nothing without an error.
-
-    Args:
-        error: what was wrong, or None.
-        name: what was refused.
-    """
-    return str(macros().faults(error, name))
 
 
 @cache

@@ -6,7 +6,8 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from nullpose.studio.state import Event, State
+from nullpose.studio.answer import Event
+from nullpose.studio.state import State
 from nullpose.studio.worker import REST_S, Worker
 
 _MOST_STEPS = 200

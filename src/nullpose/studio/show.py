@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import sys
-import tempfile
 import webbrowser
 from html import escape
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario, require_scenario
@@ -54,11 +53,10 @@ def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> 
         frame = f'<iframe srcdoc="{escape(page)}" width="100%" height="{height}" style="border:0"></iframe>'
         ipython.display.display(ipython.display.HTML(f"<div>{frame}</div>"))
         return None
-    handle, name = tempfile.mkstemp(prefix="nullpose-", suffix=".html")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
+    with NamedTemporaryFile("w", encoding="utf-8", prefix="nullpose-", suffix=".html", delete=False) as file:
         file.write(page)
-    webbrowser.open(Path(name).as_uri())
-    return Path(name)
+    webbrowser.open(Path(file.name).as_uri())
+    return Path(file.name)
 
 
 def _page(result: Result, *, dark: bool) -> str:

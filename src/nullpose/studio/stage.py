@@ -43,6 +43,7 @@ class Stage:
 
     Attributes:
         size_m: of the scene as it is drawn, metres.
+        is_narrow: whether the canvas is a phone's, with space for small and few labels only.
         eye_m: (3,) where the camera stands, towards which the patterns are open, metres.
     """
 
@@ -50,7 +51,7 @@ class Stage:
         self._scene, self._look, self._on_drag = scene, look, on_drag
         self._shapes: Shapes = {}
         self._handles: dict[str, SceneNodeHandle] = {}
-        self.size_m = np.inf
+        self.size_m, self.is_narrow = np.inf, False
         self.eye_m: ArrayLike = np.ones(3)
 
     def render(self, state: State) -> None:
@@ -69,7 +70,7 @@ class Stage:
         if state.scale is not None:
             contour = self._look.colours["contour"] if state.scenario.prisms is None else None
             shapes |= _map_shapes(state.scale, self._look.map_alpha, contour)
-        self._show(shapes)
+        self._show(_narrowed(shapes) if self.is_narrow else shapes)
 
     def _show(self, shapes: Shapes) -> None:
         for name in self._shapes.keys() - shapes.keys():
@@ -96,10 +97,20 @@ class Stage:
             handle.on_drag("left", modifier="shift")(dragged)
 
 
+def _narrowed(shapes: Shapes) -> Shapes:
+    """Leave out the contours' labels, and make all others smaller."""
+    small = {"font_screen_scale": 0.75}
+    return {
+        name: shape._replace(values={**shape.values, **small}) if shape.kind == "label" else shape
+        for name, shape in shapes.items()
+        if not name.startswith("/map/level")
+    }
+
+
 def _same(before: object, value: object) -> bool:
-    if before is value:
-        return True
-    return np.array_equal(np.asarray(before), value) if isinstance(value, np.ndarray) else before == value
+    if isinstance(value, np.ndarray):
+        return before is value or np.array_equal(np.asarray(before), value)
+    return bool(before == value)
 
 
 @lru_cache(8)

@@ -15,7 +15,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.physics import from_db, to_db
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import GroundPoint, NoFlyZone, Scenario
-from nullpose.studio.answer import Answer, Notice, PowerCurve, Progress, status_words
+from nullpose.studio.answer import Answer, Event, Notice, status_words
 from nullpose.studio.case import OPTIMUM, Case, cases_of
 from nullpose.studio.field_map import MAPS, FieldMap, Scale
 from nullpose.studio.toml_like import toml_like
@@ -24,8 +24,6 @@ Kind = Literal["nodes", "jammers", "eavesdroppers", "no_fly"]
 """A list of the scenario, the last one being that of its airspace."""
 Key = tuple[Kind, int]
 """A ground point or a no-fly zone: which list of the scenario it is in, and where there."""
-Event = Answer | Notice | FieldMap | PowerCurve | Progress
-"""What a worker finds for a version of the scene."""
 
 KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "no_fly")
 _SCENE = ("scenario", "case", "compared", "text", "opened")

@@ -22,7 +22,6 @@ _ROBUST_LIMIT_S = 20.0
 _TILT_LIMIT_S = 5.0  # of each proof
 _SHARE = 0.99  # of the best value, with which a tilt suffices
 _CURVE_POINTS = 15
-_CURVE_SHOWN = 4  # a growing plot is drawn after so many points more
 _QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
 
 
@@ -112,7 +111,5 @@ def power_curves(state: State, go_on: Callable[[], None] = lambda: None) -> Iter
         for scheme in schemes:
             go_on()
             rows.append(ResultRow.of(power_db, solve(scenario, scheme, certify=False)))
-        complete = done == _CURVE_POINTS
-        if complete or done % _CURVE_SHOWN == 0:
-            table = ResultTable(path=POWER_LABEL, rows=tuple(rows))
-            yield PowerCurve(version=state.version, table=table, complete=complete)
+        table = ResultTable(path=POWER_LABEL, rows=tuple(rows))
+        yield PowerCurve(version=state.version, table=table, complete=done == _CURVE_POINTS)

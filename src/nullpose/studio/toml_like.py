@@ -57,13 +57,11 @@ def toml_like(text: str, scenario: Scenario) -> str:
 
 def _without_files(text: str) -> str:
     """Return the text without the keys that name files, and without the tables of files of buildings."""
-    if not _BUILDINGS_FILE.search(text):
-        return _FILES.sub("", text)
     blocks = _blocks(f"{text}\n")
     for block in blocks:
         if block.path == "buildings" and _BUILDINGS_FILE.search(block.body):
             block.header = block.body = ""
-    return _FILES.sub("", _joined(blocks))
+    return _FILES.sub("", _joined(blocks)[:-1])
 
 
 def _joined(blocks: list[_Block]) -> str:

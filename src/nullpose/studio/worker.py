@@ -13,10 +13,10 @@ from typing import TypeVar
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
 from nullpose.solver import announce_compiling
-from nullpose.studio.answer import Answer, Notice, Progress
+from nullpose.studio.answer import Event, Notice, Progress
 from nullpose.studio.case import Case
 from nullpose.studio.field_map import field_map, map_compiler
-from nullpose.studio.state import Event, State
+from nullpose.studio.state import State
 from nullpose.studio.steps import least_tilts, power_curves, proved_answers, quick_answers
 
 REST_S = 0.35
@@ -97,12 +97,13 @@ class Worker:
             # published even if the hand has moved on since: else nothing would move while it does
             self._publish_all(state, case, quick_answers(state, case), late=True)
         self._rest()
-        best: Answer | None = None
-        for case in state.cases:
-            proved = self._publish_all(state, case, proved_answers(state, case, self._progress(state, case)))
-            best = best or proved
+        proved = [
+            self._publish_all(state, case, proved_answers(state, case, self._progress(state, case)))
+            for case in state.cases
+        ]
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._publish_all(state, state.case, power_curves(state, self._go_on))
+        best = next(filter(None, proved), None)
         if best is not None:
             while map_compiler().is_busy():
                 self._rest()
