@@ -55,6 +55,20 @@ class UsageError(NullposeError, ValueError):
     """A request that does not fit its scenario or its options, such as a null without a jammer."""
 
 
+def require_usage(holds: object, message: str) -> None:
+    """Raise a UsageError unless a condition holds.
+
+    Args:
+        holds: the condition.
+        message: what was given, what is allowed and what to try.
+
+    Raises:
+        UsageError: it does not hold.
+    """
+    if not holds:
+        raise UsageError(message)
+
+
 class WrongTypeError(UsageError, TypeError):
     """A value of a type that does not belong there, such as a path where a scenario is asked for."""
 

@@ -46,8 +46,8 @@ def test_a_figure_is_drawn(run: Run, paper: str, tmp_path: Path, width: tuple[st
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--reach", "0"), "share: given 0.0; allowed: above 0 to 1"),
-        (("--reach", "1.2"), "share: given 1.2; allowed: above 0 to 1"),
+        (("--reach", "0"), "share (--reach): given 0.0; allowed: above 0 to 1"),
+        (("--reach", "1.2"), "share (--reach): given 1.2; allowed: above 0 to 1"),
         (("--loss-db", "0"), "--loss-db: given 0.0; allowed: more than 0 dB"),
         (("--loss-db", "1", "--reach", "0.9"), "leave out one of the two"),
         (("--mount", "95"), "mount: given 95.0 degrees; allowed: 0"),

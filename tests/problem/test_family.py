@@ -56,7 +56,7 @@ def test_kernels_get_one_type_of_number(family: Family, name: str, given: type) 
 def test_a_family_is_frozen(family: Family) -> None:
     """No field can be replaced, and no array written to."""
     for name in FIELDS:
-        with pytest.raises(AttributeError, match="frozen"):
+        with pytest.raises(AttributeError):
             setattr(family, name, getattr(family, name))
     for name in ARRAYS:
         with pytest.raises(ValueError, match="read-only"):

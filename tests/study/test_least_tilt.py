@@ -142,8 +142,8 @@ def test_values_by_angle_are_what_level_vehicles_reach() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"share": 0.0}, "share: given 0.0; allowed: above 0 to 1"),
-        ({"share": 1.5}, "share: given 1.5; allowed: above 0 to 1"),
+        ({"share": 0.0}, r"share \(--reach\): given 0.0; allowed: above 0 to 1"),
+        ({"share": 1.5}, r"share \(--reach\): given 1.5; allowed: above 0 to 1"),
         ({"mounts_deg": [91.0]}, "mount: given 91.0 degrees; allowed: 0"),
     ],
 )

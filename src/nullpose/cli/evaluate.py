@@ -14,7 +14,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nullpose.scenario import Scenario
-from nullpose.cli.options import JsonOutput, Off, ProofOptions, SceneOptions, error_sizes, expanded
+from nullpose.cli.options import (
+    JsonOutput,
+    Off,
+    ProofOptions,
+    SceneOptions,
+    error_sizes,
+    expanded,
+    numbers_of,
+)
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.printing import say
 from nullpose.cli.progress import GapBar
@@ -62,21 +70,22 @@ def evaluate(
     json_output: JsonOutput = False,
 ) -> None:
     """Evaluate poses of your own against the upper bound."""
-    from nullpose.errors import UsageError
+    from nullpose.errors import require_usage
     from nullpose.physics import Pose, Poses
     from nullpose.report.results import evaluation_view
     from nullpose.scenario.plausibility import close_to_degrees
     from nullpose.solver import solve
     from nullpose.solver.options import SolveOptions
     from nullpose.study import evaluate_against, poses_from_csv
+    from nullpose.study.evaluation import require_one_antenna
 
-    if [pose, pose_lat_lon, poses].count(None) != 2 or (poses is not None and attitude is not None):
-        raise UsageError(
-            "evaluate: give either --pose or --pose-lat-lon, with --attitude unless it is 0,0,0, or --poses"
-        )
+    is_one_way = [pose, pose_lat_lon, poses].count(None) == 2 and (poses is None or attitude is None)
+    require_usage(
+        is_one_way,
+        "evaluate: give either --pose or --pose-lat-lon, with --attitude unless it is 0,0,0, or --poses",
+    )
     scenario = scene.read()
-    if scenario.array is not None:
-        raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
+    require_one_antenna(scenario, "evaluate")
     mount_rad = 0.0 if scenario.airframe is None else scenario.airframe.mount_rad
     candidates: Poses | list[Pose]
     if poses is not None:
@@ -114,19 +123,6 @@ def _placed(scenario: Scenario, text: str) -> NDArray[np.float64]:
 
 
 def _three(option: str, text: str) -> NDArray[np.float64]:
-    """Read three numbers that are separated by commas.
-
-    Raises:
-        UsageError: they are not.
-    """
     import numpy as np
 
-    from nullpose.errors import UsageError
-
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
-        raise UsageError(f"{option}: given {text!r}; allowed: three numbers with commas, as in 3,24,8.5")
-    return np.array(numbers)
+    return np.array(numbers_of(option, text, "three numbers with commas, as in 3,24,8.5", 3))

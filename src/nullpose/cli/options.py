@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
@@ -27,6 +28,7 @@ class FigureWidth(StrEnum):
     PAGE_SERIF = "page-serif"
 
 
+REACH = 0.99  # of the omnidirectional value; :data:`nullpose.study.case.SHARE`, too slow to import for help
 MOUNTS = "0,45,90"  # degrees; the mounts that are looked at unless others are stated
 
 ScenarioFile = Annotated[
@@ -50,32 +52,11 @@ Overrides = Annotated[
 
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the random starts.")]
 
-Gap = Annotated[
-    float | None,
-    typer.Option(
-        "--gap",
-        metavar="G",
-        help="Stop the proof at this relative gap: (bound - value) / value, as power ratios.",
-        show_default="1e-6 for 1 to 3 nodes, 1e-4 for 4 to 20, 1e-3 for more",
-    ),
-]
-
 TimeLimit = Annotated[
     float, typer.Option("--time-limit", metavar="S", help="Stop each proof after S seconds.")
 ]
 
-NodeLimit = Annotated[
-    int, typer.Option("--node-limit", metavar="N", help="Stop each proof after N branch-and-bound boxes.")
-]
-
 Fast = Annotated[bool, typer.Option("--fast", help="No proof, only a search from more starts.")]
-
-Robust = Annotated[
-    bool,
-    typer.Option(
-        "--robust", help="Maximise the value guaranteed under the scenario's errors; default gap 1e-2."
-    ),
-]
 
 Off = Annotated[
     str | None,
@@ -85,41 +66,6 @@ Off = Annotated[
         help="The largest errors of the table If things are off, as in attitude_deg=2,position_m=3,"
         "jammers_m=200, and of a robust solve if the scenario states none.",
         show_default="attitude_deg=1,position_m=1,jammers_m=10",
-    ),
-]
-
-NullJammer = Annotated[
-    str | None,
-    typer.Option(
-        "--null-jammer",
-        metavar="NAME",
-        help="For zero-interference: the jammer to point the null at. Default: each is tried.",
-        show_default=False,
-    ),
-]
-
-CertificateFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--certificate",
-        metavar="FILE",
-        help="Check the proof and write it to FILE, for nullpose verify. FILE.gz is compressed.",
-        show_default=False,
-    ),
-]
-
-Verified = Annotated[
-    bool, typer.Option("--verify", help="Check the proof in interval arithmetic, as nullpose verify does.")
-]
-
-ExportFiles = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--export",
-        metavar="FILE",
-        help="Write the pose to FILE for another program, in the format of its ending: .json, .tum, .csv, "
-        ".geojson, .kml, .plan or .mcap. Can be repeated.",
-        show_default=False,
     ),
 ]
 
@@ -194,9 +140,19 @@ class SceneOptions:
 class ProofOptions:
     """The options of every verb that proves."""
 
-    gap: Gap = None
+    gap: Annotated[
+        float | None,
+        typer.Option(
+            "--gap",
+            metavar="G",
+            help="Stop the proof at this relative gap: (bound - value) / value, as power ratios.",
+            show_default="1e-6 for 1 to 3 nodes, 1e-4 for 4 to 20, 1e-3 for more",
+        ),
+    ] = None
     time_limit: TimeLimit = 60.0
-    node_limit: NodeLimit = 10**9
+    node_limit: Annotated[
+        int, typer.Option("--node-limit", metavar="N", help="Stop each proof after N branch-and-bound boxes.")
+    ] = 10**9
     seed: Seed = 0
 
     def keywords(self, fast: bool = False) -> SolveKeywords:
@@ -263,16 +219,25 @@ def mounts_of(text: str) -> tuple[float, ...]:
     Raises:
         UsageError: it is neither.
     """
+    allowed = "angles in degrees from 0 to 90, as in 0,45,90, or best"
+    return () if text.strip() == "best" else tuple(numbers_of("--mount", text, allowed))
+
+
+def numbers_of(option: str, text: str, allowed: str, count: int | None = None) -> list[float]:
+    """Read finite numbers that are separated by commas, so many if a count is stated.
+
+    Raises:
+        UsageError: they are not.
+    """
     from nullpose.errors import UsageError
 
-    if text.strip() == "best":
-        return ()
     try:
-        return tuple(float(part) for part in text.split(","))
+        numbers = [float(part) for part in text.split(",")]
     except ValueError:
-        raise UsageError(
-            f"--mount: given {text!r}; allowed: angles in degrees from 0 to 90, as in 0,45,90, or best"
-        ) from None
+        numbers = []
+    if not numbers or not all(map(math.isfinite, numbers)) or count not in (None, len(numbers)):
+        raise UsageError(f"{option}: given {text!r}; allowed: {allowed}")
+    return numbers
 
 
 def refuse(where: str, **options: object) -> None:

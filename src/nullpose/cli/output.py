@@ -12,7 +12,7 @@ import typer
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.printing import say
-from nullpose.errors import SolveError, UsageError
+from nullpose.errors import SolveError, require_usage
 
 if TYPE_CHECKING:
     from nullpose.cli.options import SceneOptions
@@ -115,8 +115,10 @@ def prepare_outputs(
         UsageError: a width without a figure; or the figure's name ends in none of .png, .svg and .pdf.
         OutputError: an output is an input or another output too, or it or its folder cannot be written.
     """
-    if width is not None and figure is None:
-        raise UsageError("--width: given without --figure; add --figure FILE, or leave out --width")
+    require_usage(
+        width is None or figure is not None,
+        "--width: given without --figure; add --figure FILE, or leave out --width",
+    )
     if figure is not None:
         from nullpose.report.figures.style import prepare_figure_file
 

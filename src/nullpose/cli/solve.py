@@ -10,18 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nullpose.cli.options import (
-    CertificateFile,
-    ExportFiles,
     Fast,
     FigureFile,
     FigureWidth,
     JsonOutput,
-    NullJammer,
     Off,
     ProofOptions,
-    Robust,
     SceneOptions,
-    Verified,
     Width,
     error_sizes,
     expanded,
@@ -49,12 +44,45 @@ def solve(
     ] = Scheme.OPTIMUM,
     proof: ProofOptions,
     fast: Fast = False,
-    robust: Robust = False,
+    robust: Annotated[
+        bool,
+        typer.Option(
+            "--robust", help="Maximise the value guaranteed under the scenario's errors; default gap 1e-2."
+        ),
+    ] = False,
     off: Off = None,
-    null_jammer: NullJammer = None,
-    certificate: CertificateFile = None,
-    verify: Verified = False,
-    export: ExportFiles = None,
+    null_jammer: Annotated[
+        str | None,
+        typer.Option(
+            "--null-jammer",
+            metavar="NAME",
+            help="For zero-interference: the jammer to point the null at. Default: each is tried.",
+            show_default=False,
+        ),
+    ] = None,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            "--certificate",
+            metavar="FILE",
+            help="Check the proof and write it to FILE, for nullpose verify. FILE.gz is compressed.",
+            show_default=False,
+        ),
+    ] = None,
+    verify: Annotated[
+        bool,
+        typer.Option("--verify", help="Check the proof in interval arithmetic, as nullpose verify does."),
+    ] = False,
+    export: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--export",
+            metavar="FILE",
+            help="Write the pose to FILE for another program, in the format of its ending: .json, .tum, "
+            ".csv, .geojson, .kml, .plan or .mcap. Can be repeated.",
+            show_default=False,
+        ),
+    ] = None,
     figure: FigureFile = None,
     width: Width = None,
     json_output: JsonOutput = False,

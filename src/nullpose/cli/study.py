@@ -113,14 +113,13 @@ def show(
     json_output: JsonOutput = False,
 ) -> None:
     """Print a scene of a study as a scenario file."""
-    from nullpose.errors import UsageError
+    from nullpose.errors import require_usage
     from nullpose.study.monte_carlo import draw_scene, scene_at, study_spec
 
     spec = study_spec(folder)
     scenario = draw_scene(spec, scene) if point is None else scene_at(spec, scene, point)
     if case is not None:
-        if case not in spec.case_names:
-            raise UsageError(f"case: given {case!r}; allowed: {', '.join(spec.case_names)}")
+        require_usage(case in spec.case_names, f"case: given {case!r}; allowed: {', '.join(spec.case_names)}")
         scenario = spec.cases[spec.case_names.index(case)].on(scenario)
     tell(scenario, lambda scene: scene.to_toml().removesuffix("\n"), json_output)
 

@@ -8,6 +8,7 @@ import typer
 
 from nullpose.cli.options import (
     MOUNTS,
+    REACH,
     AllowOutside,
     Fast,
     JsonOutput,
@@ -60,10 +61,10 @@ def sweep(
         float | None,
         typer.Option(
             "--reach",
-            metavar="SHARE",
-            help="In place of schemes: find the least tilt with which a vehicle reaches this share of the "
+            metavar="REACH",
+            help="In place of schemes: find the least tilt with which a vehicle reaches this times the "
             "omnidirectional value, for each mount.",
-            show_default="0.99, if mounts are stated",
+            show_default=f"{REACH}, if --mount is stated",
         ),
     ] = None,
     mount: Annotated[
@@ -72,7 +73,7 @@ def sweep(
             "--mount",
             metavar="DEG,DEG",
             help="Mounts of the antenna for the least tilt: 0 upright, 90 flat.",
-            show_default=f"{MOUNTS}, if a share is stated",
+            show_default=f"{MOUNTS}, if --reach is stated",
         ),
     ] = None,
     proof: ProofOptions,
@@ -85,15 +86,15 @@ def sweep(
 
     It writes a table (CSV) and a figure (PNG, SVG, PDF).
     """
-    from nullpose.errors import UsageError
+    from nullpose.errors import require_usage
     from nullpose.solver import SolveOptions
     from nullpose.study import spaced, sweep as sweep_scenario
 
     varied = [setting.strip() for setting in settings if "=" not in setting]
-    if len(varied) != 1:
-        raise UsageError(
-            f"--set: exactly one path to vary is needed, without a value; given {', '.join(settings)}"
-        )
+    require_usage(
+        len(varied) == 1,
+        f"--set: exactly one path to vary is needed, without a value; given {', '.join(settings)}",
+    )
     # the varied key may be one without which the others make no scenario, as the exponent of a power law is
     fixed = [setting if "=" in setting else f"{setting}={start!r}" for setting in settings]
     scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside)
@@ -114,7 +115,7 @@ def sweep(
             values,
             schemes=schemes,
             mounts_deg=mounts_deg,
-            share=0.99 if reach is None else reach,
+            share=REACH if reach is None else reach,
             on_progress=ticker,
             **options,
         )

@@ -9,6 +9,7 @@ import typer
 
 from nullpose.cli.options import (
     MOUNTS,
+    REACH,
     FigureFile,
     JsonOutput,
     SceneOptions,
@@ -30,9 +31,9 @@ def vehicle(
         float | None,
         typer.Option(
             "--reach",
-            metavar="SHARE",
-            help="The share of the omnidirectional value that suffices, at most 1.",
-            show_default="0.99",
+            metavar="REACH",
+            help="What suffices: this times the omnidirectional value, above 0 to 1.",
+            show_default=f"{REACH}",
         ),
     ] = None,
     loss_db: Annotated[
@@ -58,8 +59,8 @@ def vehicle(
 ) -> None:
     """Find the least tilt that a vehicle needs.
 
-    For each mount of the antenna: a tilt with which a pose reaches the target, and one .1 degree below with
-    which none does.
+    For each mount of the antenna: a tilt with which a pose reaches the target, and one 0.1 degrees below
+    with which none does.
     """
     from nullpose.report.vehicle import vehicle_view
     from nullpose.study.least_tilt import least_tilt, values_by_angle
@@ -87,17 +88,19 @@ def vehicle(
 
 
 def _share(reach: float | None, loss_db: float | None) -> float:
-    """Choose the share that suffices: stated, by a loss in dB, or 0.99.
+    """Choose the share that suffices: stated, by a loss in dB, or the usual one.
 
     Raises:
         UsageError: both are stated, or one that is not allowed.
     """
-    from nullpose.errors import UsageError
+    from nullpose.errors import require_usage
 
-    if reach is not None and loss_db is not None:
-        raise UsageError(f"--reach: given {reach:g} with --loss-db {loss_db:g}; leave out one of the two")
-    if loss_db is not None:
-        if not 0.0 < loss_db < math.inf:
-            raise UsageError(f"--loss-db: given {loss_db!r}; allowed: more than 0 dB, as in 0.05")
-        return float(10.0 ** (-loss_db / 10.0))
-    return 0.99 if reach is None else reach
+    if loss_db is None:
+        return REACH if reach is None else reach
+    require_usage(
+        reach is None, f"--reach: given {reach} with --loss-db {loss_db:g}; leave out one of the two"
+    )
+    require_usage(
+        0.0 < loss_db < math.inf, f"--loss-db: given {loss_db!r}; allowed: more than 0 dB, as in 0.05"
+    )
+    return float(10.0 ** (-loss_db / 10.0))

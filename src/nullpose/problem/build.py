@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.channel import excess_gain
-from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.errors import require_usage
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
+from nullpose.scenario.faults import refusal
 
 LOUDEST = 1e16
 """The largest ratio of an interferer's power to the noise, without a null, that is solved."""
@@ -32,36 +33,26 @@ def build_family(
         UsageError: the antenna is no dipole, or a channel is not known to the caller.
         ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
-    if not scenario.antenna_record.is_quadratic and not any_antenna:
-        raise UsageError(
-            f"antenna: given a {scenario.antenna_record.label}; allowed here: a dipole. For other antennas "
-            "there are solve, evaluate and antenna compare"
-        )
-    if not any_channel:
-        _refuse_channels(scenario)
-    if scenario.has_custom_channels and not any_function:
-        raise UsageError(
-            "channel: given a function in Python; allowed here: the channels that a file can state. There "
-            "are solve, compare and evaluate for functions"
-        )
+    require_usage(
+        any_antenna or scenario.antenna_record.is_quadratic,
+        f"antenna: given a {scenario.antenna_record.label}; allowed here: a dipole. For other antennas "
+        "there are solve, evaluate and antenna compare",
+    )
+    require_usage(
+        any_channel or not scenario.has_channels,
+        "channel: given a power law or line of sight by elevation; allowed here: free space, or average "
+        '= "guaranteed"; solve and evaluate know every channel',
+    )
+    require_usage(
+        any_function or not scenario.has_custom_channels,
+        "channel: given a function in Python; allowed here: the channels that a file can state. There "
+        "are solve, compare and evaluate for functions",
+    )
     ratios = scenario.objective_record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
     _refuse_the_loudest(scenario, family)
     return family
-
-
-def _refuse_channels(scenario: Scenario) -> None:
-    """Refuse a scenario with a link whose gain over free space changes with the position.
-
-    Raises:
-        UsageError: it has such a link.
-    """
-    if scenario.has_channels:
-        raise UsageError(
-            "channel: given a power law or line of sight by elevation; allowed here: free space, or average "
-            '= "guaranteed"; solve and evaluate know every channel'
-        )
 
 
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
@@ -82,12 +73,12 @@ def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     if not record.transmits:
         key = "power_w" if scenario.jammers[index].power_w is not None else "power_dbm"
         path = f"{path}.{key}"
-    message = (
+    raise refusal(
+        path,
         f"got a signal {10.0 * np.log10(over_noise[index]):.0f} dB over the noise at the closest allowed "
         f"position, must be at most {10.0 * np.log10(LOUDEST):.0f} dB: beyond that rounding fills the null; "
-        "make the transmit power smaller, the noise greater or the distance longer"
+        "make the transmit power smaller, the noise greater or the distance longer",
     )
-    raise ScenarioError([Fault(path, message)])
 
 
 def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, FloatArray | IntArray | float]:
@@ -98,11 +89,7 @@ def domain_of(scenario: Scenario, points_m: FloatArray) -> dict[str, FloatArray 
         points_m: the points that are to be kept clear of, (m, 3), metres.
     """
     airspace = scenario.open_airspace.inner
-    low_m, high_m = airspace.lower_m, airspace.upper_m
-    outline = airspace.geofence_outline_m
-    if len(outline):
-        low_m = np.array([*np.maximum(low_m[:2], outline.min(axis=0)), low_m[2]])
-        high_m = np.array([*np.minimum(high_m[:2], outline.max(axis=0)), high_m[2]])
+    low_m, high_m = airspace.box_m
     return {
         "low_m": low_m,
         "high_m": high_m,

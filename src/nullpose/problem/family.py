@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -12,6 +13,7 @@ from nullpose.objectives import FloatArray, IntArray, Ratios
 from nullpose.problem.records import Domain
 
 
+@dataclass(frozen=True, slots=True, init=False, eq=False)
 class Family:
     """Ratios over the link forms of points, and their domain. Every array of either is read on it too.
 
@@ -20,8 +22,6 @@ class Family:
             written to are copied, and the copies cannot.
     """
 
-    __slots__ = ("arrays", "domain")
-
     arrays: Ratios
     domain: Domain
 
@@ -29,9 +29,6 @@ class Family:
         kept = DEFAULTS | {name: _read_only(value) for name, value in fields.items()}
         object.__setattr__(self, "arrays", Ratios(*map(kept.pop, Ratios._fields)))
         object.__setattr__(self, "domain", Domain(**kept))
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(f"a family is frozen; use changed({name}=...)")
 
     def __reduce__(self) -> tuple[partial[Family], tuple[()]]:
         return partial(Family, **self.fields), ()

@@ -70,7 +70,7 @@ def _least_line(comparison: ResultTable, kind: str, found: Sequence[ResultRow]) 
     are_short = all(verdict_on(comparison, row) is Verdict.FALLS_SHORT for row in found)
     reach = f"{nearest.case.phrase} comes nearest by the values found: it {_reach(comparison, nearest)}"
     all_of = "All" if are_short else "Not all"
-    return f"Of the lesser vehicles compared with {kind}, {reach}. {all_of} are proved not to suffice."
+    return f"Of the vehicles compared with {kind}, {reach}. {all_of} are proved not to suffice."
 
 
 def _tilt_rad(row: ResultRow) -> float:

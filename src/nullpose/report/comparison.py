@@ -27,7 +27,7 @@ _STATUS = {
     Status.CERTIFIED: "certified",
     Status.GAP_NOT_REACHED: "bounded",
     Status.BEST_FOUND: "found",
-    Status.GIVEN: "given",
+    Status.POSE_GIVEN: "given",
 }
 
 
@@ -47,7 +47,7 @@ def comparison_view(comparison: ResultTable) -> View:
         *_absent(comparison),
         *_proof_lines(comparison),
         f"{work_words(starts, boxes)} (all cases together)",
-        f"* worst node: the {quantity.smallest} is here. Difference: from the best case.",
+        f"* worst node: the {quantity.smallest} is here. Change: from the best case.",
         "Each upper bound holds for the poses that its scheme allows.",
         "All cases use one dipole on this file's vehicle. Other vehicles and arrays: compare --airframes",
     ]
@@ -76,7 +76,7 @@ def airframes_view(comparison: ResultTable) -> View:
             "pose above": _texts(nominal[with_errors], 3),
             "robust pose": _texts(robust[with_errors], 3),
             "bound": _texts(most[with_errors], 3),
-            "difference": _texts(robust[with_errors] - robust[found.index(whole)], 3),
+            f"change ({quantity.unit})": _texts(robust[with_errors] - robust[found.index(whole)], 3),
         }
     )
     lines = [*sufficing(quantity), *_vehicle_proof_lines(found), *_absent(comparison)]
@@ -118,7 +118,7 @@ def antennas_view(comparison: ResultTable) -> View:
             "Best poses",
             beside({label: pose_cells(each.scenario, each.pose) for label, each in best.items()}),
         ),
-        "Difference: from row 1.",
+        "Change: from row 1.",
         "Isotropic ground antennas lose nothing to polarisation.",
         *_proof_lines(comparison),
         "",
@@ -156,7 +156,7 @@ def _values(
             "power ratio": [f"{each.value:.5g}" if has_ratio else None for each in objectives],
             "value": _texts(values, 4),
             "bound": [bound_text(each, 4) for each in objectives],
-            "difference": _texts(values - quantity.in_unit(whole.objective.value), 3),
+            f"change ({quantity.unit})": _texts(values - quantity.in_unit(whole.objective.value), 3),
             "suffices": verdicts or [None] * len(found),
             "status": [_STATUS[row.status] for row in found],
         }
@@ -216,12 +216,14 @@ def _absent(comparison: ResultTable) -> list[str]:
 
 def _vehicle_proof_lines(found: Sequence[ResultRow]) -> list[str]:
     """Write what is proved of vehicles in a line, and below it what kept proofs short."""
-    kinds = [("arrays" if row.case.array else "dipoles", row.rigour) for row in found]
-    rigours = grouped((kind, "" if rigour is Rigour.NONE else rigour.value) for kind, rigour in kinds)
+    unchecked = dict.fromkeys(
+        "arrays" if row.case.array else "dipoles" for row in found if row.rigour is Rigour.FLOATING_POINT
+    )
     needed = "bounded: as near as needed. " if any(row.reason == AS_NEEDED for row in found) else ""
+    rounding = f"Proofs of {' and '.join(unchecked)} are not checked against rounding." if unchecked else ""
     searched = [Status.BEST_FOUND.message for row in found if row.status is Status.BEST_FOUND]
     return [
-        *([f"{needed}Bounds: {', '.join(rigours)}."] if rigours else []),
+        *filter(None, [f"{needed}{rounding}".strip()]),
         *(f"{_STATUS[Status.BEST_FOUND]}: {message}." for message in dict.fromkeys(searched)),
         *grouped((row.label, "" if row.reason == AS_NEEDED else row.reason) for row in found),
     ]
@@ -229,7 +231,7 @@ def _vehicle_proof_lines(found: Sequence[ResultRow]) -> list[str]:
 
 def _proof_lines(comparison: ResultTable) -> list[str]:
     """Write what is proved of a table's values, of poses that were given apart."""
-    solved = [row for row in comparison.rows if row.status is not Status.GIVEN]
+    solved = [row for row in comparison.rows if row.status is not Status.POSE_GIVEN]
     statuses = dict.fromkeys(row.status for row in solved)
     return [
         "Bounds are rounded up.",

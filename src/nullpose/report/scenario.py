@@ -12,6 +12,7 @@ from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
 from nullpose.physics.types import FloatArray
+from nullpose.problem.build import distances_m
 from nullpose.report.document import Row, View, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import outline_m
 from nullpose.report.words import airframe_words, array_words, channel_words, place_words, reach_words
@@ -61,7 +62,7 @@ def summarise(scenario: Scenario) -> PlainTable:
 
 def _on_earth(scenario: Scenario, origin: Origin) -> list[PlainTable]:
     """Compute latitudes, longitudes and absolute altitudes of the points and of the areas' extents."""
-    airspace, points = scenario.airspace, (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
+    airspace = scenario.airspace
     box_m = np.transpose([airspace.x_m, airspace.y_m]) if airspace.x_m and airspace.y_m else np.empty((0, 2))
     areas = [
         ("airspace", box_m, airspace.altitude_m),
@@ -69,7 +70,7 @@ def _on_earth(scenario: Scenario, origin: Origin) -> list[PlainTable]:
         *((zone.name, outline_m(zone), zone.altitude_m) for zone in airspace.no_fly),
     ]
     rows: list[PlainTable]
-    rows = [{"name": point.name} | origin.place(point.position_m) for point in points]
+    rows = [{"name": point.name} | origin.place(point.position_m) for point in scenario.points]
     for name, outline, altitude_m in areas:
         corners = outline if len(outline) else [(0.0, 0.0)]  # of an airspace without sides
         places = [origin.place([*corner, end]) for corner in corners for end in altitude_m or (0.0,)]
@@ -86,9 +87,11 @@ def _dbm(power_w: float) -> float:
 def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray | None) -> list[PlainTable]:
     """List each point with its power, its noise if it receives from the drone, and its best link."""
     receiver, transmitter, rows = scenario.receiver, scenario.transmitter, []
-    for i, point in enumerate(points):
+    places_m = np.reshape([point.position_m for point in points], (-1, 3))
+    away_m = distances_m(places_m, scenario.airspace.lower_m, scenario.airspace.upper_m)
+    nearest = np.maximum(away_m, scenario.airspace.keep_out_m).tolist()
+    for i, (point, nearest_m) in enumerate(zip(points, nearest, strict=True)):
         power_w = getattr(point, "transmit_power_w", None) or None
-        nearest_m = _nearest_m(scenario, np.asarray(point.position_m))
         sent_w, noise_w, noise = power_w or 0.0, receiver.noise_power_w, {}
         if noises_w is not None and transmitter is not None:
             sent_w, noise_w = transmitter.transmit_power_w, float(noises_w[i])
@@ -109,14 +112,6 @@ def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray |
             }
         )
     return rows
-
-
-def _nearest_m(scenario: Scenario, position_m: FloatArray) -> float:
-    airspace = scenario.airspace
-    free = (-math.inf, math.inf)
-    sides = np.array([airspace.x_m or free, airspace.y_m or free, airspace.altitude_m])
-    inside = np.clip(position_m, sides[:, 0], sides[:, 1])
-    return max(float(np.linalg.norm(inside - position_m)), airspace.keep_out_m)
 
 
 def scenario_view(scenario: Scenario) -> View:
@@ -231,8 +226,7 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
 
 
 def _blocked_words(scenario: Scenario) -> str | None:
-    points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
-    left = np.array([scenario.channel_of(point).row[BLOCKED] for point in points])
+    left = np.array([scenario.channel_of(point).row[BLOCKED] for point in scenario.points])
     return None if scenario.prisms is None else _between(np.round(-to_db(left), 6).tolist())
 
 

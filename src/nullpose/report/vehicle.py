@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nullpose.objectives import Quantity
-from nullpose.report.document import View, document, head, rows, table
+from nullpose.report.document import View, cell, document, head, rows, table
 from nullpose.study.least_tilt import LeastTilt, MountTilt
 
 
@@ -16,9 +16,9 @@ def vehicle_view(found: LeastTilt) -> View:
             "mount (deg)": [
                 f"{each.mount_deg:.4g}{' best' if each is found.best else ''}" for each in mounts
             ],
-            "least tilt (deg)": [_number(each.suffices_deg, ".1f") for each in mounts],
+            "least tilt (deg)": [cell(each.suffices_deg, ".1f") for each in mounts],
             f"value ({quantity.unit})": [_value(quantity, each.value) for each in mounts],
-            "too little (deg)": [_number(each.fails_deg, ".1f") for each in mounts],
+            "too little (deg)": [cell(each.fails_deg, ".1f") for each in mounts],
             f"bound there ({quantity.unit})": [_value(quantity, each.upper_bound) for each in mounts],
         }
     )
@@ -52,15 +52,14 @@ def answer(found: LeastTilt) -> str:
     """Say in a sentence or two what vehicle suffices, of those with the mounts that were looked at."""
     sentences = [_sentence(mount) for mount in found.mounts]
     if found.best is not None:
-        if found.best.suffices_deg == 0.0:
-            sentences.append(
-                f"With the antenna mounted at {found.best.mount_deg:.4g} degrees, a level vehicle suffices "
-                "for this scene."
-            )
-        else:
-            sentences.append(
-                f"Of all mounts looked at, {_sentence(found.best)[0].lower()}{_sentence(found.best)[1:]}"
-            )
+        needs = _sentence(found.best)
+        least = f"With the antenna mounted at {found.best.mount_deg:.4g} degrees, a level vehicle suffices"
+        is_level = found.best.suffices_deg == 0.0
+        sentences.append(
+            f"{least} for this scene."
+            if is_level
+            else f"Of all mounts looked at, {needs[:1].lower()}{needs[1:]}"
+        )
     return "\n".join(sentences)
 
 
@@ -78,10 +77,6 @@ def _sentence(mount: MountTilt) -> str:
         f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt; "
         f"{mount.suffices_deg:.1f} degrees suffice."
     )
-
-
-def _number(number: float | None, digits: str) -> str | None:
-    return None if number is None else f"{number:{digits}}"
 
 
 def _value(quantity: Quantity, value: float | None) -> str | None:

@@ -85,8 +85,7 @@ def _degrees(angle_rad: float) -> str:
 
 def channel_words(scenario: Scenario) -> str | None:
     """Describe the channel, and those of points that have their own; None where none is stated."""
-    points = (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)
-    channels = {"": scenario.channel} | {f"{point.name}: ": point.channel for point in points}
+    channels = {"": scenario.channel} | {f"{point.name}: ": point.channel for point in scenario.points}
     among = scenario.prisms is not None
     words = (f"{name}{each.describe(among_buildings=among)}" for name, each in channels.items() if each)
     return "; ".join(words) or None

@@ -7,9 +7,8 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.rules import ByName, Choice
+from nullpose.scenario.rules import ByName, Choice, Quantity
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.units import MountDegrees, TiltDegrees
 from nullpose.scenario.ways import Ways, exactly_one
 
 PRESET_TILTS_DEG = {
@@ -22,9 +21,6 @@ PRESET_TILTS_DEG = {
 """Largest tilt of each airframe that has a name [deg]; docs/airframes.md has the sources."""
 
 _PRESETS = ", ".join(f"{name} ({tilt_deg:g})" for name, tilt_deg in PRESET_TILTS_DEG.items())
-
-
-_Preset = Annotated[str, Choice("a preset", tuple(PRESET_TILTS_DEG))]
 
 
 class Airframe(Section):
@@ -43,14 +39,22 @@ class Airframe(Section):
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("preset", "tilt_max_deg"),)
     unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
 
-    preset: _Preset | None = optional(
+    preset: Annotated[str, Choice("a preset", tuple(PRESET_TILTS_DEG))] | None = optional(
         f"An airframe by name, with its largest tilt in degrees: {_PRESETS}. Either this or tilt_max_deg.",
         "level",
     )
-    tilt_max_deg: TiltDegrees | None = optional(
-        "Largest tilt of the vehicle from the horizontal, in degrees. Either this or preset.", 10.0
-    )
-    mount_deg: MountDegrees = Field(
+    tilt_max_deg: (
+        Annotated[
+            float,
+            Quantity(
+                "an angle in degrees", 0.0, 180.0, "a tilt below 0 reaches no axis; 180 is any attitude"
+            ),
+        ]
+        | None
+    ) = optional("Largest tilt of the vehicle from the horizontal, in degrees. Either this or preset.", 10.0)
+    mount_deg: Annotated[
+        float, Quantity("an angle in degrees", 0.0, 90.0, "0 is along the body's vertical, 90 across it")
+    ] = Field(
         default=0.0,
         description="Angle between the dipole and the body's vertical, in degrees: 0 upright, 90 flat.",
         examples=[90.0],

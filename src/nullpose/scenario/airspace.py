@@ -13,7 +13,7 @@ from pydantic import Field
 
 from nullpose.files import PlainTable
 from nullpose.scenario.arrays import read_only
-from nullpose.scenario.faults import ONLY_LOCAL, Place
+from nullpose.scenario.faults import ONLY_LOCAL, Place, stated
 from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
 from nullpose.scenario.polygon import (
     EarthlyPolygon,
@@ -23,9 +23,9 @@ from nullpose.scenario.polygon import (
     largest_margin_m,
     offset_outlines_m,
 )
-from nullpose.scenario.rules import list_of_tables
+from nullpose.scenario.rules import Quantity, list_of_tables
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.units import KeepOutMetres, Label, MarginMetres, Range
+from nullpose.scenario.units import Label, MarginMetres, Range
 from nullpose.scenario.ways import Ways
 
 BORDER_M = 1e-9
@@ -87,7 +87,9 @@ class Airspace(Section):
         "Left out: unbounded.",
         [-100.0, 150.0],
     )
-    keep_out_m: KeepOutMetres = Field(
+    keep_out_m: Annotated[
+        float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
+    ] = Field(
         default=1.0,
         description="Smallest distance in metres between the vehicle and any node, jammer or eavesdropper.",
         examples=[1.0],
@@ -129,9 +131,8 @@ class Airspace(Section):
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the faults of what has no place on the Earth, of named files and of too large a margin."""
         yield from unplaced(self, raw)
-        for key in ("geofence_from", "no_fly_from"):
-            if raw.get(key) is not None:
-                yield (key,), f"{ONLY_LOCAL}, in place of its own areas; remove one"
+        names = ("geofence_from", "no_fly_from")
+        yield from stated(raw, names, f"{ONLY_LOCAL}, in place of its own areas; remove one")
         fence_m, margin_m = self.geofence_outline_m, self.margin_m or 0.0
         if margin_m and self.geofence_m and (parts := len(offset_outlines_m(fence_m, -margin_m))) != 1:
             yield (

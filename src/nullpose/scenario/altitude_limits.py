@@ -17,10 +17,10 @@ from nullpose.scenario.units import EARTHLY_RANGES
 RANGES = ("altitude_m", *EARTHLY_RANGES)
 """The keys of a zone's altitudes."""
 _FAR_M = 1e6  # an end that is not limited
-_FOOT_M = 0.3048
+FOOT_M = 0.3048
 _WEATHER_M = 600.0  # a flight level is no further from 100 ft times it over the sea, at 950 to 1080 hPa
 _FLAT_M = 0.1  # a roof alone has less between its lowest and highest corner
-_UNITS_M = {"M": 1.0, "METER": 1.0, "METRE": 1.0, "0": 1.0, "FT": _FOOT_M, "F": _FOOT_M, "1": _FOOT_M}
+_UNITS_M = {"M": 1.0, "METER": 1.0, "METRE": 1.0, "0": 1.0, "FT": FOOT_M, "F": FOOT_M, "1": FOOT_M}
 _FLIGHT_LEVELS = ("FL", "6")  # openAIP writes units and datums as words or as numbers
 _DATUMS = {"GND": "altitude_m", "AGL": "altitude_m", "SFC": "altitude_m", "0": "altitude_m"} | {
     **dict.fromkeys(("MSL", "AMSL", "STD", "1", "2"), "altitude_msl_m"),
@@ -97,7 +97,7 @@ def _end(place: str, value: object, unit: object, datum: object) -> _End | None:
     unit, datum = str(unit).upper(), str(datum).upper()
     if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _FAR_M:
         if unit in _FLIGHT_LEVELS:
-            return _End(100.0 * _FOOT_M * value, "altitude_msl_m", _WEATHER_M)
+            return _End(100.0 * FOOT_M * value, "altitude_msl_m", _WEATHER_M)
         if unit in _UNITS_M and datum in _DATUMS:
             off_m = _WEATHER_M if datum in ("STD", "2") else 0.0
             return _End(value * _UNITS_M[unit], _DATUMS[datum], off_m)

@@ -13,20 +13,17 @@ from nullpose.antenna import ANTENNAS, Antenna as AnyAntenna
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.errors import ScenarioError
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import ONLY_LOCAL, Place
-from nullpose.scenario.rules import Choice, Count, ListOf
+from nullpose.scenario.faults import ONLY_LOCAL, Place, stated
+from nullpose.scenario.rules import Choice, Count, ListOf, Quantity
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.units import Coefficient, DecibelsIsotropic, Hertz, NullDepthDecibels, Wavelengths
+from nullpose.scenario.units import DecibelsIsotropic, Hertz, NullDepthDecibels
 
 _MOST_ROWS = HIGHEST_DEGREE + 1
 
-_Kind = Annotated[str, Choice("an antenna", ANTENNAS)]
-_Normalise = Annotated[str, Choice("a way to normalise", ("none", "peak"))]
-_TwoCuts = Annotated[str, Choice("a way to read two cuts", ("sum-of-losses",))]
 _Row = Annotated[
-    tuple[Coefficient, ...], ListOf("a list of 2 n + 1 numbers for degree n", 1, 2 * _MOST_ROWS - 1)
+    tuple[Annotated[float, Quantity("a coefficient", -1e9, 1e9, "gains are linear here")], ...],
+    ListOf("a list of 2 n + 1 numbers for degree n", 1, 2 * _MOST_ROWS - 1),
 ]
-_Rows = Annotated[tuple[_Row, ...], ListOf("a list of lists, one for each degree from 0", 1, _MOST_ROWS)]
 
 
 class Antenna(Section):
@@ -47,7 +44,7 @@ class Antenna(Section):
 
     unstated: ClassVar[frozenset[str]] = frozenset({"kind", "normalise", "gain_dbi"})
 
-    kind: _Kind = Field(
+    kind: Annotated[str, Choice("an antenna", ANTENNAS)] = Field(
         default="dipole",
         description="Which antenna: "
         + "; ".join(f'"{name}", {kind.summary}' for name, kind in ANTENNAS.items())
@@ -70,13 +67,13 @@ class Antenna(Section):
         "nec",
     )
     frequency_hz: Hertz | None = optional("Which of several frequencies in the file, in Hz.", 2.4e9)
-    two_cuts: _TwoCuts | None = optional(
+    two_cuts: Annotated[str, Choice("a way to read two cuts", ("sum-of-losses",))] | None = optional(
         '"sum-of-losses": make an estimate of two cuts (msi) of an antenna that is not the same '
         "all round, and say so in every result. Left out: such cuts are refused, as they do not tell the "
         "pattern.",
         "sum-of-losses",
     )
-    normalise: _Normalise = Field(
+    normalise: Annotated[str, Choice("a way to normalise", ("none", "peak"))] = Field(
         default="none",
         description='"none": gains are over an isotropic antenna, as in the file; "peak": the largest gain '
         "is 1, like that of the paper's dipole.",
@@ -89,7 +86,10 @@ class Antenna(Section):
         "are in dBi. Left out: 0, as in the paper.",
         examples=[1.76],
     )
-    harmonics: _Rows | None = optional(
+    harmonics: (
+        Annotated[tuple[_Row, ...], ListOf("a list of lists, one for each degree from 0", 1, _MOST_ROWS)]
+        | None
+    ) = optional(
         "What was read of the file, written by nullpose: for each degree of the gain's spherical "
         "harmonics its cosine terms, then its sine terms. With them the file is not needed."
     )
@@ -99,9 +99,9 @@ class Antenna(Section):
         if self.kind is None:
             return
         kind = ANTENNAS[self.kind]
-        for key in raw.keys() - {"kind", "gain_dbi", *kind.keys}:
-            if raw[key] is not None:
-                yield (key,), f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
+        strange = raw.keys() - {"kind", "gain_dbi", *kind.keys}
+        message = f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
+        yield from stated(raw, strange, message)
         if self.gain_dbi and kind.read is not None and self.normalise == "none":
             yield (
                 ("gain_dbi",),
@@ -146,10 +146,7 @@ def with_harmonics(table: PlainTable, path: Path) -> PlainTable:
     return {**table, **kind.read(path, table)}
 
 
-_Elements = Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")]
-_Layout = Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))]
 _DIGITAL = "digital combining, which nullpose solves with a bound (analogue combining has none)"
-_Combining = Annotated[Literal["digital"], Choice(_DIGITAL, ("digital",))]
 
 
 class Array(Section):
@@ -165,15 +162,17 @@ class Array(Section):
     header: ClassVar[str] = "a table with elements, layout and spacing_wavelengths"
     unstated: ClassVar[frozenset[str]] = frozenset({"combining"})
 
-    elements: _Elements = Field(description="Number of upright dipoles.", examples=[4])
-    layout: _Layout = Field(
+    elements: Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")] = Field(
+        description="Number of upright dipoles.", examples=[4]
+    )
+    layout: Annotated[Literal["linear", "circular"], Choice("a layout", ("linear", "circular"))] = Field(
         description="How they stand: linear (on a horizontal line) or circular (on a horizontal circle).",
         examples=["linear"],
     )
-    spacing_wavelengths: Wavelengths = Field(
-        description="Distance between neighbours, in wavelengths.", examples=[0.5]
-    )
-    combining: _Combining = Field(
+    spacing_wavelengths: Annotated[
+        float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")
+    ] = Field(description="Distance between neighbours, in wavelengths.", examples=[0.5])
+    combining: Annotated[Literal["digital"], Choice(_DIGITAL, ("digital",))] = Field(
         default="digital",
         description="How the elements are combined: digital, which need not be stated.",
         examples=["digital"],

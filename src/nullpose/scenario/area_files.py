@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 import shapely
@@ -33,12 +33,13 @@ _BOUNDS = {"x_m", "y_m", "geofence_m", "geofence_lat_lon_deg", *RANGES}
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
-Filled: TypeAlias = tuple[PlainTable, list[str], dict[str, str]]
-"""A raw airspace, notes on what became of a file's features, and the places in the file of what is from it by
-their path in the scenario."""
+_Raw = TypeVar("_Raw")
+Filled: TypeAlias = tuple[_Raw, list[str], dict[str, str]]
+"""What is filled in, notes on what became of a file's features, and the places in the file of what is from it
+by their path in the scenario."""
 
 
-def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled:
+def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled[PlainTable]:
     """Add the zones of a file to a raw airspace after its own.
 
     Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
@@ -83,7 +84,7 @@ def reach_deg(origin: PlainTable) -> Polygon:
     return _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
 
 
-def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled:
+def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled[PlainTable]:
     """Give a raw airspace the fence of a file.
 
     The fence's holes are zones, and its altitudes bound those of the airspace.

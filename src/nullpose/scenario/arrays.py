@@ -13,7 +13,7 @@ from nullpose.antenna import GroundAntennas, unit_axis
 from nullpose.channel import Custom, LinkChannel, PointChannels
 from nullpose.channel.buildings import Prisms
 from nullpose.channel.model import CONSTANT
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, require_usage
 from nullpose.scenario.channel import BLOCKED_DB, Channel, CustomChannel
 from nullpose.scenario.units import power_w, ratio_from_db
 
@@ -123,6 +123,14 @@ class PointArrays:
     eavesdropper_channels = _channels("eavesdroppers")
     """The eavesdroppers' channels; None where all are in free space with line of sight."""
 
+    point_positions_m = _stacked("nodes jammers eavesdroppers", "position_m", 3)
+    """Positions of all points [m], in this order, (n, 3)."""
+
+    @property
+    def points(self) -> tuple[Node | Jammer | Eavesdropper, ...]:
+        """All points: nodes, jammers, eavesdroppers."""
+        return *self.nodes, *self.jammers, *self.eavesdroppers
+
     def channel_of(self, point: GroundPoint) -> LinkChannel:
         """Return the channel of a point's link: its own, or the scenario's."""
         whole = self.channel or Channel()
@@ -148,8 +156,7 @@ class PointArrays:
     @property
     def has_custom_channels(self) -> bool:
         """Whether any link's channel is a function in Python."""
-        points = _points_of(self, "nodes jammers eavesdroppers")
-        return any(self.custom_law(point) is not None for point in points)
+        return any(self.custom_law(point) is not None for point in self.points)
 
     @property
     def node_names(self) -> tuple[str, ...]:
@@ -213,16 +220,16 @@ def rows_of_points(kind: str, points_m: ArrayLike, power_w: ArrayLike) -> list[d
             f"{kind}s_m, {kind}_power_w: given values that make no array of numbers; allowed: numbers in "
             "rows of equal length"
         ) from None
-    if places.size and places.shape[1:] != (3,):
-        raise UsageError(
-            f"{kind}s_m: given shape {places.shape}; allowed: (n, 3), a row of east, north and up in metres "
-            "for each; try its transpose .T, [[east, north, up]] for one point, or zeros for heights"
-        )
+    require_usage(
+        places.size == 0 or places.shape[1:] == (3,),
+        f"{kind}s_m: given shape {places.shape}; allowed: (n, 3), a row of east, north and up in metres "
+        "for each; try its transpose .T, [[east, north, up]] for one point, or zeros for heights",
+    )
     places = places.reshape(-1, 3)
-    if powers.shape not in ((), (len(places),)):
-        raise UsageError(
-            f"{kind}_power_w: given shape {powers.shape} with {len(places)} {kind}s; "
-            f"allowed: one number in watts, or shape ({len(places)},)"
-        )
+    require_usage(
+        powers.shape in ((), (len(places),)),
+        f"{kind}_power_w: given shape {powers.shape} with {len(places)} {kind}s; "
+        f"allowed: one number in watts, or shape ({len(places)},)",
+    )
     rows = zip(places.tolist(), np.broadcast_to(powers, len(places)).tolist(), strict=True)
     return [{"position_m": place, "power_w": power} for place, power in rows]

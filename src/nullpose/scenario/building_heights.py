@@ -9,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
+from nullpose.scenario.altitude_limits import FOOT_M
 from nullpose.scenario.buildings import HIGHEST_M, Building
-from nullpose.scenario.faults import refusal, require
+from nullpose.scenario.faults import require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.wording import described
 
 BY_ROOF, BY_HEIGHT, BY_LEVELS, ASSUMED = "by roof less ground", "by height", "by levels", "assumed"
 """How a height may be stated, the first first."""
-_FOOT_M = 0.3048
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _LENGTH = re.compile(
     rf"({_NUMBER})\s*(m|metres?|meters?|ft|feet|foot|')?\s*(?:(\d+\.?\d*)\s*(?:\"|''|in))?", re.I
@@ -116,17 +116,17 @@ def _length_m(feature: Feature, key: str, rules: Building) -> float:
         f'got {described(value)}, in feet, must be in metres; write height_unit = "ft" beside buildings_from '
         "if its heights without a unit are in feet too",
     )
-    return (float(number) + float(inches or 0.0) / 12.0) * _FOOT_M if is_feet else float(number)
+    return (float(number) + float(inches or 0.0) / 12.0) * FOOT_M if is_feet else float(number)
 
 
 def _number(feature: Feature, key: str) -> float:
     value = feature.properties[key]
-    if _is_plain(value) and re.fullmatch(_NUMBER, str(value).strip()):
-        return float(value)
-    raise refusal(
+    require(
+        _is_plain(value) and re.fullmatch(_NUMBER, str(value).strip()),
         f"{feature.place}.{key}",
         f"got {described(value)}, must be a number of levels; correct it in the file",
     )
+    return float(value)
 
 
 def _is_plain(value: object) -> bool:

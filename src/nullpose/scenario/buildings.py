@@ -8,19 +8,18 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BeforeValidator, Field, TypeAdapter, WithJsonSchema
+from pydantic import AfterValidator, Field, TypeAdapter
 
 from nullpose.files import PlainTable
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import Place, path_of
+from nullpose.scenario.faults import Place, path_of, stated
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone, unplaced
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
-from nullpose.scenario.rules import Choice, ListOf, Quantity, ascending
+from nullpose.scenario.rules import Choice, ListOf, NumberOr, Quantity, ascending
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label, MarginMetres
 from nullpose.scenario.ways import Ways
-from nullpose.scenario.wording import plain
 
 MOST_BUILDINGS = 2000
 """The most buildings of a scenario: more take a search too long."""
@@ -35,30 +34,12 @@ HIGHEST_M = _ABOVE_GROUND.high
 _STOREY = Quantity("a height of a storey in m", 1.0, 20.0, "3 m is common")
 _COURTYARDS = ListOf("a list of at most 1000 polygons, each a list of vertices", 0, 1000)
 _Height = Annotated[float, _ABOVE_GROUND]
-_BOTH_ENDS: TypeAdapter[tuple[float, float]] = TypeAdapter(
-    Annotated[
-        tuple[_Height, _Height],
-        ListOf("one height in m, or two, the lowest first", 2, 2),
-        AfterValidator(ascending),
-    ]
-)
-_LIMITS = {"minimum": _ABOVE_GROUND.low, "maximum": _ABOVE_GROUND.high}
-
-
-def _height(value: object) -> float | tuple[float, float]:
-    value = plain(value)
-    is_range = isinstance(value, list | tuple)
-    return _BOTH_ENDS.validate_python(value) if is_range else _ABOVE_GROUND.read(value)
-
-
-Height = Annotated[
-    float | tuple[float, float],
-    BeforeValidator(_height),
-    WithJsonSchema(
-        {"type": ["number", "array"], "items": {"type": "number"} | _LIMITS, "minItems": 2, "maxItems": 2}
-        | _LIMITS
-    ),
+_BOTH_ENDS = Annotated[
+    tuple[_Height, _Height],
+    ListOf("one height in m, or two, the lowest first", 2, 2),
+    AfterValidator(ascending),
 ]
+Height = Annotated[float | tuple[float, float], NumberOr(_ABOVE_GROUND, TypeAdapter(_BOTH_ENDS))]
 """A height above the ground, or the lowest and the highest that it may be [m]."""
 
 _OF_ONE = ("name", "courtyards_m", "courtyards_lat_lon_deg", "base_m")
@@ -160,10 +141,9 @@ class Building(Section):
         """Return the faults of keys that do not go together, of its height and of its courtyards."""
         yield from unplaced(self, raw)
         is_file = raw.get("buildings_from") is not None
-        for key in _OF_ONE if is_file else _OF_FILES:
-            if raw.get(key) is not None:
-                other = "without buildings_from, for one building" if is_file else "with buildings_from"
-                yield (key,), f"has a meaning only {other}; remove it"
+        other = "without buildings_from, for one building" if is_file else "with buildings_from"
+        strange = _OF_ONE if is_file else _OF_FILES
+        yield from stated(raw, strange, f"has a meaning only {other}; remove it")
         properties = [key for key in ("roof_property", "ground_property") if raw.get(key) is not None]
         if is_file and len(properties) == 1:
             yield (properties[0],), "given without the other of roof_property and ground_property; add it"

@@ -13,17 +13,9 @@ from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place
 from nullpose.scenario.rules import ByName, Choice, Quantity
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.units import BlockedDecibels, LossDecibels, ReferenceMetres, ratio_from_db
+from nullpose.scenario.units import LossDecibels, ratio_from_db
 from nullpose.scenario.ways import Ways
 
-_Model = Annotated[str, Choice("a channel model", CHANNELS)]
-_Average = Annotated[str, Choice("an average", AVERAGES)]
-_Exponent = Annotated[
-    float,
-    Quantity("a path-loss exponent", 1.6, 6.0, "2 is that of free space; the loss is 10 x it dB/decade"),
-]
-_Degrees = Annotated[float, Quantity("an angle in degrees", 0.1, 90.0, "4.88 is suburban, 27.23 high-rise")]
-_PerDegree = Annotated[float, Quantity("a number per degree", 1e-3, 5.0, "0.43 is suburban, 0.08 high-rise")]
 EnvironmentName = Annotated[str, Choice("an environment", tuple(ENVIRONMENTS))]
 """The type of a key that names a built-up area."""
 _NUMBERS = ("a", "b", "los_loss_db", "nlos_loss_db")
@@ -49,19 +41,30 @@ class Channel(Section):
 
     ways: ClassVar[tuple[Ways, ...]] = (Ways((("environment",), _NUMBERS), fewest=0),)
 
-    model: _Model = Field(
+    model: Annotated[str, Choice("a channel model", CHANNELS)] = Field(
         default="free-space",
         description="Which channel: "
         + "; ".join(f'"{name}", {model.summary}' for name, model in CHANNELS.items())
         + ".",
         examples=list(CHANNELS),
     )
-    exponent: _Exponent | None = optional(
+    exponent: (
+        Annotated[
+            float,
+            Quantity(
+                "a path-loss exponent", 1.6, 6.0, "2 is that of free space; the loss is 10 x it dB/decade"
+            ),
+        ]
+        | None
+    ) = optional(
         "Exponent of a power law: the gain is the reference gain times (distance / reference "
         "distance)^-exponent.",
         2.4,
     )
-    reference_distance_m: ReferenceMetres | None = optional(
+    reference_distance_m: (
+        Annotated[float, Quantity("a distance in m", 1e-3, 1e7, "where the reference gain holds; mostly 1")]
+        | None
+    ) = optional(
         "The distance in metres at which a power law has the reference gain of [receiver]; at most the "
         "keep-out radius. Left out: 1.",
         1.0,
@@ -71,21 +74,29 @@ class Channel(Section):
         "los_loss_db and nlos_loss_db.",
         "urban",
     )
-    a: _Degrees | None = optional(
+    a: (
+        Annotated[float, Quantity("an angle in degrees", 0.1, 90.0, "4.88 is suburban, 27.23 high-rise")]
+        | None
+    ) = optional(
         "Of the probability of line of sight 1 / (1 + a exp(-b (theta - a))), theta the elevation angle: a, "
         "in degrees.",
         9.61,
     )
-    b: _PerDegree | None = optional("The same: b, per degree.", 0.16)
+    b: (
+        Annotated[float, Quantity("a number per degree", 1e-3, 5.0, "0.43 is suburban, 0.08 high-rise")]
+        | None
+    ) = optional("The same: b, per degree.", 0.16)
     los_loss_db: LossDecibels | None = optional("Loss over free space with line of sight, in dB.", 1.0)
     nlos_loss_db: LossDecibels | None = optional("Loss over free space without line of sight, in dB.", 20.0)
-    average: _Average | None = optional(
+    average: Annotated[str, Choice("an average", AVERAGES)] | None = optional(
         'What counts of links with and without line of sight, for elevation: "power", the mean power; "db", '
         'the mean of the losses in dB, as published; or "guaranteed": nodes never have line of sight, and '
         "jammers and eavesdroppers always have.",
         "power",
     )
-    blocked_loss_db: BlockedDecibels | None = optional(
+    blocked_loss_db: (
+        Annotated[float, Quantity("a loss in dB", 1e-3, 200.0, "20 dB leave a hundredth")] | None
+    ) = optional(
         f"Loss in dB where a building blocks the line of sight. Left out: {BLOCKED_DB:g}. By elevation the "
         "losses with and without line of sight count.",
         BLOCKED_DB,

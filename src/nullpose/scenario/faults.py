@@ -49,6 +49,11 @@ def raise_all(faults: Sequence[Fault], source: str = "") -> None:
         raise ScenarioError(faults, source)
 
 
+def stated(table: Mapping[str, object], keys: Iterable[str], message: str) -> Iterator[tuple[Place, str]]:
+    """Yield a fault for each of some keys that a raw table states."""
+    return (((key,), message) for key in keys if table.get(key) is not None)
+
+
 def call_each(function: Callable[[_Raw], _Read], members: Iterable[_Raw]) -> tuple[list[_Read], list[Fault]]:
     """Call a function with each member; return its values, and the faults that it raises."""
     values, faults = list[_Read](), list[Fault]()

@@ -12,7 +12,7 @@ from nullpose.files import PlainTable
 from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.faults import Place
 from nullpose.scenario.radio import POWER, Powered
-from nullpose.scenario.rules import Choice
+from nullpose.scenario.rules import Choice, Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
@@ -22,7 +22,6 @@ from nullpose.scenario.units import (
     AxisDirection,
     DecibelMilliwatts,
     DecibelsIsotropic,
-    GroundHeight,
     Label,
     Latitude,
     Longitude,
@@ -95,7 +94,12 @@ class GroundPoint(Section):
         "Altitude in metres over the sea (the geoid), in place of alt_m; where [origin] states its own.",
         207.0,
     )
-    alt_agl_m: GroundHeight | None = optional(
+    alt_agl_m: (
+        Annotated[
+            float, Quantity("a height in m above the ground at the origin", -1e4, 1e5, "not over the sea")
+        ]
+        | None
+    ) = optional(
         "Height in metres above the ground at the origin, which counts as level, in place of alt_m.", 2.0
     )
     antenna: GroundAntennaKind = Field(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from nullpose.errors import ScenarioError
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import ONLY_LOCAL, refusal
+from nullpose.scenario.faults import ONLY_LOCAL, refusal, require
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import file_text, tables_of, uploaded_text
@@ -124,8 +124,9 @@ def scenario_from_text(content: bytes, name: str) -> Scenario:
     """
     try:
         tables = tables_of(uploaded_text(content))
-        if "nodes_from" in tables:
-            raise refusal("nodes_from", f"{ONLY_LOCAL}; list the nodes here, under [[nodes]]")
+        require(
+            "nodes_from" not in tables, "nodes_from", f"{ONLY_LOCAL}; list the nodes here, under [[nodes]]"
+        )
         return Scenario.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError(error.faults, name) from None

@@ -7,17 +7,17 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path, PurePath
-from typing import TypeAlias, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable
 from nullpose.scenario.antenna import with_harmonics
-from nullpose.scenario.area_files import REACH_M, with_fence, with_zones
+from nullpose.scenario.area_files import REACH_M, Filled, with_fence, with_zones
 from nullpose.scenario.building_files import buildings_of
 from nullpose.scenario.buildings import Building
-from nullpose.scenario.faults import raise_all, refusal
+from nullpose.scenario.faults import raise_all, refusal, require
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
 from nullpose.scenario.node_files import nodes_of_csv, nodes_of_features
 from nullpose.scenario.scenario import Scenario
@@ -32,7 +32,6 @@ _FENCES = {"geofence_m", "geofence_lat_lon_deg"}
 _STEP = re.compile(r"(?=[.\[])")
 _MEMBER = re.compile(r"[\w.]+\[\d+\]")
 _Found = TypeVar("_Found")
-_Filled: TypeAlias = tuple[_Found, list[str], dict[str, str]]
 
 
 class NamedFiles:
@@ -95,8 +94,11 @@ class NamedFiles:
             raise refusal(
                 place, f'got {described(file)}, must be the name of {kind.noun}, as in "{kind.usual_name}"'
             )
-        if PurePath(file).suffix.lower() not in kind.endings:
-            raise refusal("", f"the name must end in one of {', '.join(kind.endings)}, which tells the kind")
+        require(
+            PurePath(file).suffix.lower() in kind.endings,
+            "",
+            f"the name must end in one of {', '.join(kind.endings)}, which tells the kind",
+        )
         return inside(self._folder, file, self._allow_outside, place)
 
     def _features(self, path: Path, kind: FileKind, place: str = "") -> list[Feature]:
@@ -115,7 +117,7 @@ class NamedFiles:
         return antenna | {"harmonics": [[1.0]]}
 
     def _filled(
-        self, key: str, file: object, fill: Callable[[list[Feature]], _Filled[_Found]]
+        self, key: str, file: object, fill: Callable[[list[Feature]], Filled[_Found]]
     ) -> _Found | None:
         """Read the keys that a file of areas fills in, and tell what became of it; None where it is at fault.
 
@@ -184,12 +186,12 @@ def _require_nodes_in_reach(scenario: Scenario, key: str) -> None:
     nouns = "zones" if key.endswith(_ZONES_KEY) else "buildings"
     for name, node in zip(scenario.node_names, scenario.nodes, strict=True):
         away_m = float(np.abs(np.asarray(node.position_m)[:2]).max())
-        if away_m > REACH_M:
-            raise refusal(
-                key,
-                f"its {nouns} count up to {REACH_M / 1e3:g} km east, west, north and south of the origin, "
-                f"and node {name} is {away_m / 1e3:.0f} km away; move [origin] to the nodes",
-            )
+        require(
+            away_m <= REACH_M,
+            key,
+            f"its {nouns} count up to {REACH_M / 1e3:g} km east, west, north and south of the origin, "
+            f"and node {name} is {away_m / 1e3:.0f} km away; move [origin] to the nodes",
+        )
 
 
 def _in_file(label: object, fault: Fault, joint: str = ": ") -> Fault:

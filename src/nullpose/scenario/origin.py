@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, ValidationError
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.arrays import Floats, read_only
@@ -121,18 +121,18 @@ class Origin(Section):
             array([  0.  , 111.23,  20.  ])
         """
         *_, altitude = place
-        if altitude != "alt_agl_m" and getattr(self, altitude) is None:
-            raise UsageError(
-                f"{altitude}: given, but [origin] does not state its own {altitude}; allowed: an altitude "
-                f"over what the origin states, or alt_agl_m; add {altitude} to [origin]"
-            )
+        require_usage(
+            altitude == "alt_agl_m" or getattr(self, altitude) is not None,
+            f"{altitude}: given, but [origin] does not state its own {altitude}; allowed: an altitude "
+            f"over what the origin states, or alt_agl_m; add {altitude} to [origin]",
+        )
         lat_deg, lon_deg = place["lat_deg"], place["lon_deg"]
         found_m = in_metres(SimpleNamespace(**place), self)["position_m"]
-        if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0 or size_m(found_m) > FARTHEST_M:
-            raise UsageError(
-                f"lat_deg, lon_deg: given {lat_deg:g}, {lon_deg:g}; allowed: within "
-                f"{FARTHEST_M / 1e3:.0f} km of the origin ({self.lat_deg:g}, {self.lon_deg:g}); {EXCHANGED}"
-            )
+        require_usage(
+            abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and size_m(found_m) <= FARTHEST_M,
+            f"lat_deg, lon_deg: given {lat_deg:g}, {lon_deg:g}; allowed: within "
+            f"{FARTHEST_M / 1e3:.0f} km of the origin ({self.lat_deg:g}, {self.lon_deg:g}); {EXCHANGED}",
+        )
         return found_m
 
 
@@ -149,22 +149,19 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
         origin = Origin.model_validate(data.get("origin"))
     except ValidationError:
         origin = None
-    whole = dict(data)
-    for key in POINT_LISTS:
-        if isinstance(members := data.get(key), list | tuple):
-            whole[key] = [_located(GroundPoint, each, origin) for each in members]
-    if isinstance(buildings := data.get("buildings"), list | tuple):
-        whole["buildings"] = [_located(Building, each, origin) for each in buildings]
-    airspace = data.get("airspace")
-    if isinstance(airspace, Mapping):
-        whole["airspace"] = found = dict(_located(Airspace, airspace, origin))
-        if isinstance(zones := airspace.get("no_fly"), list | tuple):
-            found["no_fly"] = [_located(NoFlyZone, each, origin) for each in zones]
+    kinds: dict[str, type[Section]] = dict.fromkeys(POINT_LISTS, GroundPoint)
+    kinds |= {"buildings": Building, "airspace": Airspace}
+    whole = {**data} | {key: _located(kinds[key], data[key], origin) for key in kinds if key in data}
+    airspace = whole.get("airspace")
+    if isinstance(airspace, Mapping) and "no_fly" in airspace:
+        whole["airspace"] = {**airspace, "no_fly": _located(NoFlyZone, airspace["no_fly"], origin)}
     return whole
 
 
 def _located(kind: type[Section], raw: object, origin: Origin | None) -> Any:
-    """Return a raw table with the metres that follow from what it states on the Earth."""
+    """Return a raw table, or a list of such, with the metres that follow from what it states on the Earth."""
+    if isinstance(raw, list | tuple):
+        return [_located(kind, each, origin) for each in raw]
     if not isinstance(raw, Mapping):
         return raw
     earthly = {key: raw[key] for key in EARTHLY if raw.get(key) is not None}

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from nullpose.scenario.rules import Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
     SPEED_OF_LIGHT_M_PER_S,
     DecibelMilliwatts,
     Decibels,
-    ErrorDegrees,
     ErrorMetres,
     Hertz,
     Watts,
@@ -54,7 +54,9 @@ class Receiver(Section):
         "Either this or reference_gain_db.",
         2.4e9,
     )
-    attitude_error_deg: ErrorDegrees = Field(
+    attitude_error_deg: Annotated[
+        float, Quantity("an angle in degrees", 0.0, 90.0, "an error is a size, never negative; 0 means none")
+    ] = Field(
         default=0.0,
         description="Largest angle between the true antenna axis and the commanded one, in degrees. Used by "
         "robust solving.",
@@ -66,11 +68,6 @@ class Receiver(Section):
         "Used by robust solving.",
         examples=[0.5],
     )
-
-    @property
-    def attitude_error_rad(self) -> float:
-        """Largest angle between the true antenna axis and the commanded one [rad]."""
-        return math.radians(self.attitude_error_deg)
 
     @property
     def noise_power_w(self) -> float:

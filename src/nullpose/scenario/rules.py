@@ -7,12 +7,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, TypeAdapter
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from nullpose.scenario.faults import rejection
-from nullpose.scenario.wording import described, nearest, plain
+from nullpose.scenario.wording import described, meant, plain
 
 MOST_MEMBERS = 10_000
 """The most members of a list, such as nodes or the corners of a polygon."""
@@ -101,16 +101,15 @@ class Choice(Rule):
     """
 
     noun: str
-    words: Collection[str]
+    words: Collection[str] = field(hash=False)
 
     def read(self, value: object) -> str:
         """Return the word, or raises the fault that names the words and the one nearest."""
         if isinstance(value, str) and value in self.words:
             return value
-        guess = nearest(value, self.words) if isinstance(value, str) else ""
-        hint = f'; did you mean "{guess}"?' if guess else ""
         allowed = " or ".join(f'"{word}"' for word in self.words)
-        raise rejection(f"got {described(value)}, must be {self.noun}: {allowed}{hint}")
+        question = meant(value, self.words)
+        raise rejection(f"got {described(value)}, must be {self.noun}: {allowed}{question}")
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
         """Return the JSON Schema: a text with its allowed values."""
@@ -168,6 +167,29 @@ class ListOf(Rule):
             if limit in items:
                 items[limit] = widest(member[limit] for member in members)
         return {"type": "array", "items": items, "minItems": self.fewest, "maxItems": self.most}
+
+
+@dataclass(frozen=True, slots=True)
+class NumberOr(Rule):
+    """A number, in place of which a list of several may stand, as the metadata of an annotated union.
+
+    Args:
+        number: what one alone must be.
+        several: the type of the list.
+    """
+
+    number: Quantity
+    several: TypeAdapter[Any]
+
+    def read(self, value: object) -> Any:
+        """Return the number or the list, or raises the fault that says what is wrong with it."""
+        value = plain(value)
+        is_list = isinstance(value, list | tuple)
+        return self.several.validate_python(value) if is_list else self.number.read(value)
+
+    def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
+        """Return the JSON Schema: that of the list with the limits of the number."""
+        return self.several.json_schema() | self.number.schema({"type": ["number", "array"]})
 
 
 def ascending(value: tuple[float, float]) -> tuple[float, float]:

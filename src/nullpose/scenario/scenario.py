@@ -34,8 +34,6 @@ from nullpose.scenario.units import Label, Title, ratio_from_db
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described
 
-_Objective = Annotated[str, Choice("an objective", RECORDS)]
-
 
 class Scenario(Section, PointArrays):
     """Nodes, jammers, a receiver and an airspace, in one world frame: east, north, up (ENU), in metres.
@@ -53,7 +51,7 @@ class Scenario(Section, PointArrays):
         description="Title of the scenario, for tables and figures.",
         examples=["Harbour, north quay"],
     )
-    objective: _Objective = Field(
+    objective: Annotated[str, Choice("an objective", RECORDS)] = Field(
         default=USUAL,
         description="The objective to maximise: "
         + ", or ".join(f"{record.name}, {record.summary}" for record in RECORDS.values())
@@ -248,8 +246,8 @@ class Scenario(Section, PointArrays):
     @property
     def states_antennas(self) -> bool:
         """Whether any antenna has another pattern than the paper's: the drone's, or one on the ground."""
-        points = (*self.nodes, *self.jammers, *self.eavesdroppers)
-        return self.antenna_record != SHORT_DIPOLE or any(point.antenna != "isotropic" for point in points)
+        on_ground = any(point.antenna != "isotropic" for point in self.points)
+        return self.antenna_record != SHORT_DIPOLE or on_ground
 
     @property
     def is_uncertain(self) -> bool:

@@ -8,37 +8,22 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, TypeAdapter, WithJsonSchema
+from pydantic import TypeAdapter
 
 from nullpose.files import PlainTable
 from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
-from nullpose.scenario.rules import Quantity
+from nullpose.scenario.rules import ListOf, NumberOr, Quantity
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.units import RollPitchYaw, SemiAxes
-from nullpose.scenario.wording import plain
+from nullpose.scenario.units import ErrorMetres, RollPitchYaw
 
-_RADIUS = Quantity(
-    "a radius in m (or a list of three semi-axes [a, b, c])", 0.0, 1e7, "an error is a size; 0 means none"
-)
-_SEMI_AXES: TypeAdapter[tuple[float, float, float]] = TypeAdapter(SemiAxes)
-_LIMITS = {"minimum": _RADIUS.low, "maximum": _RADIUS.high}
-
-
-def _extent(value: object) -> float | tuple[float, float, float]:
-    value = plain(value)
-    return _SEMI_AXES.validate_python(value) if isinstance(value, list | tuple) else _RADIUS.read(value)
-
-
-Extent = Annotated[
-    float | tuple[float, float, float],
-    BeforeValidator(_extent),
-    WithJsonSchema(
-        {"type": ["number", "array"], "items": {"type": "number"} | _LIMITS, "minItems": 3, "maxItems": 3}
-        | _LIMITS
+_SemiAxes = tuple[ErrorMetres, ErrorMetres, ErrorMetres]
+_EXTENT = NumberOr(
+    Quantity(
+        "a radius in m (or a list of three semi-axes [a, b, c])", 0.0, 1e7, "an error is a size; 0 means none"
     ),
-]
-"""The size of a set of positions: the radius of a ball, or the semi-axes of an ellipsoid [m]."""
+    TypeAdapter(Annotated[_SemiAxes, ListOf("a list of three semi-axes in m [a, b, c]", 3, 3)]),
+)
 
 
 class Uncertain(Section):
@@ -51,7 +36,7 @@ class Uncertain(Section):
             east, north and up; rotated as a body is (``Rz(yaw) Ry(pitch) Rx(roll)``).
     """
 
-    uncertainty_m: Extent | None = optional(
+    uncertainty_m: Annotated[float | tuple[float, float, float], _EXTENT] | None = optional(
         "How far the true position may be from the stated one, in metres: the radius of a ball, "
         "or the three semi-axes [a, b, c] of an ellipsoid. Used by robust solving. Left out: exactly there.",
         3.0,

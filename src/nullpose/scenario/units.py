@@ -64,16 +64,9 @@ NullDepthDecibels = Annotated[
 LossDecibels = Annotated[
     float, Quantity("a loss in dB", 0.0, 200.0, "a loss is never negative; 20 dB leave a hundredth")
 ]
-BlockedDecibels = Annotated[float, Quantity("a loss in dB", 1e-3, 200.0, "20 dB leave a hundredth")]
 Hertz = Annotated[float, Quantity("a frequency in Hz", 1e3, 1e13, "2.4 GHz is written 2.4e9")]
 Metres = Annotated[
     float, Quantity("a length in m", -1e7, 1e7, "use metres from a nearby local origin: east, north and up")
-]
-KeepOutMetres = Annotated[
-    float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
-]
-ReferenceMetres = Annotated[
-    float, Quantity("a distance in m", 1e-3, 1e7, "where the reference gain holds; mostly 1")
 ]
 MarginMetres = Annotated[
     float, Quantity("a length in m", 0.0, 1e7, "a margin is never negative; 0 means none")
@@ -81,15 +74,6 @@ MarginMetres = Annotated[
 RadiusMetres = Annotated[float, Quantity("a radius in m", 1e-3, 1e7, "a shape has an inside")]
 ErrorMetres = Annotated[
     float, Quantity("a length in m", 0.0, 1e7, "an error is a size, never negative; 0 means none")
-]
-TiltDegrees = Annotated[
-    float, Quantity("an angle in degrees", 0.0, 180.0, "a tilt below 0 reaches no axis; 180 is any attitude")
-]
-MountDegrees = Annotated[
-    float, Quantity("an angle in degrees", 0.0, 90.0, "0 is along the body's vertical, 90 across it")
-]
-ErrorDegrees = Annotated[
-    float, Quantity("an angle in degrees", 0.0, 90.0, "an error is a size, never negative; 0 means none")
 ]
 AttitudeDegrees = Annotated[
     float, Quantity("an angle in degrees", -360.0, 360.0, "angles in files are in degrees")
@@ -103,8 +87,6 @@ Weight = Annotated[
 Component = Annotated[
     float, Quantity("a component of a direction", -1e9, 1e9, "[0, 0, 1] is upright, [1, 0, 0] points east")
 ]
-Coefficient = Annotated[float, Quantity("a coefficient", -1e9, 1e9, "gains are linear here")]
-Wavelengths = Annotated[float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")]
 
 Latitude = Annotated[
     float, Quantity("a latitude in degrees", -90.0, 90.0, f"north of the equator is positive; {EXCHANGED}")
@@ -118,9 +100,6 @@ Altitude = Annotated[
 ]
 SeaAltitude = Annotated[
     float, Quantity("an altitude in m over the sea", -1e4, 1e5, "not the height above the ground")
-]
-GroundHeight = Annotated[
-    float, Quantity("a height in m above the ground at the origin", -1e4, 1e5, "not over the sea")
 ]
 
 
@@ -159,9 +138,6 @@ AxisDirection = Annotated[
 RollPitchYaw = Annotated[
     tuple[AttitudeDegrees, AttitudeDegrees, AttitudeDegrees],
     ListOf("a list of three angles in degrees [roll, pitch, yaw]", 3, 3),
-]
-SemiAxes = Annotated[
-    tuple[ErrorMetres, ErrorMetres, ErrorMetres], ListOf("a list of three semi-axes in m [a, b, c]", 3, 3)
 ]
 
 

@@ -65,6 +65,12 @@ def nearest(word: str, words: Collection[str]) -> str:
     return best if best and similarity(best) >= _LIKE_ENOUGH else ""
 
 
+def meant(word: object, words: Collection[str]) -> str:
+    """Ask whether the known word nearest to an unknown one is meant; empty where none is like it."""
+    guess = nearest(word, words) if isinstance(word, str) else ""
+    return f'; did you mean "{guess}"?' if guess else ""
+
+
 def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str] = ()) -> str:
     """Word the fault of an unknown word, with the one that may be meant.
 
@@ -74,6 +80,5 @@ def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str
         words: the words to choose from.
         likely: those of them that are the likelier meaning.
     """
-    guess = nearest(word, likely) or nearest(word, words)
-    meant = f'; did you mean "{guess}"?' if guess else ";"
-    return f"unknown {noun}{meant} the {noun}s here are {', '.join(words)}"
+    question = meant(word, likely) or meant(word, words) or ";"
+    return f"unknown {noun}{question} the {noun}s here are {', '.join(words)}"

@@ -18,7 +18,7 @@ class Status(StrEnum):
     CERTIFIED = "certified"
     GAP_NOT_REACHED = "gap-not-reached"
     BEST_FOUND = "best-found"
-    GIVEN = "given"
+    POSE_GIVEN = "given"
 
     @property
     def message(self) -> str:
@@ -30,7 +30,7 @@ _ENDS = {
     Status.CERTIFIED: "certified optimal within the requested gap",
     Status.GAP_NOT_REACHED: "the upper bound is valid, but the requested gap was not reached",
     Status.BEST_FOUND: "best of many local optima, not proved to be global",
-    Status.GIVEN: "the pose was given, not searched for",
+    Status.POSE_GIVEN: "the pose was given, not searched for",
 }
 
 

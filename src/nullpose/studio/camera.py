@@ -135,7 +135,7 @@ def matter_m(scenario: Scenario, pose: Pose | None) -> FloatArray:
         pose: of the drone, if there is one.
     """
     size_m = scene_size_m(scenario)
-    points = [point.position_m for point in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers)]
+    points = [point.position_m for point in scenario.points]
     drone = np.empty((0, 3)) if pose is None else pose.position_m + size_m * np.array(_DRONE)
     return np.vstack([points, np.add(points, [0.0, 0.0, _TALL * size_m]), drone])
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from types import MappingProxyType
 from typing import Unpack
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.scenario import Antenna, Scenario
 from nullpose.solver import Result, solve
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.result import provenance
 from nullpose.study.case import Case
 from nullpose.study.evaluation import evaluated
+from nullpose.study.progress import OnProgress, ticked
 from nullpose.study.table import ResultRow, ResultTable
 
 _POINTS = ("nodes", "jammers", "eavesdroppers")
@@ -22,7 +22,7 @@ _POINTS = ("nodes", "jammers", "eavesdroppers")
 def compare_antennas(
     scenario: Scenario,
     *,
-    on_progress: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = None,
     **options: Unpack[SolveKeywords],
 ) -> ResultTable:
     """Solve a scenario with the paper's antennas and with its own, and fly the first pose with the latter.
@@ -41,18 +41,16 @@ def compare_antennas(
         SolveError: no pose reaches every node.
     """
     solve_options = SolveOptions(**options).of(scenario)
-    if not scenario.states_antennas:
-        raise UsageError(
-            "antenna: every antenna is the paper's, a dipole with a perfect null on the drone and isotropic "
-            "ones on the ground; state [antenna] null_depth_db, or antenna at a node or a jammer"
-        )
+    require_usage(
+        scenario.states_antennas,
+        "antenna: every antenna is the paper's, a dipole with a perfect null on the drone and isotropic "
+        "ones on the ground; state [antenna] null_depth_db, or antenna at a node or a jammer",
+    )
     results: dict[str, Result] = {}
     scenes = {"promised": with_antennas(scenario, drone=False, ground=False), "possible": scenario}
-    for done, (name, scene) in enumerate(scenes.items(), start=1):
+    for name, scene in ticked([*scenes.items()], on_progress):
         results[name] = solve(scene, **options)
         options["certify"] = solve_options.certify and not results[name].interrupted
-        if on_progress is not None:
-            on_progress(done, len(scenes))
     flown = {
         "received": scenario,
         "with_ground": with_antennas(scenario, drone=False, ground=True),

@@ -12,9 +12,9 @@ from pydantic import BeforeValidator, Field
 from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
-from nullpose.scenario.faults import Place, rejection
-from nullpose.scenario.rules import ByName, Choice, Count, Quantity, Rule
-from nullpose.scenario.section import Section
+from nullpose.scenario.faults import Place, rejection, stated
+from nullpose.scenario.rules import ByName, Choice, Count, Quantity
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described
@@ -33,17 +33,12 @@ _AIRFRAMES = {
 """The vehicles of every comparison, by the tilt that they take; every tilt with either mount."""
 LEVEL = "level-vertical"  # the case that studies compare others with
 
+SHARE = 0.99
+"""Of the omnidirectional value: what suffices for the least tilt, unless another share is stated."""
 Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
 Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
-Share = Annotated[float, Quantity("a share", 1e-6, 1.0, "0.99 is all but a hundredth")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
-
-def _read_scheme(value: object) -> str:
-    return Choice("a scheme", RECORDS).read(value)
-
-
-_SchemeName = Annotated[Scheme, BeforeValidator(_read_scheme)]
 
 _VEHICLE = ByName(
     "a table with tilt_max_deg and mount_deg, or a name",
@@ -52,16 +47,13 @@ _VEHICLE = ByName(
 _POSE = ByName("a table with position_m, or a name", {"centroid": {"position_m": "centroid"}})
 
 
-class _Truth(Rule):
-    """True or false, and nothing that merely resembles it."""
-
-    def read(self, value: object) -> bool:
-        if not isinstance(value, bool):
-            raise rejection(f"got {described(value)}, must be true or false, without quotes")
-        return value
+def _truth(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise rejection(f"got {described(value)}, must be true or false, without quotes")
+    return value
 
 
-_Bool = Annotated[bool, _Truth()]
+_Bool = Annotated[bool, BeforeValidator(_truth)]
 
 
 class Case(Section):
@@ -95,55 +87,36 @@ class Case(Section):
         description="What tables and figures call it. Left out: C1, C2, ... by its place in the file.",
         examples=["tilt-10-horizontal"],
     )
-    scheme: _SchemeName | None = Field(
-        default=None,
-        description=f"How the pose is chosen. Left out: {Scheme.OPTIMUM.value}.",
-        examples=[Scheme.VERTICAL.value],
+    scheme: Annotated[Scheme, Choice("a scheme", RECORDS)] | None = optional(
+        f"How the pose is chosen. Left out: {Scheme.OPTIMUM.value}.", Scheme.VERTICAL.value
     )
-    airframe: Annotated[Airframe, _VEHICLE] | None = Field(
-        default=None,
-        description="The vehicle in place of the scene's: level-vertical, level-horizontal, "
+    airframe: Annotated[Airframe, _VEHICLE] | None = optional(
+        "The vehicle in place of the scene's: level-vertical, level-horizontal, "
         "tilt-10-horizontal (or 20 or 30, or vertical), omnidirectional, a preset, or a table with "
         "tilt_max_deg, which may be least, and mount_deg, which may be best.",
-        examples=["tilt-10-horizontal"],
+        "tilt-10-horizontal",
     )
-    mount_scenes: Annotated[int, Count("a number of scenes", 1, 1e6, "more take longer")] | None = Field(
-        default=None,
-        description='With mount_deg = "best": number of scenes that choose the mount. Left out: 64.',
-        examples=[64],
+    mount_scenes: Annotated[int, Count("a number of scenes", 1, 1e6, "more take longer")] | None = optional(
+        'With mount_deg = "best": number of scenes that choose the mount. Left out: 64.', 64
     )
-    reach: Share | None = Field(
-        default=None,
-        description='With tilt_max_deg = "least": the share of the omnidirectional vehicle\'s bound that '
-        "suffices. Left out: 0.99.",
-        examples=[0.99],
+    reach: Annotated[float, Quantity("a share", 1e-6, 1.0, "0.99 is all but a hundredth")] | None = optional(
+        'With tilt_max_deg = "least": the share of the omnidirectional vehicle\'s bound that '
+        f"suffices. Left out: {SHARE}.",
+        SHARE,
     )
-    array: Array | None = Field(
-        default=None,
-        description="An array on a level vehicle: elements, layout and spacing_wavelengths.",
-        examples=[{"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5}],
+    array: Array | None = optional(
+        "An array on a level vehicle: elements, layout and spacing_wavelengths.",
+        {"elements": 4, "layout": "linear", "spacing_wavelengths": 0.5},
     )
-    robust: _Bool | None = Field(
-        default=None,
-        description="True: the pose that guarantees most under the scene's errors.",
-        examples=[True],
+    robust: _Bool | None = optional("True: the pose that guarantees most under the scene's errors.", True)
+    pose: Annotated[FixedPose, _POSE] | None = optional(
+        "A pose to evaluate in every scene, with nothing searched or proved: a table, or centroid.",
+        {"position_m": [0.0, 25.0, 8.0], "roll_deg": 90.0},
     )
-    pose: Annotated[FixedPose, _POSE] | None = Field(
-        default=None,
-        description="A pose to evaluate in every scene, with nothing searched or proved: a table, or "
-        "centroid.",
-        examples=[{"position_m": [0.0, 25.0, 8.0], "roll_deg": 90.0}],
-    )
-    certify: _Bool | None = Field(
-        default=None, description="False: search only, and prove nothing.", examples=[False]
-    )
-    gap: Gap | None = Field(
-        default=None, description="Relative gap of this case, in place of the study's.", examples=[1e-2]
-    )
-    time_limit_s: Seconds | None = Field(
-        default=None,
-        description="Seconds of one solve of this case, in place of the study's.",
-        examples=[30.0],
+    certify: _Bool | None = optional("False: search only, and prove nothing.", False)
+    gap: Gap | None = optional("Relative gap of this case, in place of the study's.", 1e-2)
+    time_limit_s: Seconds | None = optional(
+        "Seconds of one solve of this case, in place of the study's.", 30.0
     )
 
     @classmethod
@@ -152,20 +125,19 @@ class Case(Section):
         vehicle = data.get("airframe")
         if isinstance(vehicle, Mapping) and vehicle.get("tilt_max_deg") == "least":
             vehicle = {**vehicle, "tilt_max_deg": 180.0}
-            data = {"reach": 0.99, **data, "airframe": vehicle}
+            data = {"reach": SHARE, **data, "airframe": vehicle}
         if isinstance(vehicle, Mapping) and vehicle.get("mount_deg") == "best":
             data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield keys of a proof where there is none."""
-        if self.mount_scenes is not None and raw.get("airframe") is None:
-            yield ("mount_scenes",), 'has no meaning without airframe; add one with mount_deg = "best"'
-        if self.reach is not None and raw.get("airframe") is None:
-            yield ("reach",), 'has no meaning without airframe; add one with tilt_max_deg = "least"'
-        for key in ("certify", "gap", "time_limit_s"):
-            if self.pose is not None and getattr(self, key) is not None:
-                yield (key,), "has no meaning with a pose, of which nothing is proved; remove it"
+        if raw.get("airframe") is None:
+            message = "has no meaning without airframe; add one with "
+            yield from stated(raw, ("mount_scenes",), f'{message}mount_deg = "best"')
+            yield from stated(raw, ("reach",), f'{message}tilt_max_deg = "least"')
+        proving = ("certify", "gap", "time_limit_s") if self.pose is not None else ()
+        yield from stated(raw, proving, "has no meaning with a pose, of which nothing is proved; remove it")
 
     @property
     def is_best_pose(self) -> bool:

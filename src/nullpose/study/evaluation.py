@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate
@@ -97,11 +97,20 @@ def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
         >>> round(result.objective.value_db, 2), round(result.details.below_bound, 2)  # dB
         (-4.08, 5.07)
     """
-    if best.scenario.array is not None:
-        raise UsageError("evaluate: given a scenario with an [array]; allowed: one antenna; remove [array]")
+    require_one_antenna(best.scenario, "evaluate")
     results = tuple(_against(best, pose) for pose in poses)
     sizes = best.error_sizes if len(results) == 1 else None
     return Evaluation(best=best, results=tuple(replace(result, error_sizes=sizes) for result in results))
+
+
+def require_one_antenna(scenario: Scenario, verb: str) -> None:
+    """Refuse a scenario with an array.
+
+    Raises:
+        UsageError: it has one.
+    """
+    message = f"{verb}: given a scenario with an [array]; allowed: one antenna; remove [array]"
+    require_usage(scenario.array is None, message)
 
 
 def evaluated(result: Result, scenario: Scenario, pose: Pose, upper_bound: float | None = None) -> Result:
@@ -114,7 +123,7 @@ def evaluated(result: Result, scenario: Scenario, pose: Pose, upper_bound: float
         result,
         scenario=scenario,
         scheme="given",
-        status=Status.GIVEN,
+        status=Status.POSE_GIVEN,
         objective=objective,
         pose=pose,
         links=links,
@@ -150,19 +159,17 @@ def pose_faults(scenario: Scenario, pose: Pose) -> Iterable[str]:
     Raises:
         UsageError: the pose is at a ground point.
     """
-    groups = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
-    names = (*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names)
-    distances_m = np.linalg.norm(np.vstack([g.reshape(-1, 3) for g in groups]) - pose.position_m, axis=-1)
-    nearest, keep_out_m = int(np.argmin(distances_m)), scenario.airspace.keep_out_m
-    if distances_m[nearest] == 0.0:
-        raise UsageError(
-            f"pose: given the position of {names[nearest]}; allowed: {keep_out_m:g} m or more from it"
-        )
+    distances_m = np.linalg.norm(scenario.point_positions_m - pose.position_m, axis=-1)
+    near_m, keep_out_m = float(np.min(distances_m)), scenario.airspace.keep_out_m
+    nearest = scenario.points[int(np.argmin(distances_m))].name
+    require_usage(
+        near_m > 0.0, f"pose: given the position of {nearest}; allowed: {keep_out_m:g} m or more from it"
+    )
     for words, clearance_m in scenario.open_airspace.clearances_m(pose.position_m):
         if clearance_m < -BORDER_M:
             yield f"the position is {-clearance_m:.3g} m {words}"
-    if distances_m[nearest] < keep_out_m - BORDER_M:
-        yield f"{distances_m[nearest]:.3g} m from {names[nearest]}, closer than keep_out_m = {keep_out_m:g} m"
+    if near_m < keep_out_m - BORDER_M:
+        yield f"{near_m:.3g} m from {nearest}, closer than keep_out_m = {keep_out_m:g} m"
     if scenario.airframe is not None and pose.tilt_rad > scenario.airframe.tilt_max_rad + _TILT_RAD:
         tilts_deg = np.degrees([pose.tilt_rad, scenario.airframe.tilt_max_rad])
         yield "tilted by {:.3f} deg, more than the airframe's {:g} deg".format(*tilts_deg)

@@ -62,7 +62,7 @@ def _over_centroid_m(scenario: Scenario) -> NDArray[np.float64]:
 
     It is at the lowest altitude of the airspace, on the ceiling of a no-fly zone or on a keep-out ball.
     """
-    points_m = np.vstack([scenario.source_positions_m, scenario.eavesdropper_positions_m])
+    points_m = scenario.point_positions_m
     across_m = scenario.node_positions_m[:, :2].mean(axis=0)
     squares_m2 = scenario.airspace.keep_out_m**2 - np.sum((points_m[:, :2] - across_m) ** 2, axis=1)
     heights_m = [scenario.airspace.altitude_m[0], *(points_m[:, 2] + np.sqrt(np.maximum(squares_m2, 0.0)))]

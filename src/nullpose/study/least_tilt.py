@@ -10,17 +10,20 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Unpack
 
 import numpy as np
 
-from nullpose.errors import SolveError, UsageError
+from nullpose.errors import SolveError, require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import FloatArray
 from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Scenario, require_scenario
 from nullpose.solver import Result, SolveKeywords, Status, solve
 from nullpose.solver.rigour import Rigour
+from nullpose.study.case import SHARE
+from nullpose.study.progress import OnProgress, ticked
 from nullpose.study.vehicle_search import LEAST_GAP, VehicleSearch, Verdict, required
 
 MOUNTS_DEG = (0.0, 45.0, 90.0)
@@ -114,9 +117,9 @@ class LeastTilt:
 def least_tilt(
     scenario: Scenario,
     *,
-    share: float = 0.99,
+    share: float = SHARE,
     mounts_deg: Sequence[float] = MOUNTS_DEG,
-    on_progress: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = None,
     **options: Unpack[SolveKeywords],
 ) -> LeastTilt:
     """Find the least tilt with which a vehicle reaches a share of what any pose can.
@@ -145,30 +148,24 @@ def least_tilt(
         (80.0, 0.0)
     """
     require_scenario(scenario)
-    if not 0.0 < share <= 1.0:
-        raise UsageError(f"share: given {share!r}; allowed: above 0 to 1, of the omnidirectional value")
+    require_usage(0.0 < share <= 1.0, f"share (--reach): given {share!r}; allowed: above 0 to 1")
     for mount_deg in mounts_deg:
-        if not 0.0 <= mount_deg <= 90.0:
-            raise UsageError(f"mount: given {mount_deg!r} degrees; allowed: 0 (upright) to 90 (flat)")
-    if not mounts_deg and not scenario.antenna_record.is_axisymmetric:
-        raise UsageError(
-            f"mount: given best with a {scenario.antenna_record.label}, which has no axis; state mounts in "
-            "degrees"
+        require_usage(
+            0.0 <= mount_deg <= 90.0,
+            f"mount: given {mount_deg!r} degrees; allowed: 0 (upright) to 90 (flat)",
         )
-    began, total = time.perf_counter(), len(mounts_deg) + 1
-    search = tilt_search(scenario, share, options)
-    mounts = []
-    for done, mount_deg in enumerate(mounts_deg, start=1):
-        mounts.append(search.sides(mount_deg))
-        if on_progress is not None:
-            on_progress(done, total)
-    best = search.best() if scenario.antenna_record.is_axisymmetric else None
-    if on_progress is not None:
-        on_progress(total, total)
+    require_usage(
+        mounts_deg or scenario.antenna_record.is_axisymmetric,
+        f"mount: given best with a {scenario.antenna_record.label}, which has no axis; state its degrees",
+    )
+    began, search = time.perf_counter(), tilt_search(scenario, share, options)
+    finders: list[Callable[[], MountTilt | None]] = [partial(search.sides, each) for each in mounts_deg]
+    finders.append(search.best if scenario.antenna_record.is_axisymmetric else lambda: None)
+    *mounts, best = [find() for find in ticked(finders, on_progress)]
     return LeastTilt(
         share=share,
         omnidirectional=search.whole,
-        mounts=tuple(mounts),
+        mounts=tuple(filter(None, mounts)),
         best=best,
         rigour=search.rigour,
         seconds=time.perf_counter() - began,
@@ -187,9 +184,9 @@ def tilt_search(scenario: Scenario, share: float, options: SolveKeywords) -> Til
         KeyboardInterrupt: Ctrl-C ended the proof.
         SolveError: no pose reaches every node.
     """
-    if options.get("gap") is None:
-        options["gap"] = min(max(0.1 * (1.0 - share), LEAST_GAP), _GAP)
-    search = TiltSearch(scenario.without_array.model_copy(update={"airframe": None}), share, options)
+    gap = min(max(0.1 * (1.0 - share), LEAST_GAP), _GAP) if options.get("gap") is None else options["gap"]
+    free = scenario.without_array.model_copy(update={"airframe": None})
+    search = TiltSearch(free, share, options | {"gap": gap})
     uninterrupted(search.whole)
     return search
 
@@ -197,7 +194,7 @@ def tilt_search(scenario: Scenario, share: float, options: SolveKeywords) -> Til
 def values_by_angle(
     found: LeastTilt,
     *,
-    on_progress: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = None,
     **options: Unpack[SolveKeywords],
 ) -> tuple[FloatArray, FloatArray]:
     """Find the best value at each angle between the antenna and the vertical: what a level vehicle reaches.
@@ -217,22 +214,20 @@ def values_by_angle(
     """
     scenario = found.omnidirectional.scenario
     antenna = scenario.antenna_record
-    if not (antenna.is_axisymmetric and antenna.is_even):
-        raise UsageError(
-            f"values by angle: given a {antenna.label}; allowed: one that is the same all round its axis and "
-            "upside down"
-        )
+    require_usage(
+        antenna.is_axisymmetric and antenna.is_even,
+        f"values by angle: given a {antenna.label}; allowed: one that is the same all round its axis and "
+        "upside down",
+    )
     angles_deg, values = np.linspace(0.0, 90.0, _ANGLES), []
-    for done, angle_deg in enumerate(angles_deg.tolist(), start=1):
+    options.setdefault("gap", _GAP)
+    for angle_deg in ticked(angles_deg.tolist(), on_progress):
         level = Airframe(tilt_max_deg=0.0, mount_deg=angle_deg)
-        options.setdefault("gap", _GAP)
         try:
             result = uninterrupted(solve(scenario.model_copy(update={"airframe": level}), **options))
             values.append(result.objective.value)
         except SolveError:  # no pose at that angle reaches every node
             values.append(0.0)
-        if on_progress is not None:
-            on_progress(done, len(angles_deg))
     best_deg = angle_from_vertical_deg(found.omnidirectional)
     return np.append(angles_deg, best_deg), np.append(values, found.omnidirectional.objective.value)
 

@@ -6,12 +6,14 @@ import csv
 import io
 import math
 from collections.abc import Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from nullpose.errors import Fault, ScenarioError, UsageError
 from nullpose.physics import Poses
+from nullpose.scenario.faults import call_each, raise_all, refusal, require
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.toml_file import FileKind, file_text
 from nullpose.scenario.units import ALTITUDE_KEYS
@@ -52,45 +54,45 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = N
         earthly = "x_m" not in header and ("lat_deg" in header or "lon_deg" in header)
         columns = (*(("lat_deg", "lon_deg", altitude) if earthly else _LOCAL), *_ANGLES)
         absent = [name for name in columns[:-1] if name not in header]
-        message = "there is no column {}, must be " + ", ".join(columns)
-        faults = [Fault("line 1", message.format(name)) for name in absent]
-        if earthly and origin is None:
-            faults.append(Fault("line 1", _NO_ORIGIN))
-        numbers = [] if faults else [_numbers(row, rows.line_num, columns, faults, origin) for row in rows]
-        if not numbers and not faults:
-            faults.append(Fault("", "there is no line below the header, must be one for each pose"))
+        faults = [f"there is no column {name}, must be {', '.join(columns)}" for name in absent]
+        faults += [_NO_ORIGIN] if earthly and origin is None else []
+        raise_all([Fault("line 1", message) for message in faults])
+        place = origin if earthly else None
+        numbers, wrong = call_each(lambda row: _numbers(row, f"line {rows.line_num}", columns, place), rows)
+        raise_all(wrong)
+        require(numbers, "", "there is no line below the header, must be one for each pose")
     except csv.Error as error:
-        numbers, faults = [], [Fault("", f"this is not CSV: {error}; check the quotes")]
+        raise refusal("", f"this is not CSV: {error}; check the quotes", str(path)) from None
     except ScenarioError as error:
         raise ScenarioError(error.faults, str(path)) from None
-    if faults:
-        raise ScenarioError(faults, str(path))
     table = np.array(numbers)
     roll, pitch, yaw = np.radians(table[:, 3:].T)
     return Poses(table[:, :3], roll, pitch, yaw, mount_rad)
 
 
 def _numbers(
-    row: Mapping[str, str | None],
-    line: int,
-    columns: Sequence[str],
-    faults: list[Fault],
-    origin: Origin | None,
+    row: Mapping[str, str | None], line: str, columns: Sequence[str], origin: Origin | None
 ) -> list[float]:
-    """Return a line's metres and degrees, after noting what is wrong with them."""
-    found = []
-    for name in columns:
-        text = row.get(name, "0")
-        try:
-            number = float(text or "")
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number):
-            faults.append(Fault(f"line {line}, column {name}", f"got {described(text)}, must be a number"))
-        found.append(number)
-    if columns[:3] != _LOCAL and origin is not None and all(map(math.isfinite, found)):
-        try:
-            found[:3] = origin.position_m(dict(zip(columns[:3], found, strict=False))).tolist()
-        except UsageError as error:
-            faults.append(Fault(f"line {line}", str(error)))
-    return found
+    """Read a line's metres and degrees; a place on the Earth from an origin.
+
+    Raises:
+        ScenarioError: with every fault of the line.
+    """
+    texts = {name: row.get(name, "0") for name in columns}
+    found = {name: _number(text) for name, text in texts.items()}
+    wrong = [name for name, number in found.items() if not math.isfinite(number)]
+    raise_all(
+        [Fault(f"{line}, column {name}", f"got {described(texts[name])}, must be a number") for name in wrong]
+    )
+    place, angles_deg = dict(islice(found.items(), 3)), [found[name] for name in _ANGLES]
+    try:
+        return [*(place.values() if origin is None else origin.position_m(place).tolist()), *angles_deg]
+    except UsageError as error:
+        raise refusal(line, str(error)) from None
+
+
+def _number(text: str | None) -> float:
+    try:
+        return float(text or "")
+    except ValueError:
+        return math.nan

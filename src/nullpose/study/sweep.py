@@ -6,24 +6,26 @@ import math
 import re
 import time
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import product
 from types import MappingProxyType
 from typing import Unpack
 
 import numpy as np
 
-from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.errors import Fault, ScenarioError, UsageError, require_usage
 from nullpose.objectives import Quantity
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
 from nullpose.solver import Result, Rigour, SolveKeywords, SolveOptions, Status, solve
 from nullpose.solver.objective import status_of
 from nullpose.solver.result import Stats
-from nullpose.study.case import Case
+from nullpose.study.case import SHARE, Case
 from nullpose.study.evaluation import evaluated
 from nullpose.study.least_tilt import tilt_search, uninterrupted
+from nullpose.study.progress import OnProgress, ticked
 from nullpose.study.table import ResultRow, ResultTable
 
 _FREER = {
@@ -92,8 +94,8 @@ def sweep(
     *,
     schemes: Sequence[str] | None = None,
     mounts_deg: Sequence[float] | None = None,
-    share: float = 0.99,
-    on_progress: Callable[[int, int], None] | None = None,
+    share: float = SHARE,
+    on_progress: OnProgress = None,
     **options: Unpack[SolveKeywords],
 ) -> ResultTable:
     """Return the best pose of every scheme at every value of one setting, each with its upper bound.
@@ -137,45 +139,43 @@ def sweep(
     chosen, sign = SolveOptions(**options), freedom(path, scenario)
     scenarios = _scenarios_along(scenario, path, values)
     if mounts_deg is not None:
-        if schemes is not None or path.startswith("airframe") or not mounts_deg:
-            raise UsageError(
-                f"mounts: given {[*mounts_deg] or 'best'} along {path}; allowed: angles in degrees, without "
-                "schemes, along a setting other than the airframe's"
-            )
+        require_usage(
+            mounts_deg and schemes is None and not path.startswith("airframe"),
+            f"mounts: given {[*mounts_deg] or 'best'} along {path}; allowed: angles in degrees, without "
+            "schemes, along a setting other than the airframe's",
+        )
         found_tilts = _least_tilts(scenarios, dict.fromkeys(mounts_deg), share, on_progress, options)
         return ResultTable(path, tuple(found_tilts))
-    cases: list[Case] = []
-    left_out: dict[str, str] = {}
-    for scheme in Scheme if schemes is None else map(Scheme, schemes):
-        reasons = ((value, scheme.not_applicable(varied)) for value, varied in scenarios)
-        reason = next((f"{reason} (at {value:g})" for value, reason in reasons if reason), "")
-        if reason and schemes is not None:
-            raise UsageError(f"scheme {scheme}: {reason}; try another scheme")
-        if reason:
-            left_out[scheme.value] = reason
-        else:
-            cases.append(Case(name=scheme.value, scheme=scheme))
-
+    every = Scheme if schemes is None else map(Scheme, schemes)
+    reasons = {scheme: _meaningless(scheme, scenarios) for scheme in every}
+    left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
+    if left_out and schemes is not None:
+        raise UsageError("scheme {}: {}; try another scheme".format(*next(iter(left_out.items()))))
+    cases = [Case(name=scheme.value, scheme=scheme) for scheme, reason in reasons.items() if not reason]
     found: dict[str, list[Result]] = defaultdict(list)
     rows: dict[tuple[float, str], ResultRow] = {}
     # a point that bounds others comes first; without a direction the order is that of the values
     order = sorted(scenarios, key=lambda point: -sign * point[0])
-    for (value, varied), case in product(order, cases):
+    for (value, varied), case in ticked([*product(order, cases)], on_progress):
         implied = from_freer(varied, found[case.name], chosen) if sign else None
         result = implied or uninterrupted(solve(varied, case.name, **options))
         found[case.name].append(result)
         rows[value, case.name] = ResultRow.of(value, result, case)
-        if on_progress is not None:
-            on_progress(len(rows), len(order) * len(cases))
     in_order = (rows[value, case.name] for value, _ in scenarios for case in cases)
     return ResultTable(path, tuple(in_order), MappingProxyType(left_out))
+
+
+def _meaningless(scheme: Scheme, scenarios: Sequence[tuple[float, Scenario]]) -> str:
+    """Give the reason for which a scheme has no meaning at the first such value; empty if it has."""
+    reasons = ((value, scheme.not_applicable(varied)) for value, varied in scenarios)
+    return next((f"{reason} (at {value:g})" for value, reason in reasons if reason), "")
 
 
 def _least_tilts(
     scenarios: Sequence[tuple[float, Scenario]],
     mounts_deg: Collection[float],
     share: float,
-    on_progress: Callable[[int, int], None] | None,
+    on_progress: OnProgress,
     options: SolveKeywords,
 ) -> Iterator[ResultRow]:
     """Find the least tilt of every mount at every value.
@@ -193,13 +193,12 @@ def _least_tilts(
         )
         for mount_deg in mounts_deg
     ]
-    for point, (value, varied) in enumerate(scenarios):
-        search = tilt_search(varied, share, options)
-        for done, (mount_deg, case) in enumerate(zip(mounts_deg, cases, strict=True), start=1):
-            mount = search.sides(mount_deg)
-            yield ResultRow.of(value, search.result_of(mount), case, tilt=mount)
-            if on_progress is not None:
-                on_progress(point * len(cases) + done, len(scenarios) * len(cases))
+    search_at = lru_cache(maxsize=1)(lambda point: tilt_search(scenarios[point][1], share, options))
+    steps = product(range(len(scenarios)), zip(mounts_deg, cases, strict=True))
+    for point, (mount_deg, case) in ticked([*steps], on_progress):
+        search = search_at(point)
+        mount = search.sides(mount_deg)
+        yield ResultRow.of(scenarios[point][0], search.result_of(mount), case, tilt=mount)
 
 
 def _scenarios_along(

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.channel import excess_gain
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.physics import link_gain, objective_value, to_db
+from nullpose.physics.types import FloatArray
 from nullpose.problem.build import build_family
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.scenario.airspace import BORDER_M
 from nullpose.solver import Result
+from nullpose.study.evaluation import require_one_antenna
 from nullpose.study.field import Field
-
-FloatArray = NDArray[np.float64]
 
 CELLS = 45
 """Points along the longer side of a map, unless told otherwise."""
@@ -40,7 +39,7 @@ def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray
         scenario: the scene.
         position_m: (3,) where the drone is, metres.
     """
-    places = np.vstack([_points_m(scenario), position_m])[:, :2]
+    places = np.vstack([scenario.point_positions_m, position_m])[:, :2]
     low, high = places.min(axis=0), places.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     half = np.maximum(half + _MARGIN * max(float(half.max()), 0.5 * _LEAST_M), 0.5 * _LEAST_M)
@@ -86,7 +85,7 @@ def value_map(
     up = float(place_m[2]) if altitude_m is None else altitude_m
     east, north = map_grid_m(scenario, place_m, cells)
     grid = np.stack(np.broadcast_arrays(*np.meshgrid(east, north), up), -1)
-    nearest_m = np.linalg.norm(grid[..., None, :] - _points_m(scenario), axis=-1).min(axis=-1)
+    nearest_m = np.linalg.norm(grid[..., None, :] - scenario.point_positions_m, axis=-1).min(axis=-1)
     usable = scenario.open_airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m - BORDER_M)
     values = np.full(usable.shape, np.nan)
     values[usable] = _best_values(result, grid[usable], go_on)
@@ -116,13 +115,16 @@ def require_map(scenario: Scenario, altitude_m: float | None, cells: int) -> Non
             has an array.
     """
     low, high = scenario.airspace.altitude_m
-    if altitude_m is not None and not low <= altitude_m <= high:
-        words = f"given {altitude_m:g} m; allowed: {low:g} to {high:g} m, as in airspace.altitude_m"
-        raise UsageError(f"altitude: {words}")
-    if not 2 <= cells <= _MOST_CELLS:
-        raise UsageError(f"cells: given {cells}; allowed: 2 to {_MOST_CELLS} along the longer side")
-    if scenario.array is not None:
-        raise UsageError("map: given a scenario with an [array]; allowed: one antenna; remove [array]")
+    level_m = low if altitude_m is None else altitude_m
+    require_usage(
+        low <= level_m <= high,
+        f"altitude: given {level_m:g} m; allowed: {low:g} to {high:g} m, as in airspace.altitude_m",
+    )
+    require_usage(
+        2 <= cells <= _MOST_CELLS,
+        f"cells: given {cells}; allowed: 2 to {_MOST_CELLS} along the longer side",
+    )
+    require_one_antenna(scenario, "map")
 
 
 def map_grid_m(scenario: Scenario, position_m: FloatArray, cells: int) -> tuple[FloatArray, FloatArray]:
@@ -141,11 +143,6 @@ def map_grid_m(scenario: Scenario, position_m: FloatArray, cells: int) -> tuple[
         for low, high, at in ends
     )
     return east, north
-
-
-def _points_m(scenario: Scenario) -> FloatArray:
-    groups = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
-    return np.vstack([group.reshape(-1, 3) for group in groups])
 
 
 def in_decibels(values: FloatArray) -> FloatArray:

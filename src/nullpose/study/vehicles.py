@@ -18,6 +18,7 @@ from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
 from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, TILTS_DEG, Case
 from nullpose.study.least_tilt import TiltSearch
+from nullpose.study.progress import OnProgress, ticked
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.vehicle_search import Verdict, judged
 
@@ -55,7 +56,7 @@ def cases_of(scenario: Scenario) -> Sequence[Case]:
 def compare_schemes(
     scenario: Scenario,
     *,
-    on_progress: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = None,
     **options: Unpack[SolveKeywords],
 ) -> ResultTable:
     """Solve a scenario under the paper's schemes with one dipole; those without meaning there are left out.
@@ -88,13 +89,13 @@ def compare_airframes(
     scenario: Scenario,
     *,
     cases: Sequence[Case] | None = None,
-    on_progress: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = None,
     **options: Unpack[SolveKeywords],
 ) -> ResultTable:
     """Solve a scenario for vehicles that differ in tilt and in the dipole's mount, and for arrays.
 
     The scenario's own airframe is tried as well if it states one that is none of the others. The best mount
-    of the dipole is that of ``nullpose.least_tilt``. Unless a gap is stated, lesser vehicles are proved
+    of the dipole is that of ``nullpose.least_tilt``. Unless a gap is stated, the others are proved
     only as near as it takes to tell whether they suffice. Where the scenario states errors, what each
     dipole guarantees is worked out at the pose that is best without them, and at the pose that guarantees
     most. After an interrupt during a proof the remaining vehicles are solved without one.
@@ -159,13 +160,13 @@ def _table(
     cases: Sequence[Case],
     solve_case: Callable[[Case, SolveKeywords], Result],
     options: SolveKeywords,
-    on_progress: Callable[[int, int], None] | None,
+    on_progress: OnProgress,
     left_out: dict[str, str],
 ) -> ResultTable:
     """Solve a scenario in each case; leave out vehicles without a pose, but for the omnidirectional one."""
     chosen = SolveOptions(**options).of(scenario)
     rows: list[ResultRow] = []
-    for done, case in enumerate(cases, start=1):
+    for case in ticked(cases, on_progress):
         try:
             result = solve_case(case, options)
         except SolveError as error:
@@ -179,8 +180,6 @@ def _table(
             is_interrupted = any(row.interrupted for row in (*rows, result))
             kept = _guaranteed(result, None if is_interrupted else options) if has_guarantee else None
             rows.append(ResultRow.of(math.nan, result, case, kept))
-        if on_progress is not None:
-            on_progress(done, len(cases))
     settings = MappingProxyType(provenance(chosen.seed) | chosen.settings)
     return ResultTable("", tuple(rows), MappingProxyType(left_out), scenario, settings)
 

@@ -1,5 +1,6 @@
 """Scenes with errors, and errors drawn at random, that the tests of robust solving share."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -60,7 +61,7 @@ def draw_errors() -> Callable[..., Draw]:
         return np.asarray(x * np.where(rng.uniform(size=(*shape, 1)) < 0.5, 1.0, inside))
 
     def draw(rng: np.random.Generator, scene: Scenario, axis: np.ndarray, count: int) -> Draw:
-        largest = scene.receiver.attitude_error_rad
+        largest = math.radians(scene.receiver.attitude_error_deg)
         angle = largest * np.where(rng.uniform(size=count) < 0.5, 1.0, np.sqrt(rng.uniform(size=count)))
         across = np.cross(axis, rng.normal(size=(count, 3)))
         across /= np.linalg.norm(across, axis=1, keepdims=True)

@@ -96,7 +96,7 @@ def test_a_local_search_over_errors_ends_at_it(kind: str, scene_of: Callable, ra
     p, u = place_above(rng), rng.normal(size=3)
     held = guarantee(scene, p, u)
     frame = np.linalg.svd(held.axis[None])[2]
-    cone, reach = scene.receiver.attitude_error_rad, scene.receiver.position_error_m
+    cone, reach = math.radians(scene.receiver.attitude_error_deg), scene.receiver.position_error_m
     sets_m = scene.jammer_uncertainty_m
 
     def errors_of(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -192,7 +192,7 @@ def test_the_case_is_allowed_and_as_bad_as_told(scene_of: Callable) -> None:
         held = guarantee(scene, p, rng.normal(size=3))
         for k, one in enumerate(held.ratios):
             case = one.case
-            assert case.rotation_rad <= scene.receiver.attitude_error_rad * (1.0 + 1e-9)
+            assert case.rotation_rad <= math.radians(scene.receiver.attitude_error_deg) * (1.0 + 1e-9)
             assert np.linalg.norm(case.position_offset_m) <= scene.receiver.position_error_m * (1.0 + 1e-9)
             for offset, matrix in zip(case.jammer_offsets_m, scene.jammer_uncertainty_m, strict=True):
                 x = np.linalg.lstsq(matrix, offset, rcond=1e-6)[0]

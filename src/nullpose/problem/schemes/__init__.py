@@ -64,8 +64,7 @@ def as_scheme(name: str) -> Scheme:
     try:
         return Scheme(name)
     except ValueError:
-        from nullpose.scenario.wording import nearest  # here, for it loads numpy
+        from nullpose.scenario.wording import meant  # here, for it loads numpy
 
-        guess = nearest(name, list(Scheme)) if isinstance(name, str) else ""
-        meant = f"; did you mean {str(guess)!r}?" if guess else ""
-        raise UsageError(f"scheme: given {name!r}; allowed: {', '.join(Scheme)}{meant}") from None
+        question = meant(name, list(Scheme))
+        raise UsageError(f"scheme: given {name!r}; allowed: {', '.join(Scheme)}{question}") from None

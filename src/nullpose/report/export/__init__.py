@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import replacing
 from nullpose.report.export.geojson import geojson_file
 from nullpose.report.export.kml import kml_file
@@ -51,8 +51,9 @@ def export_format(path: Path) -> ExportFormat:
     Raises:
         UsageError: no format has that ending.
     """
-    if path.suffix.lower() not in EXPORTS:
-        raise UsageError(f"--export: given {path}; allowed endings: {', '.join(EXPORTS)}")
+    require_usage(
+        path.suffix.lower() in EXPORTS, f"--export: given {path}; allowed endings: {', '.join(EXPORTS)}"
+    )
     return EXPORTS[path.suffix.lower()]
 
 

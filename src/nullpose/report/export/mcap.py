@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.physics import Pose, pose_frames
 from nullpose.report.export.places import marked_points
@@ -32,8 +32,7 @@ def require_foxglove(_: Scenario) -> None:
     Raises:
         UsageError: it is not installed.
     """
-    if find_spec("foxglove") is None:
-        raise UsageError("--export: .mcap needs foxglove-sdk; pip install 'nullpose[flight]'")
+    require_usage(find_spec("foxglove"), "--export: .mcap needs foxglove-sdk; pip install 'nullpose[flight]'")
 
 
 def mcap_file(result: Result) -> bytes:

@@ -131,7 +131,7 @@ def _open_ground(scenario: Scenario, altitude_m: float) -> Path:
     walls = [each for each in scenario.buildings if each.floor_m < altitude_m < each.heights_m[1]]
     closed = [shapely.Polygon(outline_m(zone)) for zone in zones]
     closed += [shapely.Polygon(each.outline_m, each.courtyard_outlines_m) for each in walls]
-    for point in (*scenario.nodes, *scenario.jammers, *scenario.eavesdroppers):
+    for point in scenario.points:
         x, y, z = point.position_m
         across_m = math.sqrt(max(airspace.keep_out_m**2 - (altitude_m - z) ** 2, 0.0))
         closed.append(shapely.Point(x, y).buffer(across_m, 24))

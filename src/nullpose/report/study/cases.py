@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.report.numbers import unit_of
 from nullpose.scenario import Airframe
 from nullpose.study.case import LEVEL, OMNIDIRECTIONAL, Case
@@ -35,8 +35,10 @@ def report_cases(spec: StudySpec, against: str | None = None) -> pd.DataFrame:
     """
     import pandas as pd
 
-    if against is not None and against not in spec.case_names:
-        raise UsageError(f"against: given {against!r}; allowed: {', '.join(spec.case_names)}")
+    require_usage(
+        against in (None, *spec.case_names),
+        f"against: given {against!r}; allowed: {', '.join(spec.case_names)}",
+    )
     scenes_airframe = _scenes_airframe(spec)
     placed = {case.name: _placed(case, scenes_airframe) for case in spec.cases}
     cases = pd.DataFrame(

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import prepare_folder, replacing, write_text
 from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
@@ -132,13 +132,19 @@ def report_study(
 
 
 def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | None) -> float | None:
-    if quantity.is_rate and in_db is not None:
-        raise UsageError("requirement-db: the study's values are rates; give --requirement-bps-hz instead")
-    if not quantity.is_rate and in_bps_hz is not None:
-        raise UsageError("requirement-bps-hz: the study's values are in dB; give --requirement-db instead")
+    require_usage(
+        in_db is None or not quantity.is_rate,
+        "requirement-db: the study's values are rates; give --requirement-bps-hz instead",
+    )
+    require_usage(
+        in_bps_hz is None or quantity.is_rate,
+        "requirement-bps-hz: the study's values are in dB; give --requirement-db instead",
+    )
     requirement = in_bps_hz if quantity.is_rate else in_db
-    if requirement is not None and not abs(requirement) < 1e6:
-        raise UsageError(f"requirement: given {requirement!r}; allowed: a finite number, as in 3")
+    require_usage(
+        requirement is None or abs(requirement) < 1e6,
+        f"requirement: given {requirement!r}; allowed: a finite number, as in 3",
+    )
     return 0.0 if requirement is None and quantity.noun == "margin" else requirement
 
 

@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, NamedTuple
 import numpy as np
 
 from nullpose.files import PlainTable
+from nullpose.physics.types import FloatArray
 from nullpose.scenario.buildings import MOST_BUILDINGS
 from nullpose.scenario.channel import EnvironmentName
 from nullpose.scenario.faults import require
@@ -16,7 +17,6 @@ from nullpose.scenario.rules import Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Range
 from nullpose.scenario.ways import Ways
-from nullpose.study.monte_carlo.distribution import FloatArray
 
 # alpha, beta per km^2 and gamma in m of ITU-R P.1410, as Al-Hourani et al. 2014 state them
 _BUILT_UP = {
@@ -26,9 +26,6 @@ _BUILT_UP = {
     "high-rise": (0.5, 300.0, 50.0),
 }
 
-_Share = Annotated[float, Quantity("a share of the ground", 1e-3, 0.99, "0.3 is urban: streets remain")]
-_PerKm2 = Annotated[float, Quantity("a number of buildings per km^2", 1e-3, 1e6, "500 is urban")]
-_Scale = Annotated[float, Quantity("a height in m", 0.1, 100.0, "15 m is urban, 50 m high-rise")]
 _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 
@@ -79,9 +76,15 @@ class Blocks(Section):
         "dense-urban (0.5, 300, 20) and high-rise (0.5, 300, 50). Either this, or the three numbers.",
         "urban",
     )
-    alpha: _Share | None = optional("The share of the ground that is built up.", 0.3)
-    beta_per_km2: _PerKm2 | None = optional("The mean number of buildings per square kilometre.", 500.0)
-    gamma_m: _Scale | None = optional(
+    alpha: (
+        Annotated[float, Quantity("a share of the ground", 1e-3, 0.99, "0.3 is urban: streets remain")] | None
+    ) = optional("The share of the ground that is built up.", 0.3)
+    beta_per_km2: (
+        Annotated[float, Quantity("a number of buildings per km^2", 1e-3, 1e6, "500 is urban")] | None
+    ) = optional("The mean number of buildings per square kilometre.", 500.0)
+    gamma_m: (
+        Annotated[float, Quantity("a height in m", 0.1, 100.0, "15 m is urban, 50 m high-rise")] | None
+    ) = optional(
         "Scale of the Rayleigh distribution of the heights, in metres; their mean is 1.25 times it.", 15.0
     )
     x_m: Range | None = optional(

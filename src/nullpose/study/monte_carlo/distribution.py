@@ -7,23 +7,19 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar, Self, get_args
 
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from nullpose.physics.types import FloatArray
 from nullpose.scenario.faults import collected
 from nullpose.scenario.rules import MOST_MEMBERS, ListOf, Quantity, Rule
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.ways import Ways, exactly_one
 from nullpose.scenario.wording import plain
-
-FloatArray = NDArray[np.float64]
 
 _Number = Annotated[float, Quantity("a number", -1e30, 1e30, "in the unit that the key ends in")]
 _Two = tuple[_Number, _Number]
 _Ends = Annotated[_Two, ListOf("a list of two numbers, the lower first", 2, 2)]
-_Normal = Annotated[_Two, ListOf("a list of two numbers: mean and standard deviation", 2, 2)]
-_Several = Annotated[tuple[_Number, ...], ListOf("a list of at least one number", 1, MOST_MEMBERS)]
 
 
 class Distribution(Section):
@@ -40,25 +36,17 @@ class Distribution(Section):
     header: ClassVar[str] = "a number, or a table such as { uniform = [0.5, 2.0] }"
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("fixed", "uniform", "log_uniform", "normal", "choice"),)
 
-    fixed: _Number | None = Field(
-        default=None, description="The same for all; a number in place of the table means this.", examples=[1]
+    fixed: _Number | None = optional("The same for all; a number in place of the table means this.", 1)
+    uniform: _Ends | None = optional("Evenly between two numbers.", [0.5, 2.0])
+    log_uniform: _Ends | None = optional(
+        "The logarithm evenly between those of two positive numbers.", [0.01, 100.0]
     )
-    uniform: _Ends | None = Field(
-        default=None, description="Evenly between two numbers.", examples=[[0.5, 2.0]]
+    normal: Annotated[_Two, ListOf("a list of two numbers: mean and standard deviation", 2, 2)] | None = (
+        optional("Mean and standard deviation; of a power in dBm, not in W.", [20.0, 6.0])
     )
-    log_uniform: _Ends | None = Field(
-        default=None,
-        description="The logarithm evenly between those of two positive numbers.",
-        examples=[[0.01, 100.0]],
-    )
-    normal: _Normal | None = Field(
-        default=None,
-        description="Mean and standard deviation; of a power in dBm, not in W.",
-        examples=[[20.0, 6.0]],
-    )
-    choice: _Several | None = Field(
-        default=None, description="One of these numbers, each as likely.", examples=[[0.1, 1.0, 10.0]]
-    )
+    choice: (
+        Annotated[tuple[_Number, ...], ListOf("a list of at least one number", 1, MOST_MEMBERS)] | None
+    ) = optional("One of these numbers, each as likely.", [0.1, 1.0, 10.0])
 
     def draw(self, generator: np.random.Generator, count: int) -> FloatArray:
         """Return numbers drawn one after the other: the first few are the same for any count.

@@ -9,14 +9,16 @@ from types import MappingProxyType
 
 import numpy as np
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.errors import ScenarioError
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, Quantity
+from nullpose.physics.types import FloatArray
 from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.study.monte_carlo.blocks import Blocks, Town
-from nullpose.study.monte_carlo.distribution import Distribution, FloatArray
+from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.drawn_channel import DrawnChannel
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.spec import StudySpec, require_number
@@ -179,8 +181,8 @@ def _scene(spec: StudySpec, index: int, drawn: _Tables) -> Scenario:
             if again is None or attempts[again] + 1 >= MOST_DRAWS:
                 if not any(attempts.values()):
                     raise
-                message = f"{error.faults[0].message} (after {MOST_DRAWS} draws)"
-                raise ScenarioError([Fault(error.faults[0].path, message)]) from None
+                fault = error.faults[0]
+                raise refusal(fault.path, f"{fault.message} (after {MOST_DRAWS} draws)") from None
             attempts[again] += 1
             values[again] = _draw(spec, index, again, drawn, attempts[again])
 
@@ -191,8 +193,7 @@ def _scene_of(values: PlainTable) -> Scenario:
     if not isinstance(town, Town):
         return Scenario.from_dict(values)
     scene = Scenario.from_dict(values | {"buildings": ()})
-    points_m = np.vstack([scene.source_positions_m, scene.eavesdropper_positions_m])
-    return scene.model_copy(update={"buildings": town.around(points_m)})
+    return scene.model_copy(update={"buildings": town.around(scene.point_positions_m)})
 
 
 def _draw(spec: StudySpec, index: int, kind: str, drawn: _Tables, attempt: int) -> object:
@@ -242,9 +243,11 @@ def _places(points: Points, chance: Callable[[str], np.random.Generator]) -> Flo
 
 def _bounded(points: Points, count: float) -> float:
     """Return a number of points, unless it is more than a scene may have."""
-    if count > MOST_POINTS:
-        message = f"layout {points.layout} means {count:g} points, at most {MOST_POINTS} are allowed"
-        raise ScenarioError([Fault(type(points).__name__.lower(), message)])
+    require(
+        count <= MOST_POINTS,
+        type(points).__name__.lower(),
+        f"layout {points.layout} means {count:g} points, at most {MOST_POINTS} are allowed",
+    )
     return count
 
 

@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import IO
 
-from nullpose.errors import OutputError, UsageError
+from nullpose.errors import OutputError, UsageError, require_usage
 from nullpose.files import PlainTable, check_outputs, parse_json, read_bytes, refusals, replacing, write_text
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.study.monte_carlo.draw import quantity_of
@@ -65,14 +65,6 @@ class Part:
         """Number of scenes."""
         return self.last - self.first + 1
 
-    def counts(self) -> tuple[int, int, float]:
-        """Read the numbers of rows and failures, and the seconds of work.
-
-        Raises:
-            ValueError: the file is damaged.
-        """
-        return read_counts(self.path)
-
 
 class Folder:
     """A study's folder.
@@ -101,15 +93,15 @@ class Folder:
             ) from None
         except (OSError, ValueError) as error:
             raise UsageError(f"{path}: this manifest cannot be read ({error}); restore it") from None
-        if not isinstance(content, dict) or content.get("format") != FORMAT:
-            raise UsageError(
-                f"{path}: made by a nullpose with another format of studies; use that one, or another folder"
-            )
+        require_usage(
+            isinstance(content, dict) and content.get("format") == FORMAT,
+            f"{path}: made by a nullpose with another format of studies; use that one, or another folder",
+        )
         wrong = [key for key, kind in _KEYS.items() if not isinstance(content.get(key), kind)]
         wrong = wrong or [key for key in ("scenes", "chunk") if not 1 <= content[key] < 10**9]
         if wrong or content["objective"] not in QUANTITIES:
             raise UsageError(f"{path}: {[*wrong, 'objective'][0]} is missing or wrong; restore this manifest")
-        return content
+        return dict(content)
 
     @property
     def has_manifest(self) -> bool:
@@ -163,11 +155,11 @@ class Folder:
                 "folder with --out, or give the spec as it was"
             )
         before_version = manifest["versions"].get("nullpose")
-        if before_version != version:
-            raise UsageError(
-                f"{self.path}: this study was begun with nullpose {before_version}, and this is {version}; "
-                "go on with that version, or choose another folder with --out"
-            )
+        require_usage(
+            before_version == version,
+            f"{self.path}: this study was begun with nullpose {before_version}, and this is {version}; "
+            "go on with that version, or choose another folder with --out",
+        )
 
     def parts(self) -> list[Part]:
         """List the parts in order: files whose names say scenes of this study in its own parts."""
@@ -254,16 +246,16 @@ def require_extra(*more: str) -> None:
         UsageError: a package is missing.
     """
     missing = [name for name in (*_PACKAGES, *more) if find_spec(name) is None]
-    if missing:
-        raise UsageError(
-            f"a study needs {', '.join(missing)}, not installed here; run: {sys.executable} -m pip install "
-            "'nullpose[study]'"
-        )
+    require_usage(
+        not missing,
+        f"a study needs {', '.join(missing)}, not installed here; run: {sys.executable} -m pip install "
+        "'nullpose[study]'",
+    )
 
 
 def _is_sound(spec: StudySpec, part: Part) -> bool:
     try:
-        part.counts()
+        read_counts(part.path)
         read_parquet(spec, part.path)
     except ValueError:
         return False

@@ -9,10 +9,11 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from nullpose.scenario.faults import Place
+from nullpose.physics.types import FloatArray
+from nullpose.scenario.faults import Place, stated
 from nullpose.scenario.ground_points import GroundAntennaKind, GroundPoint
 from nullpose.scenario.rules import Choice, Count, ListOf, Quantity, ascending
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
     GEODETIC_KEYS,
@@ -32,7 +33,7 @@ from nullpose.scenario.units import (
 )
 from nullpose.scenario.ways import Ways, at_most_one, exactly_one
 from nullpose.scenario.wording import plain
-from nullpose.study.monte_carlo.distribution import Distribution, Drawn, FloatArray
+from nullpose.study.monte_carlo.distribution import Distribution, Drawn
 
 MOST_POINTS = 10_000  # of one kind in a scene
 
@@ -50,16 +51,12 @@ class _CountRange(ListOf):
         return [count.read(end) for end in ends]
 
 
-_Density = Annotated[
-    float, Quantity("a density per square metre", 1e-12, 1e6, "the mean number over the area")
-]
 _NEEDED = {
     "disc": ("centre_m", "radius_m", "count"),
     "rectangle": ("x_m", "y_m", "count"),
     "poisson": ("density_per_m2",),
     "clusters": ("parents", "count", "spread_m"),
 }
-_Layout = Annotated[str, Choice("a layout", tuple(_NEEDED))]
 _IN_A_REGION = ("poisson", "clusters")
 _REGIONS = (("centre_m", "radius_m"), ("x_m", "y_m"))
 _PLACING = ("count", "density_per_m2", "parents", "spread_m", *_REGIONS[0], *_REGIONS[1])
@@ -91,7 +88,7 @@ class Points(Section):
 
     letter: ClassVar[str] = ""
 
-    layout: _Layout = Field(
+    layout: Annotated[str, Choice("a layout", tuple(_NEEDED))] = Field(
         description="How they are placed: disc or rectangle (evenly in it), poisson (a Poisson process in "
         "either) or clusters (around centres that lie evenly in either).",
         examples=["disc"],
@@ -103,27 +100,19 @@ class Points(Section):
             AfterValidator(ascending),
         ]
         | None
-    ) = Field(
-        default=None,
-        description="How many: a number, or a range [fewest, most] that one is drawn from evenly. Of "
+    ) = optional(
+        "How many: a number, or a range [fewest, most] that one is drawn from evenly. Of "
         "clusters: in each. Not with poisson.",
-        examples=[10],
+        10,
     )
-    centre_m: PlanePoint | None = Field(
-        default=None, description="Centre of the disc [east, north].", examples=[[0.0, 25.0]]
-    )
-    radius_m: RadiusMetres | None = Field(
-        default=None, description="Radius of the disc, in metres.", examples=[60.0]
-    )
-    x_m: Range | None = Field(
-        default=None, description="Western and eastern end of the rectangle.", examples=[[-50.0, 50.0]]
-    )
-    y_m: Range | None = Field(
-        default=None, description="Southern and northern end of the rectangle.", examples=[[0.0, 80.0]]
-    )
-    density_per_m2: _Density | None = Field(
-        default=None, description="Of poisson: the mean number over the area.", examples=[1e-3]
-    )
+    centre_m: PlanePoint | None = optional("Centre of the disc [east, north].", [0.0, 25.0])
+    radius_m: RadiusMetres | None = optional("Radius of the disc, in metres.", 60.0)
+    x_m: Range | None = optional("Western and eastern end of the rectangle.", [-50.0, 50.0])
+    y_m: Range | None = optional("Southern and northern end of the rectangle.", [0.0, 80.0])
+    density_per_m2: (
+        Annotated[float, Quantity("a density per square metre", 1e-12, 1e6, "the mean number over the area")]
+        | None
+    ) = optional("Of poisson: the mean number over the area.", 1e-3)
     parents: (
         Annotated[
             tuple[int, int],
@@ -131,37 +120,25 @@ class Points(Section):
             AfterValidator(ascending),
         ]
         | None
-    ) = Field(default=None, description="Of clusters: how many, a number or a range.", examples=[[2, 4]])
-    spread_m: RadiusMetres | None = Field(
-        default=None,
-        description="Of clusters: standard deviation of east and of north from the cluster's centre.",
-        examples=[5.0],
+    ) = optional("Of clusters: how many, a number or a range.", [2, 4])
+    spread_m: RadiusMetres | None = optional(
+        "Of clusters: standard deviation of east and of north from the cluster's centre.", 5.0
     )
-    height_m: Annotated[Distribution, Drawn.of(Metres)] | None = Field(
-        default=None,
-        description="Altitude in metres: a number or a distribution. Left out: that of the scene's points, "
+    height_m: Annotated[Distribution, Drawn.of(Metres)] | None = optional(
+        "Altitude in metres: a number or a distribution. Left out: that of the scene's points, "
         "or 0 if it has none.",
-        examples=[4.0],
+        4.0,
     )
-    antenna: GroundAntennaKind | None = Field(
-        default=None,
-        description="Antenna of every point: isotropic, circular or dipole. Left out: that of the scene's "
+    antenna: GroundAntennaKind | None = optional(
+        "Antenna of every point: isotropic, circular or dipole. Left out: that of the scene's "
         "points, or isotropic if it has none.",
-        examples=["dipole"],
+        "dipole",
     )
-    antenna_axis: AxisDirection | None = Field(
-        default=None, description="Direction of every dipole's wire.", examples=[[0.0, 0.0, 1.0]]
-    )
-    null_depth_db: NullDepthDecibels | None = Field(
-        default=None, description="How deep the null of every dipole is, in dB.", examples=[20.0]
-    )
-    gain_dbi: DecibelsIsotropic | None = Field(
-        default=None, description="Gain of every antenna where it is largest.", examples=[2.15]
-    )
-    name: Label | None = Field(
-        default=None,
-        description="Name of one alone; several are numbered after it. Left out: S1, M1 or E1 and so on.",
-        examples=["M"],
+    antenna_axis: AxisDirection | None = optional("Direction of every dipole's wire.", [0.0, 0.0, 1.0])
+    null_depth_db: NullDepthDecibels | None = optional("How deep the null of every dipole is, in dB.", 20.0)
+    gain_dbi: DecibelsIsotropic | None = optional("Gain of every antenna where it is largest.", 2.15)
+    name: Label | None = optional(
+        "Name of one alone; several are numbered after it. Left out: S1, M1 or E1 and so on.", "M"
     )
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
@@ -177,9 +154,8 @@ class Points(Section):
         if self.layout in _IN_A_REGION:
             may |= {*_REGIONS[0], *_REGIONS[1]}
             yield from (((), message) for message in Ways(_REGIONS).faults(present))
-        for key in present:
-            if key not in may:
-                yield (key,), f'has no meaning with layout "{self.layout}"; remove it'
+        strange = [key for key in present if key not in may]
+        yield from stated(raw, strange, f'has no meaning with layout "{self.layout}"; remove it')
 
     def values(self, replaced: Sequence[GroundPoint]) -> dict[str, list[Any]]:
         """Return the values by key, places apart: what is stated here, else what the scene's points have.
@@ -241,19 +217,17 @@ class Nodes(Points):
         at_most_one("weight", "min_sinr_db"),
     )
 
-    power_w: Annotated[Distribution, Drawn.of(Watts)] | None = Field(
-        default=None, description="Transmit power in watts: a number or a distribution.", examples=[1.0]
+    power_w: Annotated[Distribution, Drawn.of(Watts)] | None = optional(
+        "Transmit power in watts: a number or a distribution.", 1.0
     )
-    power_dbm: Annotated[Distribution, Drawn.of(DecibelMilliwatts)] | None = Field(
-        default=None, description="The same in dBm. Either this or power_w.", examples=[{"normal": [20, 6]}]
+    power_dbm: Annotated[Distribution, Drawn.of(DecibelMilliwatts)] | None = optional(
+        "The same in dBm. Either this or power_w.", {"normal": [20, 6]}
     )
-    weight: Annotated[Distribution, Drawn.of(Weight)] | None = Field(
-        default=None,
-        description="What a node's SINR is divided by: a number or a distribution.",
-        examples=[2],
+    weight: Annotated[Distribution, Drawn.of(Weight)] | None = optional(
+        "What a node's SINR is divided by: a number or a distribution.", 2
     )
-    min_sinr_db: Annotated[Distribution, Drawn.of(RatioDecibels)] | None = Field(
-        default=None, description="The SINR that a node requires, in dB. Either this or weight.", examples=[3]
+    min_sinr_db: Annotated[Distribution, Drawn.of(RatioDecibels)] | None = optional(
+        "The SINR that a node requires, in dB. Either this or weight.", 3
     )
 
 
@@ -269,18 +243,14 @@ class Jammers(Points):
     letter: ClassVar[str] = "M"
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
 
-    power_w: Annotated[Distribution, Drawn.of(Watts)] | None = Field(
-        default=None,
-        description="Transmit power in watts: a number or a distribution.",
-        examples=[{"log_uniform": [0.1, 100.0]}],
+    power_w: Annotated[Distribution, Drawn.of(Watts)] | None = optional(
+        "Transmit power in watts: a number or a distribution.", {"log_uniform": [0.1, 100.0]}
     )
-    power_dbm: Annotated[Distribution, Drawn.of(DecibelMilliwatts)] | None = Field(
-        default=None, description="The same in dBm. Either this or power_w.", examples=[{"normal": [30, 6]}]
+    power_dbm: Annotated[Distribution, Drawn.of(DecibelMilliwatts)] | None = optional(
+        "The same in dBm. Either this or power_w.", {"normal": [30, 6]}
     )
-    uncertainty_m: Annotated[Distribution, Drawn.of(ErrorMetres)] | None = Field(
-        default=None,
-        description="Radius of the ball that a jammer is known to be in: a number or a distribution.",
-        examples=[2.0],
+    uncertainty_m: Annotated[Distribution, Drawn.of(ErrorMetres)] | None = optional(
+        "Radius of the ball that a jammer is known to be in: a number or a distribution.", 2.0
     )
 
 
@@ -293,8 +263,6 @@ class Eavesdroppers(Points):
 
     letter: ClassVar[str] = "E"
 
-    uncertainty_m: Annotated[Distribution, Drawn.of(ErrorMetres)] | None = Field(
-        default=None,
-        description="Radius of the ball that one is known to be in: a number or a distribution.",
-        examples=[2.0],
+    uncertainty_m: Annotated[Distribution, Drawn.of(ErrorMetres)] | None = optional(
+        "Radius of the ball that one is known to be in: a number or a distribution.", 2.0
     )

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.errors import Fault, ScenarioError, UsageError, require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
@@ -136,13 +136,15 @@ def _meaningless(case: Case, scene: Scenario) -> str:
     """Give the reason for which a case has no meaning in a scene; empty if it has."""
     try:
         vehicle = case.on(scene)
-        if case.robust and not vehicle.is_uncertain:
-            raise UsageError(
-                "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
-                "receiver.attitude_error_deg or receiver.position_error_m to the scene"
-            )
-        if case.array is not None and vehicle.objective != USUAL:
-            raise UsageError("an array is for a drone that receives, not for this objective")
+        require_usage(
+            vehicle.is_uncertain or not case.robust,
+            "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "
+            "receiver.attitude_error_deg or receiver.position_error_m to the scene",
+        )
+        require_usage(
+            case.array is None or vehicle.objective == USUAL,
+            "an array is for a drone that receives, not for this objective",
+        )
         if not (case.robust or case.array or case.pose):
             (case.scheme or Scheme.OPTIMUM).require_applicable(vehicle)
     except (ScenarioError, UsageError) as error:

@@ -13,7 +13,7 @@ from nullpose.errors import UsageError
 from nullpose.files import PlainTable
 from nullpose.solver import Rigour
 from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, require_extra
-from nullpose.study.monte_carlo.rows import read_parquet, schema_of
+from nullpose.study.monte_carlo.rows import read_counts, read_parquet, schema_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ def study_status(out: str | os.PathLike[str]) -> StudyStatus:
     manifest, done, counts = folder.manifest(), [], []
     for part in folder.parts():
         with suppress(ValueError):  # a damaged part is done anew by the next run
-            counts.append(part.counts())
+            counts.append(read_counts(part.path))
             done.append(part)
     return StudyStatus(
         folder=str(out),

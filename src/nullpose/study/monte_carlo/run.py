@@ -13,13 +13,14 @@ from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import prepare_folder
 from nullpose.study.monte_carlo.chunk import fingerprint, seconds_per_scene, solve_chunk
 from nullpose.study.monte_carlo.folder import Folder, Part, require_extra
 from nullpose.study.monte_carlo.loading import require_sound
 from nullpose.study.monte_carlo.mounts import with_best_mounts
 from nullpose.study.monte_carlo.reading import StudyStatus, study_spec, study_status
+from nullpose.study.monte_carlo.rows import read_counts
 from nullpose.study.monte_carlo.spec import StudySpec, require_number
 from nullpose.study.monte_carlo.workers import LOOK_S, WorkerDiedError, Workers, workers_of
 
@@ -74,7 +75,7 @@ class _Tally:
 
     def count(self, part: Part) -> None:
         """Count a part."""
-        (rows, failed, _), at = part.counts(), self.at
+        (rows, failed, _), at = read_counts(part.path), self.at
         self.at = replace(at, done=at.done + part.scenes, rows=at.rows + rows, failed=at.failed + failed)
 
     def look(self, workers: int, note: str) -> None:
@@ -123,11 +124,11 @@ def run_study(
         ClusterError: the scheduler is not there, or went away, or workers have another nullpose.
     """
     require_extra(*(() if scheduler is None else ("distributed",)))
-    if scheduler is not None and workers is not None:
-        raise UsageError(
-            "workers: given together with a scheduler, whose cluster has workers of its own; leave out "
-            "one of the two"
-        )
+    require_usage(
+        scheduler is None or workers is None,
+        "workers: given together with a scheduler, whose cluster has workers of its own; leave out one "
+        "of the two",
+    )
     require_number("workers", 0 if workers is None else workers, 0, _MOST_WORKERS)
     require_number("chunk", 1 if chunk is None else chunk, 1, MOST_IN_A_PART)
     folder, tally = Folder(Path(out)), _Tally(spec.n_scenes, on_progress)

@@ -28,13 +28,10 @@ from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.faults import Place
 from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.study.monte_carlo.drawn_channel import DrawnChannel, FixedOrDrawn
-
-_Files = Annotated[tuple[Label, ...], ListOf("a list of names of scenario files", 1, MOST_MEMBERS)]
-_Objective = Annotated[str, Choice("an objective", RECORDS)]
 
 
 class SceneBase(Section):
@@ -55,32 +52,31 @@ class SceneBase(Section):
         {"objective", "scenarios", "nodes", "jammers", "eavesdroppers", "buildings"}
     )
 
-    file: Label | None = Field(
-        default=None,
-        description="A scenario file, relative to this file's folder; what is drawn replaces its own.",
-        examples=["paper.toml"],
+    file: Label | None = optional(
+        "A scenario file, relative to this file's folder; what is drawn replaces its own.", "paper.toml"
     )
-    files: _Files | None = Field(
-        default=None,
-        description="Several scenario files: scene 0 is the first, and so on, begun anew after the last.",
-        examples=[["north.toml", "south.toml"]],
+    files: (
+        Annotated[tuple[Label, ...], ListOf("a list of names of scenario files", 1, MOST_MEMBERS)] | None
+    ) = optional(
+        "Several scenario files: scene 0 is the first, and so on, begun anew after the last.",
+        ["north.toml", "south.toml"],
     )
     scenarios: Annotated[tuple[Scenario, ...], list_of_tables("scene.scenarios")] = Field(
         default=(), description="What file or files hold. Filled in when the spec is read."
     )
-    objective: _Objective = Field(default=USUAL, description="As in a scenario file.", examples=list(RECORDS))
-    origin: Origin | None = Field(default=None, description="A table headed [scene.origin].")
-    airspace: Airspace | None = Field(default=None, description="A table headed [scene.airspace].")
-    airframe: NamedAirframe | None = Field(
-        default=None, description="A table headed [scene.airframe], or the name of a preset."
+    objective: Annotated[str, Choice("an objective", RECORDS)] = Field(
+        default=USUAL, description="As in a scenario file.", examples=list(RECORDS)
     )
-    antenna: Antenna | None = Field(default=None, description="A table headed [scene.antenna].")
-    array: Array | None = Field(default=None, description="A table headed [scene.array].")
-    channel: Annotated[Channel | DrawnChannel, FixedOrDrawn()] | None = Field(
-        default=None, description="A table headed [scene.channel], values of which may be drawn."
+    origin: Origin | None = optional("A table headed [scene.origin].")
+    airspace: Airspace | None = optional("A table headed [scene.airspace].")
+    airframe: NamedAirframe | None = optional("A table headed [scene.airframe], or the name of a preset.")
+    antenna: Antenna | None = optional("A table headed [scene.antenna].")
+    array: Array | None = optional("A table headed [scene.array].")
+    channel: Annotated[Channel | DrawnChannel, FixedOrDrawn()] | None = optional(
+        "A table headed [scene.channel], values of which may be drawn."
     )
-    receiver: Receiver | None = Field(default=None, description="A table headed [scene.receiver].")
-    transmitter: Transmitter | None = Field(default=None, description="A table headed [scene.transmitter].")
+    receiver: Receiver | None = optional("A table headed [scene.receiver].")
+    transmitter: Transmitter | None = optional("A table headed [scene.transmitter].")
     nodes: Annotated[tuple[Node, ...], list_of_tables("scene.nodes")] = Field(
         default=(), description="Tables headed [[scene.nodes]], where they are not drawn."
     )

@@ -122,7 +122,7 @@ def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
         faults = "; ".join(f"not allowed: {fault}" for fault in pose_faults(scene, pose))
         weakest = min(evaluate(scene, pose), key=quantity.at)
-        columns = _found(scene, Status.GIVEN, pose, quantity.at(weakest), None, None)
+        columns = _found(scene, Status.POSE_GIVEN, pose, quantity.at(weakest), None, None)
         return columns | {"reason": faults, "binding_node": weakest.node}
     tilts: PlainTable = {}
     if case.reach is not None and scene.airframe is not None:

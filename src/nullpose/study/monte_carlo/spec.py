@@ -18,7 +18,7 @@ from nullpose.scenario.crosscheck import shared_names
 from nullpose.scenario.faults import Place
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.rules import Count, list_of_tables
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Title
 from nullpose.study.case import Case, Gap, NodeLimit, Seconds
 from nullpose.study.monte_carlo.blocks import Blocks
@@ -28,9 +28,6 @@ from nullpose.study.monte_carlo.scene import SceneBase
 from nullpose.study.monte_carlo.sweep_axes import SweepAxes
 
 MOST_SCENES = 999_999_999  # their numbers have nine digits in the names of parts
-
-_Seed = Annotated[int, Count("a seed", 0, 1e15, "any whole number; another one gives other scenes")]
-_Scenes = Annotated[int, Count("a number of scenes", 1, MOST_SCENES, "each is solved in every case")]
 
 
 class StudySpec(Section):
@@ -55,43 +52,37 @@ class StudySpec(Section):
     header: ClassVar[str] = "a table with the keys of a study's spec"
 
     name: Title = Field(default="", description="Title of the study.", examples=["Do we need to tilt?"])
-    seed: _Seed = Field(
-        default=0, description="Seed of every draw: scene i is the same for equal seeds.", examples=[1]
+    seed: Annotated[int, Count("a seed", 0, 1e15, "any whole number; another one gives other scenes")] = (
+        Field(default=0, description="Seed of every draw: scene i is the same for equal seeds.", examples=[1])
     )
-    scenes: _Scenes | None = Field(
-        default=None, description="Number of scenes. Left out with files: one for each.", examples=[2000]
-    )
-    gap: Gap | None = Field(
-        default=None,
-        description="Relative gap between bound and value at which a proof is done. Left out: by the number "
+    scenes: (
+        Annotated[int, Count("a number of scenes", 1, MOST_SCENES, "each is solved in every case")] | None
+    ) = optional("Number of scenes. Left out with files: one for each.", 2000)
+    gap: Gap | None = optional(
+        "Relative gap between bound and value at which a proof is done. Left out: by the number "
         "of nodes, 1e-6 to 3, 1e-4 to 20, else 1e-3.",
-        examples=[1e-3],
+        1e-3,
     )
     time_limit_s: Seconds = Field(
         default=60.0, description="Seconds after which a proof stops, its gap not reached.", examples=[10.0]
     )
-    node_limit: NodeLimit | None = Field(
-        default=None,
-        description="Boxes after which a proof stops; unlike time, the same on every machine.",
-        examples=[1_000_000],
+    node_limit: NodeLimit | None = optional(
+        "Boxes after which a proof stops; unlike time, the same on every machine.", 1_000_000
     )
     scene: SceneBase = Field(
         description="A table headed [scene]: what is the same in all scenes, a file or tables."
     )
-    nodes: Nodes | None = Field(
-        default=None, description="A table headed [nodes]: how they are drawn. Left out: those of the scene."
+    nodes: Nodes | None = optional(
+        "A table headed [nodes]: how they are drawn. Left out: those of the scene."
     )
-    jammers: Jammers | None = Field(
-        default=None,
-        description="A table headed [jammers]: how they are drawn. Left out: those of the scene.",
+    jammers: Jammers | None = optional(
+        "A table headed [jammers]: how they are drawn. Left out: those of the scene."
     )
-    eavesdroppers: Eavesdroppers | None = Field(
-        default=None,
-        description="A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene.",
+    eavesdroppers: Eavesdroppers | None = optional(
+        "A table headed [eavesdroppers]: how they are drawn. Left out: those of the scene."
     )
-    buildings: Blocks | None = Field(
-        default=None,
-        description="A table headed [buildings]: how they are drawn. Left out: those of the scene.",
+    buildings: Blocks | None = optional(
+        "A table headed [buildings]: how they are drawn. Left out: those of the scene."
     )
     cases: Annotated[tuple[Case, ...], list_of_tables("cases", fewest=1)] = Field(
         default=(Case(name=Scheme.OPTIMUM.value),),
