@@ -184,7 +184,7 @@ def expanded(verb: Callable[..., None]) -> Callable[..., None]:
 
     run.__name__, run.__doc__ = verb.__name__, verb.__doc__
     run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-    run.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    run.__dict__["__signature__"] = Signature(parameters)
     return run
 
 
@@ -248,7 +248,5 @@ def refuse(where: str, **options: object) -> None:
     """
     from nullpose.errors import UsageError
 
-    for name, value in options.items():
-        if value:
-            option = name.replace("_", "-")
-            raise UsageError(f"--{option}: given {where}, which has none; leave out one of the two")
+    for option in [name.replace("_", "-") for name, value in options.items() if value]:
+        raise UsageError(f"--{option}: given {where}, which has none; leave out one of the two")

@@ -116,8 +116,14 @@ def solve(
     is_array = scenario.array is not None and not robust
     if robust or is_array:
         where = "with --robust" if robust else "for a scenario with an [array]"
-        refuse(where, export=exports if is_array else None, scheme=scheme is not Scheme.OPTIMUM)
-        refuse(where, null_jammer=null_jammer, certificate=certificate, verify=verify)
+        refuse(
+            where,
+            export=exports if is_array else None,
+            scheme=scheme is not Scheme.OPTIMUM,
+            null_jammer=null_jammer,
+            certificate=certificate,
+            verify=verify,
+        )
     elif fast:
         refuse("with --fast, which proves nothing,", certificate=certificate, verify=verify)
     if is_checked:
@@ -125,8 +131,7 @@ def solve(
     note = _ASSUMED if robust and not scenario.is_uncertain else ""
     if note:
         scenario = _with_errors(scenario, sizes)
-    chosen = SolveOptions(**options)
-    target = (chosen.of(scenario, ROBUST_GAP) if robust else chosen.of(scenario)).target
+    target = SolveOptions(**options).of(scenario, ROBUST_GAP if robust else None).target
     with compiling_announced(), GapBar(target) as bar:
         found = solve_scenario(
             scenario, scheme, null_jammer=null_jammer, robust=robust, on_progress=bar, **options

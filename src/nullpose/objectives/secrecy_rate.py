@@ -51,10 +51,6 @@ def _ratios(scenario: Scenario) -> Ratios:
     )
 
 
-def _evaluate(reception: Reception) -> dict[str, FloatArray]:
-    return {"sinr": reception.node_snr, "secrecy_rate_bps_hz": reception.secrecy_rate}
-
-
 def _ratios_at(reception: Reception) -> FloatArray:
     """Evaluate ``(1 + SNR_k) / (1 + SNR_e)`` of every node and eavesdropper."""
     wanted, overheard = reception.node_snr, reception.eavesdropper_snr
@@ -67,7 +63,10 @@ SECRECY_RATE = ObjectiveRecord(
     quantities=(_RATE,),
     quantity=lambda scenario: _RATE,
     ratios=_ratios,
-    evaluate=_evaluate,
+    evaluate=lambda reception: {
+        "sinr": reception.node_snr,
+        "secrecy_rate_bps_hz": reception.secrecy_rate,
+    },
     ratios_at=_ratios_at,
     interferers="eavesdroppers",
     transmits=True,

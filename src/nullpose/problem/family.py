@@ -13,7 +13,7 @@ from nullpose.objectives import FloatArray, IntArray, Ratios
 from nullpose.problem.records import Domain
 
 
-@dataclass(frozen=True, slots=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False)
 class Family:
     """Ratios over the link forms of points, and their domain. Every array of either is read on it too.
 

@@ -38,17 +38,15 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         cases: one or more.
     """
     nominal, moved = build_family(scenario, any_channel=True), interferer_field(scenario, "offsets")
-    copies: dict[bytes, tuple[FloatArray, FloatArray, int]] = {}  # each moved point with its rotation once
-    places: dict[bytes, int] = {}
+    copies: dict[bytes, tuple[int, FloatArray, FloatArray, int]] = {}  # each moved and turned point once
 
     def copied(point: int, point_m: FloatArray, rotation: FloatArray) -> int:
         """Index a copy, new or not."""
         key = point_m.tobytes() + rotation.tobytes()
-        copies.setdefault(key, (point_m, rotation, point))
-        return places.setdefault(key, len(places))
+        return copies.setdefault(key, (len(copies), point_m, rotation, point))[0]
 
     groups: dict[tuple[int, bytes], int] = {}
-    numerator_point, denominator_of, of_group = [], [], []
+    numerator_point, denominator_of = [], []
     entries: list[int] = []
     weights: list[FloatArray] = []
     start = [0]
@@ -65,14 +63,13 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         key = (group, disturbers_m.tobytes() + rotation.tobytes())
         if key not in groups:
             groups[key] = len(groups)
-            of_group.append(group)
             pairs = zip(disturbers.tolist(), disturbers_m, strict=True)
             entries += [copied(point, point_m, rotation) for point, point_m in pairs]
             weights.append(nominal.denominator_weight[bounds])
             start.append(len(entries))
         denominator_of.append(groups[key])
     ratios = np.array([case.ratio for case in cases], dtype=np.int64)
-    points_m, rotations, originals = map(np.array, zip(*copies.values(), strict=True))
+    _, points_m, rotations, originals = map(np.array, zip(*copies.values(), strict=True))
     return nominal.changed(
         ground_axes=None if nominal.ground_axes is None else nominal.ground_axes[originals],
         ground_leaks=None if nominal.ground_leaks is None else nominal.ground_leaks[originals],
@@ -83,7 +80,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         numerator_weight=nominal.numerator_weight[ratios],
         numerator_point=np.array(numerator_point, dtype=np.int64),
         denominator_of=np.array(denominator_of, dtype=np.int64),
-        denominator_isotropic=nominal.denominator_isotropic[of_group],
+        denominator_isotropic=nominal.denominator_isotropic[[group for group, _ in groups]],
         denominator_start=np.array(start, dtype=np.int64),
         denominator_point=np.array(entries, dtype=np.int64),
         denominator_weight=np.concatenate(weights),

@@ -37,10 +37,9 @@ def answer_lines(comparison: ResultTable) -> list[str]:
     }
     kinds["an array"] = [row for row in comparison.rows if row.case.array is not None]
     lines = [_least_line(comparison, kind, found) for kind, found in kinds.items() if found]
-    for row in comparison.rows:
-        if row.name == FILE_VEHICLE:
-            phrase, verdict = capitalised(row.case.phrase), _VERDICTS[verdict_on(comparison, row)]
-            lines.append(f"{phrase} {verdict}: it {_reach(comparison, row)}.")
+    for row in [row for row in comparison.rows if row.name == FILE_VEHICLE]:
+        verdict = _VERDICTS[verdict_on(comparison, row)]
+        lines.append(f"{capitalised(row.case.phrase)} {verdict}: it {_reach(comparison, row)}.")
     return [*lines, "The least tilt for each mount of the dipole: nullpose vehicle FILE"]
 
 
@@ -105,7 +104,6 @@ def antennas_answer(comparison: ResultTable) -> str:
 
 def _less_or_more(difference: float, quantity: Quantity) -> str:
     """Write a difference in words, as in ``0.03 dB less`` or ``under 0.01 dB more``."""
-    size = with_unit(abs(difference), quantity)
-    if not quantity.is_rate and abs(difference) < 0.01:
-        size = f"under 0.01 {quantity.unit}"
+    is_tiny = not quantity.is_rate and abs(difference) < 0.01
+    size = f"under 0.01 {quantity.unit}" if is_tiny else with_unit(abs(difference), quantity)
     return f"{size} {'less' if difference <= 0.0 else 'more'}"

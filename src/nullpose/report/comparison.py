@@ -81,8 +81,10 @@ def airframes_view(comparison: ResultTable) -> View:
     )
     lines = [*sufficing(quantity), *_vehicle_proof_lines(found), *_absent(comparison)]
     if scenario.is_uncertain:
-        lines.append("Guaranteed: proved for every error within the stated limits, but not for arrays.")
-        lines.append("The answer is about the values without errors.")
+        lines += [
+            "Guaranteed: proved for every error within the stated limits, but not for arrays.",
+            "The answer is about the values without errors.",
+        ]
     return document(
         head(scenario.name),
         "",

@@ -135,9 +135,11 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
     objective, quantity = result.objective, result.objective.quantity
     poses = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
-    bound = "no upper bound on the guaranteed value"
-    if objective.upper_bound is not None:
-        bound = f"upper bound from {details.cases} combinations of errors"
+    bound = (
+        "no upper bound on the guaranteed value"
+        if objective.upper_bound is None
+        else f"upper bound from {details.cases} combinations of errors"
+    )
     errors = f"errors: {error_words(scenario)}; {bound}"
     cells = {name: _guarded_cells(objective, pose) for name, pose in poses.items()}
     return document(

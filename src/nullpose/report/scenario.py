@@ -45,12 +45,10 @@ def summarise(scenario: Scenario) -> PlainTable:
     broadside: ``g0 P h^2 / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. Points with a noise
     of their own receive from the drone; any other point transmits to it.
     """
-    receiver, node_noise_w = scenario.receiver, None
-    if Quantity.of(scenario).is_rate:
-        node_noise_w = scenario.node_noise_w
+    receiver, is_rate = scenario.receiver, Quantity.of(scenario).is_rate
     return {
         "scenario": scenario.to_dict(),
-        "nodes": _points(scenario, scenario.nodes, node_noise_w),
+        "nodes": _points(scenario, scenario.nodes, scenario.node_noise_w if is_rate else None),
         "jammers": _points(scenario, scenario.jammers, None),
         "eavesdroppers": _points(scenario, scenario.eavesdroppers, scenario.eavesdropper_noise_w),
         "noise_w": receiver.noise_power_w,
@@ -167,15 +165,12 @@ def _extent_words(outline_m: FloatArray) -> str:
 
 
 def _zone_row(zone: NoFlyZone) -> dict[str, str]:
-    if zone.centre_m is not None:
-        where = f"centre {zone.centre_m[0]:g}, {zone.centre_m[1]:g}, radius {zone.radius_m:g}"
-    else:
-        where = _extent_words(zone.outline_m)
+    centre = zone.centre_m and f"centre {zone.centre_m[0]:g}, {zone.centre_m[1]:g}, radius {zone.radius_m:g}"
     corners = f" of {len(zone.outline_m)}" if zone.shape == "polygon" else ""
     return {
         "zone": zone.name,
         "shape": f"{zone.shape}{corners}",
-        "where (m)": where,
+        "where (m)": centre or _extent_words(zone.outline_m),
         "altitude (m)": _range(zone.altitude_m, "all"),
     }
 

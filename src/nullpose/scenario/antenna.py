@@ -109,10 +109,8 @@ class Antenna(Section):
                 'would add to them; remove it, or write normalise = "peak", and the largest gain is this one',
             )
         if kind.read is not None and "harmonics" not in raw:
-            message = f"{ONLY_LOCAL}; load that file by its path"
-            if "file" not in raw:
-                message = f'missing, but kind = "{self.kind}" needs it; add the name of a file'
-            yield ("file",), message
+            missing = f'missing, but kind = "{self.kind}" needs it; add the name of a file'
+            yield ("file",), f"{ONLY_LOCAL}; load that file by its path" if "file" in raw else missing
         for n, row in enumerate(self.harmonics or ()):
             if len(row) != 2 * n + 1:
                 yield ("harmonics", n), f"got {len(row)} numbers, must be {2 * n + 1}: 2 n + 1 for degree n"

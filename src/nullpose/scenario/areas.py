@@ -178,8 +178,9 @@ def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bo
     middle_deg, polygons, cylinders = reach.centroid.x, list[Polygon](), []
     parts = list(parts_of(shapely.force_2d(feature.geometry)))
     counts["feature without a place"] += not parts
+    extent = feature.properties.get("extent")  # by ED-318
+    radius_m = feature.properties.get("radius_m", extent.get("radius") if isinstance(extent, dict) else None)
     for part in parts:
-        radius_m = _radius_m(feature)
         if part.geom_type == "Point" and radius_m is not None:
             cylinders.append((float(wrapped(part.x, middle_deg)), part.y, radius_m))
         elif part.geom_type == "Point":
@@ -198,12 +199,6 @@ def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bo
     united = list(parts_of(shapely.union_all(ground) if len(ground) > 1 else ground))
     area = Area(feature.place, name_of(feature), united, cylinders)
     return [area] if area.cut(reach) else []
-
-
-def _radius_m(feature: Feature) -> object:
-    """Return the radius of a circle as stated, by ED-318 in its extent; None without one."""
-    extent = feature.properties.get("extent")
-    return feature.properties.get("radius_m", extent.get("radius") if isinstance(extent, dict) else None)
 
 
 def name_of(feature: Feature) -> str:

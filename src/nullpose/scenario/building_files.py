@@ -40,7 +40,11 @@ def buildings_of(
     Raises:
         ScenarioError: with the faults of all features.
     """
-    marked = [feature for feature in features if _is_marked(feature)] or features
+    marked = [
+        feature
+        for feature in features
+        if any(feature.properties.get(mark, "no") not in ("no", False) for mark in _MARKS)
+    ] or features
     counts, reach = Counter({"other feature": len(features) - len(marked)}), reach_deg(origin)
 
     def areas_with_height(feature: Feature) -> list[tuple[Area, BuildingHeight]]:
@@ -63,10 +67,6 @@ def buildings_of(
     in_file = [area.place for area, _ in found for _ in area.polygons]
     places = {f"buildings[{index}]": place for index, place in enumerate(in_file, first)}
     return tables, list(_notes(found, counts)), places
-
-
-def _is_marked(feature: Feature) -> bool:
-    return any(feature.properties.get(mark, "no") not in ("no", False) for mark in _MARKS)
 
 
 def _without_height(areas: Sequence[Area]) -> Iterator[Fault]:

@@ -271,9 +271,7 @@ def require_scenario(value: object) -> None:
     Raises:
         WrongTypeError: it is none.
     """
-    if isinstance(value, Scenario):
-        return
-    advice = "try Scenario.from_dict(...) or Scenario.from_arrays(...)"
-    if isinstance(value, str | os.PathLike):
-        advice = f"try Scenario.from_file({os.fspath(value)!r})"
-    raise WrongTypeError(f"scenario: got {described(value)}; must be a Scenario; {advice}")
+    if not isinstance(value, Scenario):
+        is_path = isinstance(value, str | os.PathLike)
+        call = f"from_file({value!r})" if is_path else "from_dict(...) or Scenario.from_arrays(...)"
+        raise WrongTypeError(f"scenario: got {described(value)}; must be a Scenario; try Scenario.{call}")

@@ -32,7 +32,7 @@ def parts_of(geometry: BaseGeometry | Sequence[BaseGeometry] | None) -> Iterator
 def corners_of(ring: LinearRing) -> list[list[float]]:
     """Return the corners of a ring as latitudes and longitudes, these from -180 to 180 degrees."""
     lon_deg, lat_deg = shapely.get_coordinates(ring)[:-1].T
-    return np.stack([lat_deg, wrapped(lon_deg)], axis=1).tolist()  # type: ignore[no-any-return]
+    return list(np.stack([lat_deg, wrapped(lon_deg)], axis=1).tolist())
 
 
 def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:

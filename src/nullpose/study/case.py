@@ -140,12 +140,8 @@ class Case(Section):
         yield from stated(raw, proving, "has no meaning with a pose, of which nothing is proved; remove it")
 
     @property
-    def is_best_pose(self) -> bool:
-        """Whether the best pose of a vehicle with one dipole is asked for, everything being as stated."""
-        return not self.robust and self._is_free
-
-    @property
-    def _is_free(self) -> bool:
+    def is_free(self) -> bool:
+        """Whether it is the pose of a vehicle with one dipole that is best, or guarantees most."""
         return self.scheme in (None, Scheme.OPTIMUM) and not (self.array or self.pose or self.reach)
 
     @property
@@ -153,13 +149,13 @@ class Case(Section):
         """The name of the usual vehicle whose pose it is, by the axes that it reaches; empty if none."""
         if self.scheme is Scheme.VERTICAL:
             return LEVEL
-        band = self.airframe.axis_band if self.airframe is not None and self._is_free else None
+        band = self.airframe.axis_band if self.airframe is not None and self.is_free else None
         return next((name for name, usual in _AIRFRAMES.items() if usual.axis_band == band), "")
 
     @property
     def is_level(self) -> bool:
         """Whether it is the best pose of a vehicle with one dipole that does not tilt."""
-        tilts = self.airframe is None or not self._is_free or self.airframe.tilt_max_rad > 0.0
+        tilts = self.airframe is None or not self.is_free or self.airframe.tilt_max_rad > 0.0
         return self.scheme is Scheme.VERTICAL or not tilts
 
     @property

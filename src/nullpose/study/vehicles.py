@@ -42,11 +42,9 @@ def cases_of(scenario: Scenario) -> Sequence[Case]:
     Args:
         scenario: with or without an airframe or an array.
     """
-    vehicles: Sequence[Case] = AIRFRAME_CASES
-    array = scenario.array or _ARRAY
-    of_file = Case(name=FILE_VEHICLE, airframe=scenario.airframe)
-    if of_file.airframe is not None and not of_file.usual:
-        vehicles = _placed(vehicles, of_file)
+    array, of_file = scenario.array or _ARRAY, Case(name=FILE_VEHICLE, airframe=scenario.airframe)
+    is_another = of_file.airframe is not None and not of_file.usual
+    vehicles = _placed(AIRFRAME_CASES, of_file) if is_another else AIRFRAME_CASES
     if scenario.objective != USUAL or scenario.states_antennas or scenario.has_channels:
         return vehicles
     sized = (array.model_copy(update={"elements": size}) for size in sorted({*ARRAY_SIZES, array.elements}))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nullpose.errors import require_usage
 from nullpose.report.numbers import unit_of
 from nullpose.scenario import Airframe
-from nullpose.study.case import LEVEL, OMNIDIRECTIONAL, Case
+from nullpose.study.case import LEVEL, OMNIDIRECTIONAL
 from nullpose.study.monte_carlo import StudySpec
 
 if TYPE_CHECKING:
@@ -40,7 +40,12 @@ def report_cases(spec: StudySpec, against: str | None = None) -> pd.DataFrame:
         f"against: given {against!r}; allowed: {', '.join(spec.case_names)}",
     )
     scenes_airframe = _scenes_airframe(spec)
-    placed = {case.name: _placed(case, scenes_airframe) for case in spec.cases}
+    placed = {  # a case that states no vehicle has that of the scenes
+        case.name: case
+        if case.airframe or case.array
+        else case.model_copy(update={"airframe": scenes_airframe})
+        for case in spec.cases
+    }
     cases = pd.DataFrame(
         {
             "phrase": {name: case.phrase for name, case in placed.items()},
@@ -56,13 +61,6 @@ def report_cases(spec: StudySpec, against: str | None = None) -> pd.DataFrame:
         whole = next((case.name for case in members if case.usual == OMNIDIRECTIONAL), "")
         cases.loc[group.index, ["against", "whole"]] = first.name, whole
     return cases
-
-
-def _placed(case: Case, airframe: Airframe | None) -> Case:
-    """Give a case the scenes' vehicle if it states none."""
-    if case.airframe is not None or case.array is not None:
-        return case
-    return case.model_copy(update={"airframe": airframe})
 
 
 def _scenes_airframe(spec: StudySpec) -> Airframe | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import cache
 from types import MappingProxyType
 
 import numpy as np
@@ -109,7 +110,7 @@ class Draws:
 
     def __init__(self, spec: StudySpec) -> None:
         self._spec = spec
-        self._swept: dict[int, _Swept] = {}
+        self._swept = cache(lambda point: _of_point(spec, spec.points[point]))
         self._last: tuple[int, _Tables, Scenario] | None = None
 
     def base(self, index: int, values: Mapping[str, float] = MappingProxyType({})) -> Scenario:
@@ -128,9 +129,7 @@ class Draws:
             index: the scene's number, from 0.
             point: the combination's number, from 0.
         """
-        if point not in self._swept:
-            self._swept[point] = _of_point(self._spec, self._spec.points[point])
-        return self._set(index, self._swept[point])
+        return self._set(index, self._swept(point))
 
     def _set(self, index: int, swept: _Swept) -> Scenario:
         drawn, settings = swept
@@ -230,7 +229,9 @@ def _places(points: Points, chance: Callable[[str], np.random.Generator]) -> Flo
     """Return positions seen from above [m], (n, 2)."""
     counting, placing = chance("count"), chance("place")
     if points.layout == "poisson":
-        mean = _bounded(points, (points.density_per_m2 or 0.0) * _area_m2(points))
+        sides_m2 = float(np.prod(np.diff(points.extent_m)))
+        area_m2 = sides_m2 if points.radius_m is None else math.pi * points.radius_m**2
+        mean = _bounded(points, (points.density_per_m2 or 0.0) * area_m2)
         return _evenly(points, placing, int(counting.poisson(mean)))
     if points.layout != "clusters":
         return _evenly(points, placing, _between(counting, points.count))
@@ -253,12 +254,6 @@ def _bounded(points: Points, count: float) -> float:
 
 def _between(counting: np.random.Generator, ends: tuple[int, int] | None) -> int:
     return int(counting.integers(*(ends or (0, 0)), endpoint=True))
-
-
-def _area_m2(points: Points) -> float:
-    if points.radius_m is not None:
-        return math.pi * points.radius_m**2
-    return float(np.prod(np.diff(points.extent_m)))
 
 
 def _evenly(points: Points, placing: np.random.Generator, count: int) -> FloatArray:

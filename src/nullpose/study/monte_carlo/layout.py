@@ -185,18 +185,14 @@ class Points(Section):
             return np.asarray(np.add.outer(np.array(self.centre_m), [-self.radius_m, self.radius_m]))
         return np.array([self.x_m, self.y_m])
 
-    @property
-    def may_be_several(self) -> bool:
-        """Whether there may be more than one point."""
-        return self.layout in _IN_A_REGION or (self.count or (0, 0))[1] > 1
-
     def names(self, count: int) -> list[str]:
         """Return the points' names.
 
         Args:
             count: how many points there are.
         """
-        if self.name is not None and not self.may_be_several:
+        may_be_several = self.layout in _IN_A_REGION or (self.count or (0, 0))[1] > 1
+        if self.name is not None and not may_be_several:
             return [self.name] * count
         return [f"{self.name or self.letter}{number}" for number in range(1, count + 1)]
 

@@ -11,7 +11,7 @@ from nullpose.files import PlainTable
 from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
-from nullpose.scenario.faults import path_of
+from nullpose.scenario.faults import call_each, path_of
 from nullpose.scenario.toml_file import FileKind, file_text, inside, tables_of
 from nullpose.study.case import Case
 from nullpose.study.monte_carlo.draw import Draws
@@ -63,21 +63,19 @@ def _read_scenarios(tables: PlainTable, folder: Path, allow_outside: bool) -> li
     if "scenarios" in scene:
         return [Fault("scene.scenarios", "cannot be stated in a file; name scenario files by file or files")]
     file, files = scene.get("file"), scene.get("files")
-    names = [file] if files is None else files if isinstance(files, list) else []
-    faults: list[Fault] = []
-    held: list[PlainTable] = []
-    for name in names:
-        if not isinstance(name, str):  # the spec says what is wrong with it
-            continue
+    listed = [file] if files is None else files if isinstance(files, list) else []
+    names = [name for name in listed if isinstance(name, str)]  # the spec refuses what is no name
+
+    def read(name: str) -> PlainTable:
         try:
-            held.append(load(inside(folder, name, allow_outside), allow_outside=allow_outside).to_dict())
+            return load(inside(folder, name, allow_outside), allow_outside=allow_outside).to_dict()
         except ScenarioError as error:
-            # Other faults are reported too; a stand-in keeps that free of what only follows.
-            held.append(_STAND_IN)
             paths = [f"{name}: {fault.path}" if fault.path else name for fault in error.faults]
-            faults += map(Fault, paths, [fault.message for fault in error.faults])
-    if held:
-        tables["scene"] = {**scene, "scenarios": held}
+            raise ScenarioError([*map(Fault, paths, [each.message for each in error.faults])]) from None
+
+    held, faults = call_each(read, names)
+    if names:  # other faults are reported too; stand-ins keep that free of what only follows
+        tables["scene"] = {**scene, "scenarios": held + [_STAND_IN] * (len(names) - len(held))}
     return faults
 
 

@@ -45,13 +45,11 @@ def interrupts_put_off() -> Iterator[None]:
 @contextmanager
 def environment(values: dict[str, str]) -> Iterator[None]:
     """Set variables of the environment in the block, which processes that it starts inherit."""
-    before = {name: os.environ.get(name) for name in values}
+    before = {name: os.environ[name] for name in values if name in os.environ}
     os.environ.update(values)
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        for name in values:
+            del os.environ[name]
+        os.environ.update(before)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from nullpose.errors import UsageError
 from nullpose.files import PlainTable
 from nullpose.solver import Rigour
-from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, require_extra
+from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, Part, require_extra
 from nullpose.study.monte_carlo.rows import read_counts, read_parquet, schema_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -164,22 +164,21 @@ def study_status(out: str | os.PathLike[str]) -> StudyStatus:
         UsageError: no study is there.
     """
     folder = Folder(Path(out))
-    manifest, done, counts = folder.manifest(), [], []
+    manifest, done = folder.manifest(), dict[Part, tuple[int, int, float]]()
     for part in folder.parts():
         with suppress(ValueError):  # a damaged part is done anew by the next run
-            counts.append(read_counts(part.path))
-            done.append(part)
+            done[part] = read_counts(part.path)
     return StudyStatus(
         folder=str(out),
         name=manifest["name"],
         scenes=manifest["scenes"],
         done=sum(part.scenes for part in done),
-        rows=sum(rows for rows, _, _ in counts),
-        failed=sum(failed for _, failed, _ in counts),
+        rows=sum(rows for rows, _, _ in done.values()),
+        failed=sum(failed for _, failed, _ in done.values()),
         parts=len(done),
         chunk=manifest["chunk"],
         size=sum(part.path.stat().st_size for part in done),
-        worked_s=sum(seconds for _, _, seconds in counts),
+        worked_s=sum(seconds for _, _, seconds in done.values()),
         running=folder.owner,
     )
 

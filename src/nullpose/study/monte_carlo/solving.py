@@ -151,7 +151,7 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
     """
     alike: dict[str, list[Case]] = defaultdict(list)  # by target and limits
     for case in spec.cases:
-        if case.is_best_pose:
+        if case.is_free and not case.robust:
             alike[repr(_options_of(spec, case))].append(case)
     vehicles: dict[Airframe | None, dict[At, Scenario]] = defaultdict(dict)  # by the scene's own
     for at, scene in scenes.items():

@@ -72,9 +72,8 @@ def _values(raw: object) -> tuple[float, ...]:
             f"got {described(raw)}, must be a list of numbers or a table such as "
             '{ from = 0.1, to = 100, points = 4, spacing = "log" }'
         )
-    for key in raw:
-        if key not in _KEYS:
-            raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
+    for key in [each for each in raw if each not in _KEYS]:
+        raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
     missing = [key for key in ("from", "to", "points") if key not in raw]
     if missing:
         raise rejection(
