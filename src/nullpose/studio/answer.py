@@ -62,12 +62,6 @@ class Answer(Event):
         """Its unit."""
         return self.result.objective.quantity.unit
 
-    @property
-    def value_words(self) -> str:
-        """What the value is called."""
-        quantity = self.result.objective.quantity
-        return quantity.smallest if self.guarded is None else f"guaranteed {quantity.noun}"
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Notice(Event):

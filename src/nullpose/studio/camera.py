@@ -80,8 +80,9 @@ def aim(
     if turns:
         centre_m = centre_of_m(scenario)
         around = Rotation.from_rotvec(np.outer(np.linspace(0.0, math.tau, _TURNS), [0.0, 0.0, 1.0]))
-        matter = np.vstack(
-            [turn.apply(np.vstack([matter, frame[:4]]) - centre_m) + centre_m for turn in around]
+        matter, frame = (
+            np.vstack([turn.apply(points_m - centre_m) + centre_m for turn in around])
+            for points_m in (matter, frame)
         )
     camera.fov = _FOV_RAD
     corners_px = (CARD_PX[0], 0.0), (0.0, CARD_PX[1])

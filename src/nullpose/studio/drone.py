@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.antenna import Antenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import axis_angle_rad
+from nullpose.scenario import GroundPoint
 from nullpose.solver import Result
 from nullpose.studio.drawing import Shape, Shapes, coloured_mesh, frame, label, lines, mesh
 from nullpose.studio.ground import CROWD
@@ -113,8 +114,8 @@ def _null(
         ),
     }
     if is_first:
-        jammers = result.scenario.jammers
-        angles = [(axis_angle_rad(result.pose, jammer.position_m), jammer.name) for jammer in jammers]
+        others: tuple[GroundPoint, ...] = (*result.scenario.jammers, *result.scenario.eavesdroppers)
+        angles = [(axis_angle_rad(result.pose, point.position_m), point.name) for point in others]
         angle_rad, name = min(angles, default=(0.0, ""))
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""
         shapes["angle"] = frame(0.35 * place_m + 0.65 * ends[1])

@@ -75,18 +75,17 @@ def proved_answers(state: State, case: Case, on_progress: Callable[[float, int],
 
 
 def least_tilts(state: State, go_on: Callable[..., None]) -> Iterator[LeastTilt]:
-    """Yield the least tilt that the chosen case's vehicle needs; nothing for a robust case or a pattern.
+    """Yield the least tilt that the chosen case's vehicle needs; no words for a robust case or a pattern.
 
     Args:
         state: with the scene.
         go_on: called now and then; what it raises ends the search.
     """
-    scenario = state.case.on(state.scenario)
-    if state.case.robust or not scenario.antenna_record.is_quadratic:
-        return
-    mount_deg = 0.0 if scenario.airframe is None else scenario.airframe.mount_deg
-    search = tilt_search(scenario, _SHARE, _Watched(time_limit_s=_TILT_LIMIT_S, on_progress=go_on))
-    words = tilt_words(search.sides(mount_deg), _SHARE)
+    scenario, words = state.case.on(state.scenario), ""
+    if scenario.antenna_record.is_quadratic and not state.case.robust:
+        mount_deg = 0.0 if scenario.airframe is None else scenario.airframe.mount_deg
+        search = tilt_search(scenario, _SHARE, _Watched(time_limit_s=_TILT_LIMIT_S, on_progress=go_on))
+        words = tilt_words(search.sides(mount_deg), _SHARE)
     yield LeastTilt(version=state.version, case=None, words=words)
 
 
