@@ -1,7 +1,8 @@
 """Contact sheets of every figure of README, pages and command line: `python docs/figures/sheet.py out`.
 
 At the width of a column and of a screen; light, dark, grey and as a deuteranope sees them. It fails if
-letters of a figure of the command line are cut off, overlap, or are smaller than 6 points in print.
+letters of a figure of the command line are cut off, overlap, or are smaller than 6 points in print. A second
+folder is one of a study, for the figures of its report.
 """
 
 from __future__ import annotations
@@ -21,13 +22,21 @@ from PIL import Image
 from twins import IMAGES, deuteranope, grey, inverted
 
 import nullpose
+from nullpose.antenna.files import read_pattern
 from nullpose.report.figures.dots import draw_comparison
+from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_result
-from nullpose.report.figures.style import WIDTHS_MM, write_figure_file
+from nullpose.report.figures.style import WIDTHS_MM, write_figure
 from nullpose.report.figures.sweep import draw_sweep
+from nullpose.report.figures.vehicle import draw_least_tilt
+from nullpose.report.study.cases import report_cases
+from nullpose.report.study.figures import figures_of
+from nullpose.report.study.summary import summarise
 from nullpose.solver import solve
 from nullpose.study import compare_schemes
+from nullpose.study.least_tilt import least_tilt, values_by_angle
+from nullpose.study.monte_carlo import read_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 POSES = ("paper", "field", "no-fly", "eavesdropper", "geodetic", "town", "array", "robust")
@@ -37,25 +46,41 @@ COLUMN_PX, SCREEN_PX = 416, 900  # 88 mm at 120 dots to the inch, and a page of 
 SIDE_BY_SIDE = {COLUMN_PX: 4, SCREEN_PX: 6}
 VIEWS = {"light": lambda colours: colours, "dark": inverted, "grey": grey, "deuteranope": deuteranope}
 Pixels = NDArray[np.floating]
+Widths = tuple[str | None, ...]
+BOTH: Widths = ("column", None)
+SCREEN: Widths = (None,)
 
 
-def drawings() -> Iterator[tuple[str, Callable[[str | None], Figure]]]:
-    """Yield the command line's figures: each is drawn at a width."""
+def drawings(study: Path | None) -> Iterator[tuple[str, Callable[[str | None], Figure], Widths]]:
+    """Yield the command line's figures with the widths at which each can be drawn.
+
+    Args:
+        study: folder of a study whose report's figures are drawn; None for none.
+    """
     for name in POSES:
         scenario = nullpose.load(EXAMPLES / f"{name}.toml")
         result = solve(scenario, robust=name == "robust", gap=1e-2, time_limit_s=20.0)
-        yield f"solve-{name}", lambda width, result=result: draw_result(result, width)
+        yield f"solve-{name}", lambda width, result=result: draw_result(result, width), BOTH
         if name in MAPS:
             field = nullpose.value_map(result)
-            yield f"map-{name}", lambda width, at=(result, field): draw_value_map(*at, width)
+            yield f"map-{name}", lambda width, at=(result, field): draw_value_map(*at, width), BOTH
     paper = nullpose.load(EXAMPLES / "paper.toml")
     table = nullpose.sweep(paper, "jammers.M.power_w", [0.01, 0.1, 1.0, 10.0, 100.0])
-    yield "sweep", lambda width: draw_sweep(table, log=True, width=width)
-    yield "sweep-bounds", lambda width: draw_sweep(table, log=True, width=width, bounds=True)
+    yield "sweep", lambda width: draw_sweep(table, log=True, width=width), BOTH
+    yield "sweep-bounds", lambda width: draw_sweep(table, log=True, width=width, bounds=True), BOTH
     schemes = compare_schemes(paper)
-    yield "compare", lambda width: draw_comparison(schemes, width)
+    yield "compare", lambda width: draw_comparison(schemes, width), BOTH
     vehicles = nullpose.compare_airframes(nullpose.load(EXAMPLES / "airframe.toml"))
-    yield "compare-airframes", lambda width: draw_comparison(vehicles, width)
+    yield "compare-airframes", lambda width: draw_comparison(vehicles, width), BOTH
+    found = least_tilt(paper, mounts_deg=(0.0, 45.0, 90.0))
+    values = values_by_angle(found)
+    yield "vehicle", lambda width: draw_least_tilt(found, values, width), BOTH
+    pattern = read_pattern(EXAMPLES / "hexarotor-433mhz.out.gz", estimate=True)
+    yield "antenna", lambda _: draw_pattern(pattern), SCREEN
+    if study is not None:
+        read = read_study(study)
+        for name, figure in figures_of(summarise(read, report_cases(read.spec), 0.0)).items():
+            yield f"study-{name}", lambda _, figure=figure: figure, SCREEN
 
 
 def hidden_labels(figure: Figure) -> Iterator[Text]:
@@ -119,18 +144,23 @@ def sheet(pictures: list[Pixels], across: int) -> Pixels:
     return np.hstack(padded)
 
 
-def main(folder: Path) -> int:
-    """Write the figures and the sheets to a folder; return how many faults there are."""
+def main(folder: Path, study: Path | None = None) -> int:
+    """Write the figures and the sheets to a folder; return how many faults there are.
+
+    Args:
+        folder: is made.
+        study: folder of a study whose report's figures are on the sheets too.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     count = 0
     by_width: dict[int, list[Path]] = {COLUMN_PX: [], SCREEN_PX: []}
-    for name, draw in drawings():
-        for width, pixels in (("column", COLUMN_PX), (None, SCREEN_PX)):
-            figure = draw(width)
+    for name, draw, widths in drawings(study):
+        for width in widths:
+            figure, pixels = draw(width), SCREEN_PX if width is None else COLUMN_PX
             for fault in faults(figure):
                 count += 1
                 print(f"{name}, {width or 'screen'}: {fault}")
-            by_width[pixels].append(write_figure_file(figure, folder / f"{name}-{width or 'screen'}.png"))
+            by_width[pixels].append(*write_figure(figure, folder / f"{name}-{width or 'screen'}.png"))
     pages = [path for path in sorted(IMAGES.glob("*.png")) if not path.stem.endswith("-dark")]
     by_width[SCREEN_PX] += pages
     for pixels, paths in by_width.items():
@@ -142,4 +172,4 @@ def main(folder: Path) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(min(main(Path(sys.argv[1] if len(sys.argv) > 1 else "out")), 1))
+    sys.exit(min(main(*map(Path, sys.argv[1:] or ["out"])), 1))

@@ -106,9 +106,9 @@ def test_figure_of_vehicles(run: Run, paper: str, tmp_path: Path) -> None:
 
 def test_a_figure_needs_a_format(run: Run, paper: str, tmp_path: Path) -> None:
     """Without --airframes the cases are drawn; other formats are refused before any work."""
-    result = run("compare", paper, "--fast", "--figure", tmp_path / "a.png")
+    result = run("compare", paper, "--fast", "--figure", tmp_path / "a.png", "--figure", tmp_path / "a.pdf")
     assert result.exit_code == 0
-    assert f"Wrote {tmp_path / 'a.png'}" in result.stdout
+    assert {path.name for path in tmp_path.iterdir()} == {"a.png", "a.pdf"}
     result = run("compare", paper, "--airframes", "--figure", tmp_path / "a.gif")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "allowed: a name that ends in .png, .svg or .pdf" in result.stderr

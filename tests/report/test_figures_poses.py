@@ -11,7 +11,7 @@ from nullpose.errors import UsageError
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose
 from nullpose.report.figures.stage import ALONE, Stage
-from nullpose.report.figures.style import prepare_figure_file, write_figure_file
+from nullpose.report.figures.style import prepare_figure_file, write_figure
 from nullpose.report.geometry import outline_m
 from nullpose.study.value_map import value_map
 
@@ -29,7 +29,7 @@ def test_every_example_can_be_drawn(name: str, tmp_path: Path) -> None:
     assert names <= {text.get_text() for text in axes.texts}
     assert solution.objective.quantity.smallest in figure.get_suptitle()
     assert ("bits/s/Hz" in figure.get_suptitle()) == (name == "eavesdropper")
-    picture = imread(write_figure_file(figure, tmp_path / f"{name}.png"))
+    picture = imread(*write_figure(figure, tmp_path / f"{name}.png"))
     assert picture[..., :3].std() > 0.03
 
 

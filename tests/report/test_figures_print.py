@@ -9,7 +9,7 @@ from nullpose import Scenario, compare_airframes, load, solve, sweep
 from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose, draw_result
-from nullpose.report.figures.style import WIDTHS_MM, write_figure_file
+from nullpose.report.figures.style import WIDTHS_MM, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.study import compare_schemes, value_map
 
@@ -72,7 +72,7 @@ def test_the_same_figure_gives_the_same_file(paper: Scenario, tmp_path: Path, ki
     """To the byte; the fonts of a PDF are in it, as TrueType."""
     result = solve(paper, certify=False)
     first, again = (
-        write_figure_file(draw_pose(result, "column"), tmp_path / f"{name}.{kind}").read_bytes()
+        write_figure(draw_pose(result, "column"), tmp_path / f"{name}.{kind}")[0].read_bytes()
         for name in "ab"
     )
     assert first == again

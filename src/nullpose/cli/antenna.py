@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from nullpose.cli.options import Fast, FigureFile, JsonOutput, ProofOptions, SceneOptions, expanded
+from nullpose.cli.options import Fast, FigureFiles, JsonOutput, ProofOptions, SceneOptions, expanded
 from nullpose.cli.output import compiling_announced, tell
 from nullpose.cli.progress import Ticker
 
@@ -50,7 +50,7 @@ def show(
         float | None,
         typer.Option("--frequency", metavar="HZ", help="Which of several frequencies.", show_default=False),
     ] = None,
-    figure: FigureFile = None,
+    figure: FigureFiles = None,
     json_output: JsonOutput = False,
 ) -> None:
     """Show what a pattern file contains.
@@ -60,18 +60,19 @@ def show(
     from nullpose.antenna.files import read_pattern
     from nullpose.antenna.summary import summary_of
     from nullpose.files import check_outputs
-    from nullpose.report.figures.style import prepare_figure_file, write_figure_file
+    from nullpose.report.figures.style import prepare_figure_file, write_figure
     from nullpose.report.pattern import pattern_view
 
-    if figure is not None:
-        prepare_figure_file(figure)
-    check_outputs({"the pattern": file}, [("--figure", figure)])
+    figures = figure or []
+    for path in figures:
+        prepare_figure_file(path)
+    check_outputs({"the pattern": file}, [("--figure", path) for path in figures])
     table = read_pattern(file, format_name, frequency_hz, estimate=True)
-    if figure is not None:
+    if figures:
         from nullpose.report.figures.pattern import draw_pattern
 
-        write_figure_file(draw_pattern(table), figure)
-    tell(summary_of(table), pattern_view, json_output, files=[figure] if figure else [])
+        write_figure(draw_pattern(table), *figures)
+    tell(summary_of(table), pattern_view, json_output, files=figures)
 
 
 @antenna.command()

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from nullpose.cli.options import Fast, FigureFile, JsonOutput, ProofOptions, SceneOptions, Width, expanded
+from nullpose.cli.options import Fast, FigureFiles, JsonOutput, ProofOptions, SceneOptions, Width, expanded
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import Ticker
 
@@ -23,7 +23,7 @@ def compare(
             help="Compare vehicles instead: tilts up to 0, 10, 20, 30 degrees and any, and arrays.",
         ),
     ] = False,
-    figure: FigureFile = None,
+    figure: FigureFiles = None,
     width: Width = None,
     proof: ProofOptions,
     fast: Fast = False,
@@ -31,7 +31,7 @@ def compare(
 ) -> None:
     """Solve under the paper's four schemes, or with several vehicles."""
     scenario = scene.read()
-    prepare_outputs(scene, figure=figure, width=width)
+    prepare_outputs(scene, figure=figure or [], width=width)
     from nullpose.files import PlainTable
     from nullpose.report.answer import answer_lines
     from nullpose.report.comparison import airframes_view, comparison_view
@@ -41,11 +41,11 @@ def compare(
     solver: Callable[..., ResultTable] = compare_airframes if airframes else compare_schemes
     with compiling_announced(), Ticker("comparing vehicles" if airframes else "solving") as ticker:
         found = solver(scenario, on_progress=ticker, **proof.keywords(fast))
-    if figure is not None:
+    if figure:
         from nullpose.report.figures.dots import draw_comparison
-        from nullpose.report.figures.style import write_figure_file
+        from nullpose.report.figures.style import write_figure
 
-        write_figure_file(draw_comparison(found, width), figure)
+        write_figure(draw_comparison(found, width), *figure)
     view = airframes_view if airframes else comparison_view
     answer: PlainTable = {"answer": answer_lines(found), **verdicts(found)} if airframes else {}
-    tell(found, view, json_output, files=[] if figure is None else [figure], **answer)
+    tell(found, view, json_output, files=figure or [], **answer)

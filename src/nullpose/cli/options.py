@@ -69,12 +69,12 @@ Off = Annotated[
     ),
 ]
 
-FigureFile = Annotated[
-    Path | None,
+FigureFiles = Annotated[
+    list[Path] | None,
     typer.Option(
         "--figure",
         metavar="FILE",
-        help="Write a figure to FILE: .png, .svg or .pdf.",
+        help="Write a figure to FILE: .png, .svg or .pdf. Can be repeated.",
         show_default=False,
     ),
 ]

@@ -104,7 +104,7 @@ def compiling_announced() -> Iterator[None]:
 def prepare_outputs(
     scene: SceneOptions,
     *,
-    figure: Path | None,
+    figure: Sequence[Path],
     width: str | None = None,
     export: Sequence[Path] = (),
     **others: Path | None,
@@ -116,12 +116,13 @@ def prepare_outputs(
         OutputError: an output is an input or another output too, or it or its folder cannot be written.
     """
     require_usage(
-        width is None or figure is not None,
+        width is None or len(figure) > 0,
         "--width: given without --figure; add --figure FILE, or leave out --width",
     )
-    if figure is not None:
+    if figure:
         from nullpose.report.figures.style import prepare_figure_file
 
-        prepare_figure_file(figure)
-    outputs = [*others.items(), *(("export", path) for path in export), ("figure", figure)]
-    scene.check_outputs((f"--{name}", path) for name, path in outputs)
+        for path in figure:
+            prepare_figure_file(path)
+    files = [*(("export", path) for path in export), *(("figure", path) for path in figure)]
+    scene.check_outputs((f"--{name}", path) for name, path in (*others.items(), *files))

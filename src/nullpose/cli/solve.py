@@ -11,7 +11,7 @@ import typer
 
 from nullpose.cli.options import (
     Fast,
-    FigureFile,
+    FigureFiles,
     FigureWidth,
     JsonOutput,
     Off,
@@ -83,7 +83,7 @@ def solve(
             show_default=False,
         ),
     ] = None,
-    figure: FigureFile = None,
+    figure: FigureFiles = None,
     width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
@@ -110,7 +110,7 @@ def solve(
         from nullpose.report.export import require_exports
 
         require_exports(scenario, exports)
-    prepare_outputs(scene, certificate=certificate, export=exports, figure=figure, width=width)
+    prepare_outputs(scene, certificate=certificate, export=exports, figure=figure or [], width=width)
     options, sizes = proof.keywords(fast), error_sizes(off)
     is_checked = verify or certificate is not None
     is_array = scenario.array is not None and not robust
@@ -141,7 +141,7 @@ def solve(
             found = verified(found, ticker)
     found = replace(found, error_sizes=sizes, note=" ".join(filter(None, (note, found.note))))
     is_rejected = is_checked and found.rigour.value != "verified"
-    files = _write(found, None if is_rejected else certificate, exports, figure, width)
+    files = _write(found, None if is_rejected else certificate, exports, figure or [], width)
     fault = _REJECTED.format(found.reason) if is_rejected else ""
     tell(found, result_view, json_output, files=files, fault=fault)
 
@@ -165,7 +165,7 @@ def _write(
     result: Result,
     certificate: Path | None,
     exports: Sequence[Path],
-    figure: Path | None,
+    figures: Sequence[Path],
     width: FigureWidth | None,
 ) -> list[Path]:
     """Write the files that have a name, and say what a format cannot hold; return their paths."""
@@ -180,9 +180,9 @@ def _write(
         for path in exports:
             if lost := write_export(result, path):
                 say(f"{path}: {lost}", err=True)
-    if figure is not None:
+    if figures:
         from nullpose.report.figures.poses import draw_result
-        from nullpose.report.figures.style import write_figure_file
+        from nullpose.report.figures.style import write_figure
 
-        write_figure_file(draw_result(result, width), figure)
-    return [path for path in (certificate, *exports, figure) if path is not None]
+        write_figure(draw_result(result, width), *figures)
+    return [*filter(None, [certificate]), *exports, *figures]

@@ -10,7 +10,7 @@ import typer
 from nullpose.cli.options import (
     MOUNTS,
     REACH,
-    FigureFile,
+    FigureFiles,
     JsonOutput,
     SceneOptions,
     Seed,
@@ -51,7 +51,7 @@ def vehicle(
             "the mount that needs least tilt alone.",
         ),
     ] = MOUNTS,
-    figure: FigureFile = None,
+    figure: FigureFiles = None,
     width: Width = None,
     time_limit: TimeLimit = 60.0,
     seed: Seed = 0,
@@ -67,7 +67,7 @@ def vehicle(
 
     share, mounts_deg = _share(reach, loss_db), mounts_of(mount)
     scenario = scene.read()
-    prepare_outputs(scene, figure=figure, width=width)
+    prepare_outputs(scene, figure=figure or [], width=width)
     with compiling_announced(), Ticker("least tilt") as ticker:
         found = least_tilt(
             scenario,
@@ -77,14 +77,14 @@ def vehicle(
             time_limit_s=time_limit,
             seed=seed,
         )
-    if figure is not None:
-        from nullpose.report.figures.style import write_figure_file
+    if figure:
+        from nullpose.report.figures.style import write_figure
         from nullpose.report.figures.vehicle import draw_least_tilt
 
         with compiling_announced(), Ticker("values by axis angle") as ticker:
             values = values_by_angle(found, on_progress=ticker, time_limit_s=time_limit, seed=seed)
-        write_figure_file(draw_least_tilt(found, values, width), figure)
-    tell(found, vehicle_view, json_output, files=[] if figure is None else [figure])
+        write_figure(draw_least_tilt(found, values, width), *figure)
+    tell(found, vehicle_view, json_output, files=figure or [])
 
 
 def _share(reach: float | None, loss_db: float | None) -> float:

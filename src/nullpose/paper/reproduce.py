@@ -79,7 +79,7 @@ def draw_printed(table: ResultTable, printed: Sequence[PrintedPoint]) -> Figure:
     return figure
 
 
-_KINDS = ("png", "svg")
+_KINDS = (".png", ".svg")
 _FILES = (
     *("figure2.png", "figure2.svg", "figure2.csv"),
     *("figure2-printed.png", "figure2-printed.svg", "figure2-printed.csv", "poses.png", "poses.svg"),
@@ -140,11 +140,11 @@ def reproduce(
     heading = (JAMMER_POWER, "min_sinr", "min_sinr_db", "x_m", "y_m", "z_m")
     points = [(at.level, at.min_sinr, at.min_sinr_db, *at.position_m.tolist()) for at in printed]
     files = (
-        *write_figure(draw_figure2(table), folder, "figure2", _KINDS),
+        *write_figure(draw_figure2(table), *(folder / f"figure2{kind}" for kind in _KINDS)),
         table.write_csv(folder / "figure2.csv"),
         write_csv(folder / "figure2-printed.csv", [heading, *points]),
-        *write_figure(draw_printed(table, printed), folder, "figure2-printed", _KINDS),
-        *write_figure(draw_poses(scenario, poses), folder, "poses", _KINDS),
+        *write_figure(draw_printed(table, printed), *(folder / f"figure2-printed{kind}" for kind in _KINDS)),
+        *write_figure(draw_poses(scenario, poses), *(folder / f"poses{kind}" for kind in _KINDS)),
     )
     return Reproduction(table=table, printed=printed, files=files)
 

@@ -26,7 +26,7 @@ def write_sweep(
         OutputError: a file cannot be written.
     """
     figure = draw_sweep(sweep, log=log, width=width, bounds=bounds)
-    pictures = write_figure(figure, folder, "sweep")
+    pictures = write_figure(figure, *(folder / f"sweep.{kind}" for kind in ("png", "svg", "pdf")))
     return (sweep.write_csv(folder / "sweep.csv"), *pictures)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -192,13 +192,6 @@ def draw_curve(
             axes.fill_between(across, *band, where=finite, step="post" if steps else None, **shade)
 
 
-def write_figure(
-    figure: Figure, folder: Path, stem: str, kinds: Iterable[str] = ("png", "svg", "pdf")
-) -> tuple[Path, ...]:
-    """Write a figure to a file of each kind in an existing folder; return their paths."""
-    return tuple(write_figure_file(figure, folder / f"{stem}.{kind}") for kind in kinds)
-
-
 def prepare_figure_file(path: Path) -> None:
     """Make sure that a figure can be written later, its folder made if need be.
 
@@ -211,19 +204,20 @@ def prepare_figure_file(path: Path) -> None:
     prepare_folder(path.parent)
 
 
-def write_figure_file(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG, SVG or PDF, by the path's suffix; an existing file is replaced.
+def write_figure(figure: Figure, *paths: Path) -> tuple[Path, ...]:
+    """Write a figure as PNG, SVG or PDF, by the paths' suffixes; existing files are replaced.
 
     Raises:
-        OutputError: the file cannot be written.
+        OutputError: a file cannot be written.
     """
-    kind = path.suffix.lower()[1:]
     in_print = any(abs(figure.get_figwidth() - mm / 25.4) < 1e-6 for mm in WIDTHS_MM.values())
     options: dict[str, Look] = {
-        "png": {"dpi": 600 if in_print else 200},
-        "svg": {"metadata": {"Date": None}},
-        "pdf": {"metadata": {"CreationDate": None}, "dpi": 600},  # of what is no line: colours of maps
+        ".png": {"dpi": 600 if in_print else 200},
+        ".svg": {"metadata": {"Date": None}},
+        ".pdf": {"metadata": {"CreationDate": None}, "dpi": 600},  # of what is no line: colours of maps
     }
-    with house_style(), replacing(path) as temporary:
-        figure.savefig(temporary, format=kind, facecolor="white", **options.get(kind, {}))
-    return path
+    for path in paths:
+        kind = path.suffix.lower()
+        with house_style(), replacing(path) as temporary:
+            figure.savefig(temporary, format=kind[1:], facecolor="white", **options[kind])
+    return paths

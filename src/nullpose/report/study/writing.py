@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -191,10 +192,11 @@ def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, ...]
     """Write the figures; remove those of an earlier report."""
     from nullpose.report.study.figures import figures_of
 
-    for name in (*_CAPTIONS, "sweep", "best", "outage", "robustness", "effort"):
-        for suffix in (".png", ".svg", ".pdf"):
-            (folder / f"{name}{suffix}").unlink(missing_ok=True)
-    return {name: write_figure(figure, folder, name) for name, figure in figures_of(summary).items()}
+    kinds = (".png", ".svg", ".pdf")
+    for name, kind in product((*_CAPTIONS, "sweep", "best", "outage", "robustness", "effort"), kinds):
+        (folder / f"{name}{kind}").unlink(missing_ok=True)
+    drawn = figures_of(summary)
+    return {name: write_figure(drawn[name], *(folder / f"{name}{kind}" for kind in kinds)) for name in drawn}
 
 
 def _csv(rows: pd.DataFrame, *, header: bool) -> str:
