@@ -9,7 +9,7 @@ from benchmarks.chromium import pixels
 
 from nullpose import load, solve
 from nullpose.scenario import Scenario
-from nullpose.studio.camera import CARD_PX, aim
+from nullpose.studio.camera import CARD_PX, aim, frame_m
 from nullpose.studio.ground import grid_m, scene_size_m
 
 
@@ -35,7 +35,7 @@ def test_nothing_of_a_scene_is_cut_away(paper: Scenario, scale: float) -> None:
 @pytest.mark.parametrize("canvas", [(1280, 800), (890, 800), (390, 844)])
 @pytest.mark.parametrize("name", ["paper", "field", "no-fly", "eavesdropper"])
 def test_all_that_matters_is_seen(name: str, canvas: tuple[int, int]) -> None:
-    """At any aspect every point, the drone and its pattern are on the canvas."""
+    """At any aspect every point, the drone and its pattern are on the canvas; fence, grid and numbers too."""
     scenario = load(Path(__file__).parents[2] / "examples" / f"{name}.toml")
     pose = solve(scenario, certify=False).pose
     camera = SimpleNamespace(
@@ -47,4 +47,6 @@ def test_all_that_matters_is_seen(name: str, canvas: tuple[int, int]) -> None:
     seen = pixels(camera, np.vstack([points, pose.position_m + reach_m]))
     assert np.all(seen[:, 2] > camera.near)
     assert np.all((seen[:, :2] > 0.0) & (seen[:, :2] < canvas))
+    around = pixels(camera, frame_m(scenario))[:, :2]
+    assert np.all((around > 10.0) & (around < np.array(canvas) - 10.0))
     assert not np.any(np.all(seen[: len(points), :2] < CARD_PX, axis=1)), "the card covers a point"

@@ -2,11 +2,12 @@
 
 import pytest
 
+from nullpose import load
 from nullpose.scenario import Scenario
 from nullpose.solver import Status, solve
 from nullpose.studio.case import cases_of
 from nullpose.studio.state import State
-from nullpose.studio.steps import power_curves, quick_answers
+from nullpose.studio.steps import least_tilts, power_curves, quick_answers
 
 
 @pytest.mark.parametrize("power_db", [-30.0, 0.0, 20.0, 40.0])
@@ -46,3 +47,13 @@ def test_a_curve_asks_before_every_search(paper: Scenario) -> None:
     with pytest.raises(Enough):
         next(power_curves(State(scenario=paper), lambda: go_on(3)))
     assert len(calls) == 3
+
+
+def test_a_new_scene_ends_the_least_tilt() -> None:
+    """In the middle of a proof."""
+
+    def go_on(*_: object) -> None:
+        raise Enough
+
+    with pytest.raises(Enough):
+        next(least_tilts(State(scenario=load("examples/field.toml")), go_on))

@@ -24,7 +24,6 @@ from nullpose.studio.meshes import (
     pattern_mesh,
     relative_gain,
     revolved_mesh,
-    turn_about_z,
 )
 from nullpose.studio.readout import drone_text
 from nullpose.studio.state import State
@@ -77,7 +76,7 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
     }
     if state.has_pattern and slot == 0:
         turn_rad = 0.0 if antenna.is_axisymmetric else _TURN_RAD * round(azimuth_rad / _TURN_RAD)
-        towards = turn_about_z(azimuth_rad if antenna.is_axisymmetric else 0.0)
+        towards = rotation_world_from_body(0.0, 0.0, azimuth_rad if antenna.is_axisymmetric else 0.0)
         surface = _pattern(antenna, turn_rad)
         sized = surface._replace(values={**surface.values, "scale": _FULL * size_m})
         shapes |= {"body/antenna/pattern": frame(rotation=towards), "body/antenna/pattern/surface": sized}

@@ -60,7 +60,7 @@ def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int, open_ra
     """
     line = np.column_stack([radius_m, height_m])
     surface = trimesh.creation.revolve(line, math.tau - open_rad, sections=around, process=False)
-    return Mesh(surface.vertices, surface.faces).placed(turn_about_z(0.5 * open_rad))
+    return Mesh(surface.vertices, surface.faces).placed(rotation_world_from_body(0.0, 0.0, 0.5 * open_rad))
 
 
 def sphere_mesh(rings: int = 16, around: int = 24, open_rad: float = 0.0) -> Mesh:
@@ -89,18 +89,11 @@ def pattern_mesh(
         open_rad: angle about z that is left out, so that the inside is seen, radians.
         towards_rad: azimuth of the middle of that angle, radians.
     """
-    directions, faces = sphere_mesh(rings, around, open_rad).placed(turn_about_z(towards_rad))
+    directions, faces = sphere_mesh(rings, around, open_rad).placed(
+        rotation_world_from_body(0.0, 0.0, towards_rad)
+    )
     gain = relative_gain(antenna, directions)
     return Mesh(gain[:, None] * directions, faces), gain
-
-
-def turn_about_z(angle_rad: float) -> NDArray[np.float64]:
-    """Return the matrix, (3, 3), of a turn about the z axis.
-
-    Args:
-        angle_rad: radians.
-    """
-    return rotation_world_from_body(0.0, 0.0, angle_rad)
 
 
 def relative_gain(antenna: Antenna, directions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -175,7 +168,10 @@ def _tube(radius_m: float, bottom_m: float, top_m: float, around: int = 16) -> M
 
 def _four(mesh: Mesh) -> list[Mesh]:
     """Repeat a mesh along the x axis at the four arms, half-way between the axes."""
-    return [mesh.placed(turn_about_z(math.radians(angle))) for angle in (45.0, 135.0, 225.0, 315.0)]
+    return [
+        mesh.placed(rotation_world_from_body(0.0, 0.0, math.radians(angle)))
+        for angle in (45.0, 135.0, 225.0, 315.0)
+    ]
 
 
 _SLANT = np.array(
