@@ -8,6 +8,9 @@ import pytest
 from matplotlib.image import imread
 from typer.testing import Result
 
+from nullpose.cli.options import REACH
+from nullpose.study.case import SHARE
+
 Run = Callable[..., Result]
 
 
@@ -66,3 +69,8 @@ def test_an_antenna_without_an_axis_has_no_best_mount(run: Run) -> None:
     result = run("vehicle", "examples/frame.toml", "--mount", "best")
     assert result.exit_code == 2
     assert "which has no axis" in result.stderr
+
+
+def test_the_usual_reach_is_the_library_s() -> None:
+    """Help is shown without loading the library, so its default is written there too."""
+    assert REACH == SHARE

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.channel.convex import FloatArray, convex_parts, edges_of, joined
+from nullpose.channel.convex import FloatArray, convex_parts, edges_of, joined, sides_of
 
 TOUCHING_M = 1e-9
 """What enters a prism by less than this touches it only [m]."""
@@ -100,14 +100,8 @@ def _overlapping(parts: Sequence[Sequence[FloatArray]], building: NDArray[np.int
     touches[wall[np.array([index for index, _ in walls])[wall] != building[piece]]] = True
     moved_m = np.split(OVERLAP_M * touches, np.cumsum([len(piece) for piece in pieces])[:-1])
     return [
-        _sides(piece) + np.outer(by_m, [0.0, 0.0, 1.0]) for piece, by_m in zip(pieces, moved_m, strict=True)
+        sides_of(piece) + np.outer(by_m, [0.0, 0.0, 1.0]) for piece, by_m in zip(pieces, moved_m, strict=True)
     ]
-
-
-def _sides(part_m: FloatArray) -> FloatArray:
-    along = np.roll(part_m, -1, axis=0) - part_m
-    normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
-    return np.column_stack([normal, np.sum(normal * part_m, axis=1)])
 
 
 class Shadows(NamedTuple):

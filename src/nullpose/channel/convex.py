@@ -69,6 +69,17 @@ def edges_of(part: Sequence[_Vertex]) -> list[tuple[_Vertex, _Vertex]]:
     return list(zip(part, [*part[1:], part[0]], strict=True))
 
 
+def sides_of(part_m: FloatArray) -> FloatArray:
+    """List the outward unit normal and the offset of each edge of a convex polygon, (n, 3).
+
+    Args:
+        part_m: vertices, (n, 2), metres, counter-clockwise.
+    """
+    along = np.roll(part_m, -1, axis=0) - part_m
+    normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
+    return np.column_stack([normal, np.sum(normal * part_m, axis=1)])
+
+
 def _from(part: list[_Vertex], vertex: _Vertex) -> list[_Vertex]:
     place = part.index(vertex)
     return part[place:] + part[:place]

@@ -129,8 +129,7 @@ def solve(
     if is_checked:
         require_certificate(scenario, scheme.value, null_jammer)
     note = _ASSUMED if robust and not scenario.is_uncertain else ""
-    if note:
-        scenario = _with_errors(scenario, sizes)
+    scenario = _with_errors(scenario, sizes) if note else scenario
     target = SolveOptions(**options).of(scenario, ROBUST_GAP if robust else None).target
     with compiling_announced(), GapBar(target) as bar:
         found = solve_scenario(

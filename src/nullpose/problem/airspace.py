@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nullpose.channel.convex import convex_parts, outlines_of
+from nullpose.channel.convex import convex_parts, outlines_of, sides_of
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.problem.family import DEFAULTS, Family
 from nullpose.problem.records import Domain
@@ -80,7 +80,7 @@ def _pieces(kind: int, edges: FloatArray, low: float, high: float) -> list[Float
 
 def _inset(outline_m: FloatArray, by_m: float) -> FloatArray:
     """Move the edges of a counter-clockwise polygon inwards; less at the sharpest corners."""
-    normal = _outer_sides(outline_m)[:, 1:3]
+    normal = sides_of(outline_m)[:, :2]
     before = np.roll(normal, 1, axis=0)
     bend = np.maximum(1.0 + np.sum(normal * before, axis=1, keepdims=True), 0.05)
     return np.asarray(outline_m - by_m * (normal + before) / bend)
@@ -96,11 +96,7 @@ def _edges(outline_m: FloatArray) -> FloatArray:
 
 def _outer_sides(part_m: FloatArray) -> FloatArray:
     """List the half-planes outside each edge of a convex polygon, counter-clockwise."""
-    along = np.roll(part_m, -1, axis=0) - part_m
-    normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
-    offset = np.sum(normal * part_m, axis=1)
-    zero = np.zeros(len(part_m))
-    return np.column_stack([zero, normal, zero, offset])
+    return np.insert(sides_of(part_m), [0, 2], 0.0, axis=1)
 
 
 def hull_and_pockets(outline_m: FloatArray) -> tuple[FloatArray, list[FloatArray]]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from nullpose.physics import Pose, antenna_gain, eavesdropper_snr, link_gain, received_power_w, to_db
+from nullpose.physics import Pose, antenna_gain, eavesdropper_snr, link_gain, to_db
+from nullpose.physics.sinr import received_from_sources_w
 from nullpose.report.document import View, cell, rows, table
 from nullpose.report.geometry import axis_angle_rad, distance_m
 from nullpose.scenario import Scenario
@@ -71,10 +72,9 @@ def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
     if scenario.eavesdroppers:
         ratios = eavesdropper_snr(scenario, pose.position_m, orientation)
     else:
-        heading, link = "jamming to noise (dB)", (points, scenario.jammer_powers_w, scenario.reference_gain)
-        antennas = (scenario.antenna_record, scenario.jammer_antennas, scenario.jammer_channels)
-        power_w = received_power_w(pose.position_m, orientation, *link, *antennas)
-        ratios = power_w / scenario.receiver.noise_power_w
+        heading = "jamming to noise (dB)"
+        received_w = received_from_sources_w(scenario, pose.position_m, orientation)
+        ratios = received_w[len(scenario.nodes) :] / scenario.receiver.noise_power_w
     is_even = scenario.antenna_record.is_even
     angles_deg = [math.degrees(axis_angle_rad(pose, point_m, is_even)) for point_m in points]
     columns = {

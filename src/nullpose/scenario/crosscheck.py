@@ -62,9 +62,8 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     yield from _objective_faults(scenario, points)
     for named in (points, zones, buildings):
         yield from shared_names(named)
-    for place, building in buildings.items():
-        if building.buildings_from is not None:
-            yield (*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it"
+    for place in [place for place, building in buildings.items() if building.buildings_from is not None]:
+        yield (*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it"
     yield from _antenna_faults(scenario, points)
     yield from _channel_faults(scenario, {(): scenario, **points})
     if not misplaced:

@@ -158,13 +158,7 @@ class GroundPoint(Section):
         return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None, "null_depth_db": None})
 
 
-class Emitter(Powered, GroundPoint):
-    """A transmitter on the ground."""
-
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, POWER)
-
-
-class Node(Emitter):
+class Node(Powered, GroundPoint):
     """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
 
     Args beside those of a ground point:
@@ -229,8 +223,10 @@ class Node(Emitter):
         return 1.0 if self.weight is None else self.weight
 
 
-class Jammer(Uncertain, Emitter):
+class Jammer(Uncertain, Powered, GroundPoint):
     """A jammer whose signal drowns the nodes: a ground point that transmits and may be uncertain."""
+
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, POWER)
 
     header: ClassVar[str] = "a jammer, in a table of its own headed [[jammers]]"
     letter: ClassVar[str] = "M"

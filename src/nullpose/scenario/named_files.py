@@ -168,10 +168,11 @@ class NamedFiles:
         """Read the nodes that another file lists."""
         with self._reading(f"{file}"):
             path = self._path(file, _NODES_FILE, _NODES_KEY)
-            if path.suffix.lower() == ".csv":
-                nodes, unread, notes = nodes_of_csv(file_text(path, _NODES_FILE, self._folder, _NODES_KEY))
-            else:
-                nodes, unread, notes = nodes_of_features(self._features(path, _NODES_FILE, _NODES_KEY))
+            nodes, unread, notes = (
+                nodes_of_csv(file_text(path, _NODES_FILE, self._folder, _NODES_KEY))
+                if path.suffix.lower() == ".csv"
+                else nodes_of_features(self._features(path, _NODES_FILE, _NODES_KEY))
+            )
             self._note(file, notes)
             self._faults += [_in_file(file, fault) for fault in unread]
             for index, node in enumerate(nodes):

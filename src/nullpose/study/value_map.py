@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nullpose.channel import excess_gain
 from nullpose.errors import require_usage
-from nullpose.physics import link_gain, objective_value, to_db
+from nullpose.physics import objective_value, to_db
+from nullpose.physics.sinr import received_from_sources_w
 from nullpose.physics.types import FloatArray
 from nullpose.problem.build import build_family
 from nullpose.problem.schemes import Scheme
@@ -188,13 +188,8 @@ def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[],
 
 def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> FloatArray:
     """Compute the smallest received power over its requirement, the jammers ignored."""
-    nodes = scenario.node_positions_m
-    loss = np.sum((nodes - positions_m[..., None, :]) ** 2, axis=-1)
-    gain = link_gain(positions_m, axes, nodes, scenario.antenna_record, scenario.node_antennas)
-    received = gain * scenario.node_powers_w / loss
-    if scenario.node_channels is not None:
-        received *= excess_gain(scenario.node_channels, nodes - positions_m[..., None, :], nodes)
-    return np.asarray(np.min(received / scenario.node_required_sinr, axis=-1))
+    received_w = received_from_sources_w(scenario, positions_m, axes)[..., : len(scenario.nodes)]
+    return np.asarray(np.min(received_w / scenario.node_required_sinr, axis=-1))
 
 
 def _ranked_axes(

@@ -68,9 +68,9 @@ def _outlines(scenario: Scenario) -> Iterator[tuple[Sequence[FloatArray], float,
 
 def _point(origin: Origin, place: FloatArray, properties: PlainTable) -> PlainTable:
     where = origin.place(place)
-    coordinates = [round(where["lon_deg"], 9), round(where["lat_deg"], 9)]
-    if "alt_m" in where:  # the third coordinate is over the ellipsoid, and over nothing else
-        coordinates.append(round(where["alt_m"], 4))
+    # the third coordinate is over the ellipsoid, and over nothing else
+    up = [round(where["alt_m"], 4)] if "alt_m" in where else []
+    coordinates = [round(where["lon_deg"], 9), round(where["lat_deg"], 9), *up]
     sea = {"alt_msl_m": round(where["alt_msl_m"], 4)} if "alt_msl_m" in where else {}
     return _feature("Point", coordinates, properties | sea | {"position_m": place.tolist()})
 

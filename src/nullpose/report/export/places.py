@@ -14,7 +14,7 @@ from nullpose.physics import Pose, pose_frames
 from nullpose.report.geometry import azimuth_rad, tilt_rad
 from nullpose.report.links import binding_nodes
 from nullpose.report.words import channel_words
-from nullpose.scenario import Origin, Scenario
+from nullpose.scenario import Eavesdropper, Jammer, Origin, Scenario
 from nullpose.solver import Result
 from nullpose.solver.robust import RobustDetails
 
@@ -86,12 +86,11 @@ def marked_points(solution: Result) -> Iterator[tuple[ArrayLike, PlainTable]]:
     for node, link in zip(scenario.nodes, solution.links, strict=True):
         values = dict(link.values)
         yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **values}
-    for jammer in scenario.jammers:
-        reach = {"power_w": jammer.transmit_power_w, "uncertainty_m": jammer.uncertainty_reach_m}
-        yield jammer.position_m, {"kind": "jammer", "name": jammer.name, **reach}
-    for point in scenario.eavesdroppers:
-        reach = {"uncertainty_m": point.uncertainty_reach_m}
-        yield point.position_m, {"kind": "eavesdropper", "name": point.name, **reach}
+    hidden: list[Jammer | Eavesdropper] = [*scenario.jammers, *scenario.eavesdroppers]
+    for point in hidden:
+        kind = {"kind": type(point).__name__.lower(), "name": point.name}
+        power = {"power_w": point.transmit_power_w} if isinstance(point, Jammer) else {}
+        yield point.position_m, kind | power | {"uncertainty_m": point.uncertainty_reach_m}
 
 
 def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:
