@@ -6,6 +6,7 @@ Run with ``python -m benchmarks.soundness.robust``.
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from collections import Counter
@@ -88,7 +89,7 @@ def _unit(x: FloatArray) -> FloatArray:
 
 def worst(scenario: Scenario, position_m: FloatArray, axis: FloatArray, errors: Errors) -> FloatArray:
     """Return the smallest SINR of a pose under each error, (n,): paper eq. 2.1, written down once more."""
-    angle = scenario.receiver.attitude_error_rad * errors.turn
+    angle = math.radians(scenario.receiver.attitude_error_deg) * errors.turn
     across = _unit(np.cross(axis, errors.across))
     axes = np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * across
     positions = position_m + scenario.receiver.position_error_m * errors.position

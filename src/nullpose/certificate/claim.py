@@ -99,8 +99,7 @@ def _place_fault(scenario: Scenario, position_m: FloatArray) -> str:
     if not airspace.allows(position_m):
         return "outside the geofence or in a no-fly zone, or within their margin_m"
     least = max(Fraction(airspace.keep_out_m) - Fraction(_EDGE_M), Fraction(0))
-    points = (scenario.node_positions_m, scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
-    for point in np.vstack(points):
+    for point in scenario.point_positions_m:
         offset = exact(point) - exact(position_m)
         if offset @ offset < least**2:
             return f"closer than keep_out_m to the ground point {point.tolist()}"

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS, FREE_AXIS, Axes
+from nullpose.scenario.arrays import read_only
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,8 +41,7 @@ class AxisField:
             array = np.array(getattr(self, name), dtype=float)
             if array.shape != shape or not np.all(np.isfinite(array)):
                 raise ValueError(f"axis field {name} must be finite, of shape {shape}; given {array!r}")
-            array.flags.writeable = False
-            object.__setattr__(self, name, array)
+            object.__setattr__(self, name, read_only(array, shape))
         low, high = self.band
         if not 0.0 <= low <= high <= 1.0:
             raise ValueError(f"axis field band must be 0 <= low <= high <= 1; given {self.band!r}")

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from nullpose.files import PlainTable
 from nullpose.scenario.arrays import read_only
-from nullpose.scenario.faults import ONLY_LOCAL, Place, stated
+from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults
 from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
 from nullpose.scenario.polygon import (
     EarthlyPolygon,
@@ -132,7 +132,7 @@ class Airspace(Section):
         """Return the faults of what has no place on the Earth, of named files and of too large a margin."""
         yield from unplaced(self, raw)
         names = ("geofence_from", "no_fly_from")
-        yield from stated(raw, names, f"{ONLY_LOCAL}, in place of its own areas; remove one")
+        yield from key_faults(raw, names, f"{ONLY_LOCAL}, in place of its own areas; remove one")
         fence_m, margin_m = self.geofence_outline_m, self.margin_m or 0.0
         if margin_m and self.geofence_m and (parts := len(offset_outlines_m(fence_m, -margin_m))) != 1:
             yield (

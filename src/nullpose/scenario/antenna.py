@@ -13,7 +13,7 @@ from nullpose.antenna import ANTENNAS, Antenna as AnyAntenna
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.errors import ScenarioError
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import ONLY_LOCAL, Place, stated
+from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults
 from nullpose.scenario.rules import Choice, Count, ListOf, Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import DecibelsIsotropic, Hertz, NullDepthDecibels
@@ -101,7 +101,7 @@ class Antenna(Section):
         kind = ANTENNAS[self.kind]
         strange = raw.keys() - {"kind", "gain_dbi", *kind.keys}
         message = f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
-        yield from stated(raw, strange, message)
+        yield from key_faults(raw, strange, message)
         if self.gain_dbi and kind.read is not None and self.normalise == "none":
             yield (
                 ("gain_dbi",),

@@ -12,7 +12,7 @@ from pydantic import AfterValidator, Field, TypeAdapter
 
 from nullpose.files import PlainTable
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import Place, path_of, stated
+from nullpose.scenario.faults import Place, key_faults, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone, unplaced
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
@@ -143,7 +143,7 @@ class Building(Section):
         is_file = raw.get("buildings_from") is not None
         other = "without buildings_from, for one building" if is_file else "with buildings_from"
         strange = _OF_ONE if is_file else _OF_FILES
-        yield from stated(raw, strange, f"has a meaning only {other}; remove it")
+        yield from key_faults(raw, strange, f"has a meaning only {other}; remove it")
         properties = [key for key in ("roof_property", "ground_property") if raw.get(key) is not None]
         if is_file and len(properties) == 1:
             yield (properties[0],), "given without the other of roof_property and ground_property; add it"

@@ -11,7 +11,7 @@ from nullpose.antenna import SHORT_DIPOLE
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS
 from nullpose.scenario.buildings import Building, buried_points
-from nullpose.scenario.faults import ONLY_LOCAL, Place, path_of, stated
+from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.origin_faults import is_placed, origin_faults
@@ -45,7 +45,7 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
         for index, point in enumerate(getattr(scenario, kind) or ())
         if point is not None
     }
-    yield from stated(raw, ("nodes_from",), f"{ONLY_LOCAL}, in place of its own nodes; remove it or them")
+    yield from key_faults(raw, ("nodes_from",), f"{ONLY_LOCAL}, in place of its own nodes; remove it or them")
     airspace: Airspace | None = scenario.airspace
     listed = getattr(airspace, "no_fly", None) or ()
     zones: dict[Place, NoFlyZone] = {("airspace", "no_fly", index): zone for index, zone in enumerate(listed)}

@@ -49,7 +49,7 @@ def raise_all(faults: Sequence[Fault], source: str = "") -> None:
         raise ScenarioError(faults, source)
 
 
-def stated(table: Mapping[str, object], keys: Iterable[str], message: str) -> Iterator[tuple[Place, str]]:
+def key_faults(table: Mapping[str, object], keys: Iterable[str], message: str) -> Iterator[tuple[Place, str]]:
     """Yield a fault for each of some keys that a raw table states."""
     return (((key,), message) for key in keys if table.get(key) is not None)
 

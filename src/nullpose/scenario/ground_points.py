@@ -152,9 +152,7 @@ class GroundPoint(Section):
 
     @property
     def isotropic(self) -> Self:
-        """The point with an isotropic antenna of the same gain; itself if it has one."""
-        if self.antenna == "isotropic":
-            return self
+        """The point with an isotropic antenna of the same gain."""
         return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None, "null_depth_db": None})
 
 

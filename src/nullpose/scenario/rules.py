@@ -12,7 +12,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from nullpose.scenario.faults import rejection
-from nullpose.scenario.wording import described, meant, plain
+from nullpose.scenario.wording import described, plain, suggestion
 
 MOST_MEMBERS = 10_000
 """The most members of a list, such as nodes or the corners of a polygon."""
@@ -108,8 +108,9 @@ class Choice(Rule):
         if isinstance(value, str) and value in self.words:
             return value
         allowed = " or ".join(f'"{word}"' for word in self.words)
-        question = meant(value, self.words)
-        raise rejection(f"got {described(value)}, must be {self.noun}: {allowed}{question}")
+        raise rejection(
+            f"got {described(value)}, must be {self.noun}: {allowed}{suggestion(value, self.words)}"
+        )
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
         """Return the JSON Schema: a text with its allowed values."""

@@ -65,7 +65,7 @@ def nearest(word: str, words: Collection[str]) -> str:
     return best if best and similarity(best) >= _LIKE_ENOUGH else ""
 
 
-def meant(word: object, words: Collection[str]) -> str:
+def suggestion(word: object, words: Collection[str]) -> str:
     """Ask whether the known word nearest to an unknown one is meant; empty where none is like it."""
     guess = nearest(word, words) if isinstance(word, str) else ""
     return f'; did you mean "{guess}"?' if guess else ""
@@ -80,5 +80,5 @@ def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str
         words: the words to choose from.
         likely: those of them that are the likelier meaning.
     """
-    question = meant(word, likely) or meant(word, words) or ";"
+    question = suggestion(word, likely) or suggestion(word, words) or ";"
     return f"unknown {noun}{question} the {noun}s here are {', '.join(words)}"

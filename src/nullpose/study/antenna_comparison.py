@@ -13,7 +13,7 @@ from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.result import provenance
 from nullpose.study.case import Case
 from nullpose.study.evaluation import evaluated
-from nullpose.study.progress import OnProgress, ticked
+from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import ResultRow, ResultTable
 
 _POINTS = ("nodes", "jammers", "eavesdroppers")
@@ -48,7 +48,7 @@ def compare_antennas(
     )
     results: dict[str, Result] = {}
     scenes = {"promised": with_antennas(scenario, drone=False, ground=False), "possible": scenario}
-    for name, scene in ticked([*scenes.items()], on_progress):
+    for name, scene in report_steps([*scenes.items()], on_progress):
         results[name] = solve(scene, **options)
         options["certify"] = solve_options.certify and not results[name].interrupted
     flown = {

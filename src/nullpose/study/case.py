@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field
 from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
-from nullpose.scenario.faults import Place, rejection, stated
+from nullpose.scenario.faults import Place, key_faults, rejection
 from nullpose.scenario.rules import ByName, Choice, Count, Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
@@ -134,10 +134,12 @@ class Case(Section):
         """Yield keys of a proof where there is none."""
         if raw.get("airframe") is None:
             message = "has no meaning without airframe; add one with "
-            yield from stated(raw, ("mount_scenes",), f'{message}mount_deg = "best"')
-            yield from stated(raw, ("reach",), f'{message}tilt_max_deg = "least"')
+            yield from key_faults(raw, ("mount_scenes",), f'{message}mount_deg = "best"')
+            yield from key_faults(raw, ("reach",), f'{message}tilt_max_deg = "least"')
         proving = ("certify", "gap", "time_limit_s") if self.pose is not None else ()
-        yield from stated(raw, proving, "has no meaning with a pose, of which nothing is proved; remove it")
+        yield from key_faults(
+            raw, proving, "has no meaning with a pose, of which nothing is proved; remove it"
+        )
 
     @property
     def is_free(self) -> bool:

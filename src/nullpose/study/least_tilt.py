@@ -23,7 +23,7 @@ from nullpose.scenario import Airframe, Scenario, require_scenario
 from nullpose.solver import Result, SolveKeywords, Status, solve
 from nullpose.solver.rigour import Rigour
 from nullpose.study.case import SHARE
-from nullpose.study.progress import OnProgress, ticked
+from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.vehicle_search import LEAST_GAP, VehicleSearch, Verdict, required
 
 MOUNTS_DEG = (0.0, 45.0, 90.0)
@@ -161,7 +161,7 @@ def least_tilt(
     began, search = time.perf_counter(), tilt_search(scenario, share, options)
     finders: list[Callable[[], MountTilt | None]] = [partial(search.sides, each) for each in mounts_deg]
     finders.append(search.best if scenario.antenna_record.is_axisymmetric else lambda: None)
-    *mounts, best = [find() for find in ticked(finders, on_progress)]
+    *mounts, best = [find() for find in report_steps(finders, on_progress)]
     return LeastTilt(
         share=share,
         omnidirectional=search.whole,
@@ -221,7 +221,7 @@ def values_by_angle(
     )
     angles_deg, values = np.linspace(0.0, 90.0, _ANGLES), []
     options.setdefault("gap", _GAP)
-    for angle_deg in ticked(angles_deg.tolist(), on_progress):
+    for angle_deg in report_steps(angles_deg.tolist(), on_progress):
         level = Airframe(tilt_max_deg=0.0, mount_deg=angle_deg)
         try:
             result = uninterrupted(solve(scenario.model_copy(update={"airframe": level}), **options))

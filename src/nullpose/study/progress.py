@@ -10,7 +10,7 @@ OnProgress: TypeAlias = Callable[[int, int], None] | None
 Step = TypeVar("Step")
 
 
-def ticked(steps: Sequence[Step], on_progress: OnProgress) -> Iterator[Step]:
+def report_steps(steps: Sequence[Step], on_progress: OnProgress) -> Iterator[Step]:
     """Yield steps of work, and report each once the next one is asked for."""
     for done, step in enumerate(steps, start=1):
         yield step

@@ -25,7 +25,7 @@ from nullpose.solver.result import Stats
 from nullpose.study.case import SHARE, Case
 from nullpose.study.evaluation import evaluated
 from nullpose.study.least_tilt import tilt_search, uninterrupted
-from nullpose.study.progress import OnProgress, ticked
+from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import ResultRow, ResultTable
 
 _FREER = {
@@ -156,7 +156,7 @@ def sweep(
     rows: dict[tuple[float, str], ResultRow] = {}
     # a point that bounds others comes first; without a direction the order is that of the values
     order = sorted(scenarios, key=lambda point: -sign * point[0])
-    for (value, varied), case in ticked([*product(order, cases)], on_progress):
+    for (value, varied), case in report_steps([*product(order, cases)], on_progress):
         implied = from_freer(varied, found[case.name], chosen) if sign else None
         result = implied or uninterrupted(solve(varied, case.name, **options))
         found[case.name].append(result)
@@ -195,7 +195,7 @@ def _least_tilts(
     ]
     search_at = lru_cache(maxsize=1)(lambda point: tilt_search(scenarios[point][1], share, options))
     steps = product(range(len(scenarios)), zip(mounts_deg, cases, strict=True))
-    for point, (mount_deg, case) in ticked([*steps], on_progress):
+    for point, (mount_deg, case) in report_steps([*steps], on_progress):
         search = search_at(point)
         mount = search.sides(mount_deg)
         yield ResultRow.of(scenarios[point][0], search.result_of(mount), case, tilt=mount)

@@ -18,7 +18,7 @@ from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
 from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, TILTS_DEG, Case
 from nullpose.study.least_tilt import TiltSearch
-from nullpose.study.progress import OnProgress, ticked
+from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.vehicle_search import Verdict, judged
 
@@ -164,7 +164,7 @@ def _table(
     """Solve a scenario in each case; leave out vehicles without a pose, but for the omnidirectional one."""
     chosen = SolveOptions(**options).of(scenario)
     rows: list[ResultRow] = []
-    for case in ticked(cases, on_progress):
+    for case in report_steps(cases, on_progress):
         try:
             result = solve_case(case, options)
         except SolveError as error:

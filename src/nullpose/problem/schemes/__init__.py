@@ -64,7 +64,8 @@ def as_scheme(name: str) -> Scheme:
     try:
         return Scheme(name)
     except ValueError:
-        from nullpose.scenario.wording import meant  # here, for it loads numpy
+        from nullpose.scenario.wording import suggestion  # here, for it loads numpy
 
-        question = meant(name, list(Scheme))
-        raise UsageError(f"scheme: given {name!r}; allowed: {', '.join(Scheme)}{question}") from None
+        raise UsageError(
+            f"scheme: given {name!r}; allowed: {', '.join(Scheme)}{suggestion(name, list(Scheme))}"
+        ) from None

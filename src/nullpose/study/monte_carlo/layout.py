@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from nullpose.physics.types import FloatArray
-from nullpose.scenario.faults import Place, stated
+from nullpose.scenario.faults import Place, key_faults
 from nullpose.scenario.ground_points import GroundAntennaKind, GroundPoint
 from nullpose.scenario.rules import Choice, Count, ListOf, Quantity, ascending
 from nullpose.scenario.section import Section, optional
@@ -155,7 +155,7 @@ class Points(Section):
             may |= {*_REGIONS[0], *_REGIONS[1]}
             yield from (((), message) for message in Ways(_REGIONS).faults(present))
         strange = [key for key in present if key not in may]
-        yield from stated(raw, strange, f'has no meaning with layout "{self.layout}"; remove it')
+        yield from key_faults(raw, strange, f'has no meaning with layout "{self.layout}"; remove it')
 
     def values(self, replaced: Sequence[GroundPoint]) -> dict[str, list[Any]]:
         """Return the values by key, places apart: what is stated here, else what the scene's points have.

@@ -66,7 +66,7 @@ class _Tally:
 
     def __init__(self, scenes: int, on_progress: Callable[[StudyProgress], None] | None) -> None:
         self.at = StudyProgress(scenes=scenes)
-        self._on_progress = on_progress
+        self._on_progress = on_progress or (lambda progress: None)
         self.start()
 
     def start(self) -> None:
@@ -87,9 +87,8 @@ class _Tally:
     def tell(self, note: str = "") -> None:
         """Call the callback."""
         fresh, spent = self.at.done - self._before, time.monotonic() - self._began
-        if self._on_progress is not None:
-            rate = fresh / spent if fresh and spent > 0.0 else 0.0
-            self._on_progress(replace(self.at, rate=rate, note=note))
+        rate = fresh / spent if fresh and spent > 0.0 else 0.0
+        self._on_progress(replace(self.at, rate=rate, note=note))
 
 
 def run_study(
