@@ -108,7 +108,7 @@ def cut_into_cells(certificate: Certificate) -> Certificate:
     """
     tree = certificate.trees[0]
     leaves = tree.leaves
-    chosen = np.flatnonzero(np.isin(leaves.test, (WORLD, TOWARDS)))[::4]
+    chosen = np.flatnonzero(np.isin(leaves.test, (WORLD, TOWARDS)) & (leaves.face < 0))[::4]
     cells = [[0, 0, 0, 0, 0], [1, 0, 0, 1, 0], [1, 0, 0, 1, 1], [2, 1, 0, 0, 0], [2, 1, 1, 0, 0]]
     rest = np.setdiff1d(np.arange(len(leaves)), chosen)
     rows = np.concatenate([rest, np.repeat(chosen, len(cells))])

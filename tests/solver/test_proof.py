@@ -8,7 +8,7 @@ import pytest
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
-from nullpose.scenario import Scenario, apply_overrides, load
+from nullpose.scenario import Airframe, Scenario, apply_overrides, load
 from nullpose.solver import solve
 from nullpose.solver.kernels.bounds import node
 from nullpose.solver.kernels.linear_algebra.axis import best_axis
@@ -190,4 +190,14 @@ def test_scenes_in_which_one_way_to_split_axes_has_no_end_are_closed(
     airframe = {"tilt_max_deg": tilt_max_deg, "mount_deg": mount_deg}
     scenario = Scenario.from_dict(_scene_of_seed([777, *seed]) | {"airframe": airframe})
     result = solve(scenario, gap=1e-3, node_limit=150_000)
+    assert result.status == "certified"
+
+
+@pytest.mark.parametrize("tilt_max_deg", [0.0, 3.0])
+def test_vehicles_that_tilt_little_are_certified(scene: Callable, tilt_max_deg: float) -> None:
+    """Their axes are a cone or a narrow band, of which many cells hold no more than a tip."""
+    places_m = np.column_stack([np.random.default_rng(7).uniform(0.0, 100.0, (13, 2)), np.zeros(13)])
+    scenario = scene(places_m[:10], places_m[10:], jammer_powers_w=3.0)
+    airframe = Airframe(tilt_max_deg=tilt_max_deg, mount_deg=45.0)
+    result = solve(scenario.model_copy(update={"airframe": airframe}), gap=4e-3, node_limit=400_000)
     assert result.status == "certified"

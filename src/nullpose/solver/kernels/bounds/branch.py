@@ -34,8 +34,8 @@ from nullpose.solver.kernels.bounds.node import (
     LEVEL,
     OFF_BAND,
     WEIGHT,
+    is_off_band,
     longest_side,
-    off_band,
     split_across,
     split_axis,
     split_position,
@@ -57,6 +57,7 @@ EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes
 _HALVINGS = 3
 
 _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
+_FAINT = 1e-6  # what multipliers leave over that is too little for smaller boxes to be sure to exclude
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
@@ -87,7 +88,7 @@ def examine(family, domain, axis_field, goal, seen, row, workspace, axis):
         length, change = axis_clearance(axis_field, row[CENTRE:HALF], half)
         if length > _CLEAR * change:  # where it may vanish any axis is allowed for
             return examine_affine(family, domain, axis_field, goal, seen, row, workspace, axis)
-    if axis_field.kind >= BAND_AXIS and off_band(axis_field.offset, row):
+    if axis_field.kind >= BAND_AXIS and is_off_band(axis_field.offset, row):
         row[KIND] = OFF_BAND
         return EXCLUDED, side, 0
     coarseness = _COARSENESS * radius / nearest
@@ -174,7 +175,7 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
     # Where multipliers exclude the centre, most often they exclude the halves of the box soon, and axes need
     # not be split. With several denominators that takes long, unless they do so by more than the box's size.
     spare = goal.spare if family.denominator_isotropic.shape[0] == 1 else max(1.0, goal.spare)
-    split_axes = followed and primal - reached > coarseness and primal > 1.0 - spare * coarseness
+    split_axes = followed and primal - reached > coarseness and primal > 1.0 - max(_FAINT, spare * coarseness)
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or coarseness == 0.0  # one position has no halves

@@ -23,10 +23,10 @@ from nullpose.solver.kernels.bounds.whitened import (
     axis_of,
     constraint_forms,
     fill_values,
-    half_width,
     ratio_form,
     whiten,
     whiten_axis,
+    wider_band,
 )
 from nullpose.solver.kernels.compiler.jit import inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
@@ -89,7 +89,7 @@ def add_band_axes(basis, back, row, least, greatest, along, start):
 
 
 @inner_kernel
-def cell_start(axis_field, basis, back, row, start):
+def cell_start(axis_field, basis, back, row, coarseness, start):
     """Fill a positive definite matrix of unit trace inside the row's cell and band; return whether there is.
 
     In whitened coordinates: the mean of the squares of axes inside. None may have been met in a thin cell.
@@ -103,8 +103,7 @@ def cell_start(axis_field, basis, back, row, start):
     if face < 0 and (is_horizontal or not has_band):
         start[:3] = 1.0 / 3.0
         return True
-    half = half_width(axis_field)
-    least, greatest = max(0.0, axis_field.offset[0] - half), min(1.0, axis_field.offset[1] + half)
+    least, greatest = wider_band(axis_field, row, coarseness)
     u = scratch(3)
     if face < 0:
         for turn in range(12):
@@ -175,7 +174,7 @@ def interior_multipliers(
     """Fill the dual's multipliers and the axis that its matrix suggests; return the primal value."""
     ratios, level = every.shape[0], row[LEVEL]
     matrix, start, forms = scratch(6), scratch(6), np.empty((ratios, 6))
-    if not cell_start(axis_field, basis, whitening[2], row, start):
+    if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
         return math.inf
     for k in range(ratios):
         ratio_form(family, has_horizontal_axes(axis_field), basis, row, whitening, k, forms[k])
@@ -212,7 +211,7 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, wo
     mean, back, v, places = scratch(6), scratch(3, 3), scratch(3), scratch_int(4)
     whitening = (workspace.denominators, mean, back)
     whiten(family, basis, row, denominator, workspace.denominators, mean, back)
-    sides = constraint_forms(axis_field, basis, row, back, pool.forms, places)
+    sides = constraint_forms(axis_field, basis, row, coarseness, back, pool.forms, places)
     for c in range(sides):
         pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])
     tolerance = max(_FINE, _LOOSE * coarseness)

@@ -126,11 +126,11 @@ def split_axis(row, is_horizontal, stack, top):
 
 
 @inner_kernel
-def off_band(ends, row):
-    """Check whether no axis of a row's cell has its elevation within the band."""
+def elevations(row):
+    """Return the least and the greatest ``u_z^2`` of the axes of a row's cell."""
     face = int(row[FACE])
     if face < 0:
-        return False
+        return 0.0, 1.0
     # squares of the two free coordinates over the cell, the face's own being one
     low, high = scratch(3), scratch(3)
     low[:], high[:] = 1.0, 1.0
@@ -139,6 +139,11 @@ def off_band(ends, row):
         a, b = row[CELL + 2 * side], row[CELL + 2 * side + 1]
         low[v] = 0.0 if a < 0.0 < b else min(a * a, b * b)
         high[v] = max(a * a, b * b)
-    least = low[2] / (low[2] + high[0] + high[1])
-    most = high[2] / (high[2] + low[0] + low[1])
-    return most < ends[0] * (1.0 - 1e-12) or least > ends[1] * (1.0 + 1e-12)
+    return low[2] / (low[2] + high[0] + high[1]), high[2] / (high[2] + low[0] + low[1])
+
+
+@inner_kernel
+def is_off_band(ends, row):
+    """Check whether no axis of a row's cell has its elevation within the band."""
+    least, greatest = elevations(row)
+    return greatest < ends[0] * (1.0 - 1e-12) or least > ends[1] * (1.0 + 1e-12)

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.problem.records import BAND_AXIS, CONE_AXIS
+from nullpose.problem.records import BAND_AXIS
 from nullpose.solver.kernels.bounds.exclusion import has_horizontal_axes
-from nullpose.solver.kernels.bounds.node import BAND, CELL, CENTRE, FACE, HALF, LEVEL, SIDE, cell_side
+from nullpose.solver.kernels.bounds.node import (
+    BAND,
+    CELL,
+    CENTRE,
+    FACE,
+    HALF,
+    LEVEL,
+    SIDE,
+    cell_side,
+    elevations,
+)
 from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.forms import (
@@ -20,17 +30,26 @@ from nullpose.solver.kernels.linear_algebra.links import denominator_at, numerat
 from nullpose.solver.kernels.linear_algebra.symmetric import smallest_of
 from nullpose.solver.kernels.linear_algebra.vectors import dot, store
 
-_THIN = 1e-6  # half the width, in u_z^2, that a cone is given so that its dual has an inside
-_STEEP = 1e-3  # and as a share of its distance from level and upright, if that is less
+_THIN = 1e-6  # by how much the ends of a band are moved, in u_z^2, so that its dual has an inside, at least
+_COARSE = 0.005  # and in units of a box's size
+_SHARE = 0.1  # of the square of what a cell spans, less some of the band's widths: for cones and narrow bands
+_WIDTHS = 3.0  # how many
+_MIDDLE = 0.2  # share of it where the band crosses the middle of the cell
+_TIP = 0.1  # share of what a cell spans that a band holds then, by no more than that share of its width
+_STEEP = 0.1  # share of the distance from level or upright by which ends are moved at most
 
 
 @inner_kernel
-def half_width(axis_field):
-    """Return half the width that a cone is given; zero for a band."""
-    if axis_field.kind != CONE_AXIS:
-        return 0.0
-    c = axis_field.offset[0]
-    return min(_THIN, _STEEP * min(c, 1.0 - c))
+def wider_band(axis_field, row, coarseness):
+    """Return a band's ends, in u_z^2, moved apart for the search of multipliers."""
+    least, greatest = elevations(row)
+    low, high = axis_field.offset[0], axis_field.offset[1]
+    width, span = high - low, 0.0 if row[FACE] < 0.0 else greatest - least
+    narrow = _SHARE * span * span - _WIDTHS * width
+    both, most = max(_THIN, _COARSE * coarseness, _MIDDLE * narrow), max(_TIP * width, narrow)
+    down = max(both, min(most, low - greatest + _TIP * span))
+    up = max(both, min(most, least - high + _TIP * span))
+    return low - min(down, _STEEP * low), high + min(up, _STEEP * (1.0 - high))
 
 
 @small_kernel
@@ -77,7 +96,7 @@ def ratio_form(family, is_horizontal, basis, row, whitening, k, out):
 
 
 @inner_kernel
-def constraint_forms(axis_field, basis, row, back, forms, places):
+def constraint_forms(axis_field, basis, row, coarseness, back, forms, places):
     """Fill the whitened forms of the cell's sides and of the band's ends; return how many there are.
 
     And the column of a row in which each one's multiplier stands, negative where it stands negated.
@@ -97,9 +116,9 @@ def constraint_forms(axis_field, basis, row, back, forms, places):
             places[sides] = SIDE + side
             sides += 1
     if axis_field.kind >= BAND_AXIS and not is_horizontal:
-        thin = half_width(axis_field)
+        ends = wider_band(axis_field, row, coarseness)
         for end in range(2):
-            c = axis_field.offset[end] + (thin if end == 1 else -thin)
+            c = ends[end]
             if 0.0 < c < 1.0:
                 for m in range(6):
                     raw[m] = (-c if end == 0 else c) if m < 3 else 0.0
