@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
 from matplotlib.text import Text
+from mpl_toolkits.mplot3d.art3d import Text3D
 from numpy.typing import NDArray
 from PIL import Image
 from twins import IMAGES, deuteranope, grey, inverted
@@ -100,6 +101,7 @@ def faults(figure: Figure) -> list[str]:
         figure.draw_without_rendering()
     hidden = set(hidden_labels(figure))
     texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    texts = [text for text in texts if not isinstance(text, Text3D)]  # which know their place when drawn
     boxes = [(text, text.get_window_extent()) for text in texts if text not in hidden]
     found = [
         f"cut off: {text.get_text()!r}"

@@ -1,15 +1,20 @@
 """Figures for print: as wide as a column or a page, with embedded letters that do not touch."""
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings, strategies as st
+from matplotlib.figure import Figure
 
-from nullpose import Scenario, compare_airframes, load, solve, sweep
+from nullpose import Pose, Scenario, compare_airframes, load, solve, sweep
 from nullpose.report.figures.dots import draw_comparison
-from nullpose.report.figures.plan import draw_value_map
+from nullpose.report.figures.names import place_names
+from nullpose.report.figures.plan import draw_plan, draw_value_map
 from nullpose.report.figures.poses import draw_pose, draw_result
-from nullpose.report.figures.style import WIDTHS_MM, write_figure
+from nullpose.report.figures.stage import ALONE, Stage
+from nullpose.report.figures.style import WIDTHS_MM, house_style, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.study import compare_schemes, value_map
 
@@ -91,6 +96,30 @@ def test_a_name_stands_nearest_its_own_point(name: str) -> None:
         box, own = text.get_window_extent(), plan.transData.transform(text.xy)
         away = [np.hypot(*np.fmax(np.fmax(box.min - at, at - box.max), 0.0)) for at in (own, *marks)]
         assert away[0] <= min(away) + 6.0 * figure.dpi / 72.0, text.get_text()
+
+
+@given(seed=st.integers(0, 10_000), nodes=st.integers(1, 14), zones=st.integers(0, 6))
+@settings(max_examples=12, deadline=None)
+def test_names_keep_apart_in_crowds(seed: int, nodes: int, zones: int) -> None:
+    """Seen from above in a column, every name drawn is in the frame and touches no other name and no mark."""
+    generator = np.random.default_rng(seed)
+    at = generator.uniform(0.0, 300.0, size=(nodes + zones + 2, 2)).round(1).tolist()
+    jammers = [{"name": f"J{i}", "position_m": [*at[i], 2.0], "power_w": 1.0} for i in range(2)]
+    sensors = [{"name": f"sensor {i}", "position_m": [*at[2 + i], 0.0], "power_w": 1.0} for i in range(nodes)]
+    closed = [{"name": f"zone R-{i}", "centre_m": at[2 + nodes + i], "radius_m": 20.0} for i in range(zones)]
+    scene = {"airspace": {"altitude_m": [30.0, 90.0], "no_fly": closed}, "nodes": sensors, "jammers": jammers}
+    scenario = Scenario.from_dict(scene | {"receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0}})
+    pose = Pose.from_axis([*generator.uniform(0.0, 300.0, size=2), 50.0], [1.0, 0.0, 0.0])
+    axes = Figure(figsize=(1.8, 2.0)).add_axes((0.2, 0.2, 0.78, 0.78))
+    with house_style("column"):
+        draw_plan(axes, Stage(scenario=scenario, poses=(pose,), view=ALONE), pose)
+        place_names(axes)
+    boxes = [text.get_window_extent() for text in axes.texts if text.get_visible()]
+    assert len(boxes) >= 1
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+    marks = axes.transData.transform(np.vstack([each.get_offsets() for each in axes.collections]))
+    assert not any(box.contains(*mark) for box in boxes for mark in marks)
+    assert all(axes.bbox.contains(*corner) for box in boxes for corner in (box.min, box.max))
 
 
 @WIDTHS

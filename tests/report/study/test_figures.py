@@ -21,7 +21,7 @@ def test_distribution_functions(summed: Summed, ladder: Ladder) -> None:
     figure = figures_of(summed(ladder(40, 1.0, 2.0, points=3), sweep=sweep))["distribution"]
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles == [f"jammers.M.power_w = {watts} W" for watts in ("0.2", "2", "200")]
-    assert figure.get_supxlabel() == "smallest SINR over the nodes (dB)\n"
+    assert figure.get_supxlabel() == "smallest SINR over the nodes (dB)"
     for axes in figure.axes:
         curves = [line for line in axes.lines if len(line.get_xdata()) > 2]
         assert len(curves) == len(axes.collections) == 3

@@ -19,7 +19,7 @@ from nullpose.report.numbers import capitalised, number
 from nullpose.study import ResultRow, ResultTable
 from nullpose.study.case import OMNIDIRECTIONAL
 
-_ROW_INCH, _SENTENCE_INCH = 0.33, 0.3
+_ROW_INCH, _SENTENCE_INCH, _PRINTED = 0.33, 0.3, 0.66  # on a screen; height in print over that
 _NAME_LETTERS = 60  # in a line of a scene's name
 _GAP = 0.6  # between dipoles and arrays, in rows
 _DEEPEST_DB = 25.0  # dots farther below the best are at the edge, as arrows
@@ -30,14 +30,12 @@ def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure
     """Draw cases or vehicles compared: dots and answer, in print (a key of ``WIDTHS_MM``) dots alone."""
     lines = answer_lines(comparison) if OMNIDIRECTIONAL in comparison.names else []
     with house_style(width):
-        height = 1.6 + _ROW_INCH * len(comparison.rows)
-        size = (7.0, height + _SENTENCE_INCH * len(lines))
-        if width is not None:
-            size = (inches(size, width, 0.0)[0], 0.66 * height)
-        figure = Figure(figsize=size, layout="constrained")
+        high = 1.6 + _ROW_INCH * len(comparison.rows)
+        high = high + _SENTENCE_INCH * len(lines) if width is None else _PRINTED * high
+        figure = Figure(figsize=(inches((7.0, high), width, 0.0)[0], high), layout="constrained")
         axes = figure.add_subplot()
         draw_dots(axes, comparison)
-        figure.legend(loc="outside upper center", ncols=2, frameon=False, handlelength=1.2)
+        figure.legend(loc="outside upper center", ncols=2, handlelength=1.2)
         if width is None:
             name = textwrap.fill(comparison.rows[0].scenario.name, _NAME_LETTERS)
             axes.set_title(name, loc="left", fontweight="bold", parse_math=False)
@@ -59,8 +57,7 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     dots: Look = {"linestyle": "", "clip_on": False, "zorder": 3.0}
     axes.plot([], [], "o", color=GREY, label="value found")
     for place, row, value in zip(places, found, values, strict=True):
-        is_seen = value >= low
-        axes.plot(max(value, low), place, "o" if is_seen else "<", color=_colour(row), **dots)
+        axes.plot(max(value, low), place, "o" if value >= low else "<", color=_colour(row), **dots)
     marks: dict[str, tuple[FloatArray, Look]] = {
         "proved upper bound": (bounds, {"marker": "|", "color": INK, "markersize": 13.0}),
         "guaranteed, robust pose": (robust, {"marker": "d", "color": INK, "markersize": 5.0}),
@@ -72,28 +69,28 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     for label, (numbers, look) in marks.items():
         if np.any(np.isfinite(numbers)):
             axes.plot(np.where(numbers >= low, numbers, math.nan), places, label=label, **look | dots)
-    whole = math.nan
-    if OMNIDIRECTIONAL in comparison.names:
-        whole = float(values[comparison.names.index(OMNIDIRECTIONAL)])
-        axes.axvline(whole, color=VEHICLES[OMNIDIRECTIONAL].colour, linewidth=0.9, zorder=1.5)
+    whole = dict(zip(comparison.names, values.tolist(), strict=True)).get(OMNIDIRECTIONAL, math.nan)
+    axes.axvline(whole, color=VEHICLES[OMNIDIRECTIONAL].colour, linewidth=0.9, zorder=1.5)
     ends = np.fmax(np.fmax(np.nan_to_num(values, nan=low), low), bounds)
-    beside: Look = {"xytext": (7, 0), "textcoords": "offset points", "va": "center", "zorder": 4.0}
-    white = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+    beside: Look = {
+        "xytext": (7, 0),
+        "textcoords": "offset points",
+        "va": "center",
+        "fontsize": "small",
+        "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+    }
     for place, end, value in zip(places, ends, values.tolist(), strict=True):
-        axes.annotate(
-            _difference_words(value, whole, quantity), (end, place), fontsize="small", bbox=white, **beside
-        )
+        axes.annotate(_difference_words(value, whole, quantity), (end, place), zorder=4.0, **beside)
     axes.set_yticks(places, [row.label for row in found])
 
 
 def _frame(axes: Axes, quantity: Quantity, places: FloatArray, numbers: FloatArray) -> float:
     """Set limits and names of the axes, with space for all numbers; return the lowest value in view."""
-    finite = numbers[np.isfinite(numbers)]
-    low, high = float(finite.min(initial=0.0)), max(float(finite.max(initial=0.0)), 1e-3)
+    finite: list[float] = numbers[np.isfinite(numbers)].tolist()
+    low, high, least = min(0.0, *finite), max(1e-3, *finite), 1e-3
     if not quantity.is_rate:  # decibels have no natural zero
-        high = float(finite.max())
-        low = max(float(finite.min()), high - _DEEPEST_DB)
-    span = max(high - low, 0.5 if not quantity.is_rate else 1e-3)
+        low, high, least = max(min(finite), max(finite) - _DEEPEST_DB), max(finite), 0.5
+    span = max(high - low, least)
     axes.tick_params(axis="y", length=0)
     axes.set(xlim=(low - _BEFORE * span, high + _FREE * span), ylim=(places[-1] + 0.6, -0.6))
     axes.grid(visible=False, axis="y")
@@ -102,9 +99,8 @@ def _frame(axes: Axes, quantity: Quantity, places: FloatArray, numbers: FloatArr
 
 
 def _colour(row: ResultRow) -> str:
-    looks = {**CURVES, **VEHICLES}
-    name = "array" if row.case.array else row.name
-    return looks[name].colour if name in looks else INK
+    look = {**CURVES, **VEHICLES}.get("array" if row.case.array else row.name)
+    return INK if look is None else look.colour
 
 
 def _difference_words(value: float, whole: float, quantity: Quantity) -> str:

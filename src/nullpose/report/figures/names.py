@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -31,7 +32,7 @@ _PLACES = np.array(
 """Where a name may stand: from its point, over its half size, with a gap in points, and what that costs."""
 _SAMPLES, _CROSSED, _BESIDE = 60, 0.05, 0.5  # points on a line; costs of one below a name, of a mark beside
 _MARK_PT, _BESIDE_PT, _TINY_PT = 3.0, 9.0, 18.0  # half of a mark; how far one is beside a name; a small zone
-_TRIES = 6
+_TRIES, _POINT = 6, 10.0  # tries; what the name of a point is worth over that of an area
 
 
 def write_name(
@@ -57,11 +58,17 @@ def write_name(
     if isinstance(axes, Axes3D):
         x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
     words = ("\n" if len(name) > _SHORT else " ").join(filter(None, (textwrap.fill(name, _LETTERS), number)))
-    look: Look = {"fontsize": rcParams["xtick.labelsize"], "color": INK, "zorder": 8}
-    look |= {"fontweight": "bold" if is_bold else "normal", "fontstyle": "italic" if is_area else "normal"}
-    look |= {"textcoords": "offset points", "annotation_clip": False, "parse_math": False, "in_layout": False}
-    halo = [withStroke(linewidth=2.0, foreground="white")]
-    axes.annotate(words, (x, y), xytext=(0.0, 0.0), ha="center", va="center", path_effects=halo, **look)
+    look: Look = {
+        "fontsize": rcParams["xtick.labelsize"],
+        "fontweight": "bold" if is_bold else "normal",
+        "fontstyle": "italic" if is_area else "normal",
+        "path_effects": [withStroke(linewidth=2.0, foreground="white")],
+        "annotation_clip": False,
+        "parse_math": False,
+        "in_layout": False,
+    }
+    offset: Look = {"xytext": (0.0, 0.0), "textcoords": "offset points", "ha": "center", "va": "center"}
+    axes.annotate(words, (x, y), color=INK, zorder=8, **look, **offset)
 
 
 def place_names(axes: Axes | Axes3D) -> None:
@@ -73,23 +80,15 @@ def place_names(axes: Axes | Axes3D) -> None:
     names = [text for text in axes.texts if isinstance(text, Annotation)]
     names.sort(key=lambda name: (name.get_fontstyle() == "italic", name.get_fontweight() != "bold"))
     for name in names:
-        name.set_visible(True)
+        name.set(visible=True, position=(0.0, 0.0))
     root = axes.get_figure(root=True)
     assert root is not None, "axes are in a figure"
     root.draw_without_rendering()  # for the layout, and where points in 3-D are seen
-    to_px, point_px = axes.transData.transform, root.dpi / 72.0
-    groups = [each.get_offsets() for each in axes.collections if isinstance(each, PathCollection)]
-    marks, points = to_px(np.vstack(groups)), to_px([name.xy for name in names])
-    lines = np.vstack([to_px(_along(line)) for line in axes.lines])
-    letters = [text for text in axes.findobj(Text) if text.get_text() and text not in names]
-    boxes = [text.get_window_extent() for text in (*names, *letters)]
-    zones = [zone.get_window_extent() for zone in axes.patches]
-    boxes += [box for box in zones if max(box.size) < _TINY_PT * point_px]
-    corners = np.array([(box.min, box.max) for box in boxes])
-    rims = point_px * _MARK_PT * np.array([[-1.0], [1.0]])
-    corners = np.concatenate([corners, marks[:, None] + rims])
+    point_px = root.dpi / 72.0
+    points = axes.transData.transform([name.xy for name in names])
+    marks, lines, corners = _in_the_way(axes, names, point_px)
     middles, halves = corners.mean(axis=1), 0.5 * np.ptp(corners, axis=1)
-    weights = np.array([1.0 if name.get_fontstyle() == "italic" else 10.0 for name in names])
+    weights = [1.0 if name.get_fontstyle() == "italic" else _POINT for name in names]
     order, least = list(range(len(names))), np.inf
     for _ in range(_TRIES):
         middles[: len(names)] = np.nan
@@ -98,7 +97,8 @@ def place_names(axes: Axes | Axes3D) -> None:
             places = point + _PLACES[:, :2] * (half + point_px * _PLACES[:, 2:3])
             low, high = axes.bbox.min + half + point_px, axes.bbox.max - half - point_px
             places = np.clip(places, low, high)[:, None]
-            beyond = np.maximum(np.abs(places - [point, *points, *marks]) - half, 0.0)
+            rivals = [point, *marks, *(points if weights[index] < _POINT else ())]
+            beyond = np.maximum(np.abs(places - rivals) - half, 0.0)
             is_wrong = np.argmin(np.linalg.norm(beyond, axis=-1), axis=1) > 0  # nearer to another
             is_wrong |= np.any(np.all(np.abs(places - middles) < halves + half, axis=-1), axis=1)
             crossed = np.all(np.abs(places - lines) < half, axis=-1).sum(axis=1)
@@ -107,11 +107,26 @@ def place_names(axes: Axes | Axes3D) -> None:
             best = int(np.argmin(costs))
             middles[index] = places[best, 0] if costs[best] < np.inf else np.nan
         is_lost = np.isnan(middles[: len(names), 0])
-        if weights @ is_lost < least:
-            least = float(weights @ is_lost)
+        if np.dot(weights, is_lost) < least:
+            least = float(np.dot(weights, is_lost))
             for name, point, middle, lost in zip(names, points, middles, is_lost, strict=False):
                 name.set(position=(middle - point) / point_px, visible=not lost)
         order.sort(key=lambda index: (-weights[index], not is_lost[index]))
+
+
+def _in_the_way(
+    axes: Axes | Axes3D, names: Sequence[Text], point_px: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """List marks and points on lines, (n, 2), and corners of letters, small zones and marks, (n, 2, 2)."""
+    groups = [each.get_offsets() for each in axes.collections if isinstance(each, PathCollection)]
+    marks = axes.transData.transform(np.vstack(groups))
+    lines = np.vstack([axes.transData.transform(_along(line)) for line in axes.lines])
+    letters = [text for text in axes.findobj(Text) if text.get_text() and text not in names]
+    zones = [zone.get_window_extent() for zone in axes.patches]
+    boxes = [text.get_window_extent() for text in (*names, *letters)]
+    boxes += [box for box in zones if max(box.size) < _TINY_PT * point_px]
+    rims = marks[:, None] + point_px * _MARK_PT * np.array([[-1.0], [1.0]])
+    return marks, lines, np.concatenate([[(box.min, box.max) for box in boxes], rims])
 
 
 def _along(line: Line2D) -> FloatArray:

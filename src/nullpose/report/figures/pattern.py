@@ -30,7 +30,7 @@ _SPOKES_DEG = np.arange(0, 360, 45)
 _LARGEST = 91  # rows and columns of the surface; finer ones look the same
 
 
-def _directions(down: int, around_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
+def ball_rings(down: int, around_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Compute unit vectors in rings about z from the zenith down, (3, n, m), and sines of their angles."""
     gamma, around = np.meshgrid(np.linspace(0.0, math.pi, down), around_rad, indexing="ij")
     sine = np.sin(gamma)
@@ -57,16 +57,15 @@ def pattern_surface_m(
         camera: direction towards it, shape ``(3,)``.
     """
     if not antenna.is_quadratic:
-        local, _ = _directions(_RINGS, np.linspace(0.0, math.tau, _AROUND))
+        local, _ = ball_rings(_RINGS, np.linspace(0.0, math.tau, _AROUND))
         gain = antenna.gain(np.moveaxis(local, 0, -1)) / antenna.peak
         turned: FloatArray = np.einsum("ck,kij->cij", pose.orientation(antenna), radius_m * gain * local)
         return turned + pose.position_m[:, None, None]
     axis = pose.antenna_axis
-    towards = np.asarray(camera)
-    facing = towards - axis * (towards @ axis)
-    facing = facing / np.linalg.norm(facing)
-    frame = np.stack([facing, np.cross(axis, facing), axis])
-    local, sine = _directions(_DOWN, around_rad)
+    beside = np.cross(axis, np.asarray(camera))
+    beside /= np.linalg.norm(beside)
+    frame = np.stack([np.cross(beside, axis), beside, axis])
+    local, sine = ball_rings(_DOWN, around_rad)
     surface: FloatArray = np.einsum("kij,kc->cij", radius_m * antenna.gain(sine**2) * local, frame)
     return surface + pose.position_m[:, None, None]
 
@@ -85,11 +84,10 @@ def beam_surface_m(
         weights: of the elements, complex, shape ``(K,)``.
         radius_m: distance drawn where the gain is largest.
     """
-    local, sine = _directions(_RINGS, np.linspace(0.0, math.tau, _AROUND))
+    local, sine = ball_rings(_RINGS, np.linspace(0.0, math.tau, _AROUND))
     heard = steering_vectors(np.zeros(3), elements_wavelengths, local.reshape(3, -1).T)
     gain = sine**2 * np.abs(heard @ np.conj(weights)).reshape(sine.shape) ** 2
-    surface: FloatArray = radius_m * gain / max(float(gain.max()), 1e-300) * local
-    return surface + position_m[:, None, None]
+    return np.asarray(radius_m * gain / max(gain.max(), 1e-300) * local + position_m[:, None, None])
 
 
 def draw_surface(
@@ -110,8 +108,8 @@ def draw_pattern(table: PatternTable) -> Figure:
     theta, phi = table.theta_deg, table.phi_deg
     level = int(np.argmin(np.abs(theta - 90.0)))
     x, y, back, right = (int(np.argmin(np.abs(phi - at))) for at in (0.0, 90.0, 180.0, 270.0))
-    cuts: list[tuple[str, Literal[-1, 1], FloatArray, FloatArray]]
-    cuts = [(f"Azimuth phi at theta {theta[level]:g}, seen from above", 1, phi, gain_dbi[level])]
+    title = f"Azimuth phi at theta {theta[level]:g}, seen from above"
+    cuts: list[tuple[str, Literal[-1, 1], FloatArray, FloatArray]] = [(title, 1, phi, gain_dbi[level])]
     for near, far in ((x, back), (y, right)):
         title = f"Polar angle theta: phi {phi[near]:g} right, {phi[far]:g} left"
         whole = np.concatenate([gain_dbi[:, near], gain_dbi[-2:0:-1, far]])
@@ -131,8 +129,7 @@ def _draw_cut(
     axes: PolarAxes, turn: Literal[-1, 1], at_deg: FloatArray, values_dbi: FloatArray, top_dbi: float
 ) -> None:
     """Draw a cut, 0 degrees up: azimuths grow to the left, as seen from above, polar angles to both sides."""
-    axes.set_theta_zero_location("N")
-    axes.set_theta_direction(turn)
+    axes.set(theta_zero_location="N", theta_direction=turn)
     closed = np.append(np.radians(at_deg), np.radians(at_deg[0])), np.append(values_dbi, values_dbi[0])
     axes.plot(*closed, color=_LINE, linewidth=1.6)
     axes.set_ylim(top_dbi - _RANGE_DB, top_dbi)
@@ -156,9 +153,8 @@ def _draw_surface(
     far = np.maximum((gain_dbi - peak_dbi) / _RANGE_DB + 1.0, 0.0)
     surface = np.moveaxis((far[..., None] * directions(table.theta_deg, table.phi_deg))[:, around], -1, 0)
     norm = Normalize(peak_dbi - _RANGE_DB, peak_dbi)
-    look: Look = {"edgecolor": (0.0, 0.0, 0.0, 0.15), "linewidth": 0.2, "shade": False}
-    colours = _COLOURS(norm(gain_dbi[:, around]))
-    axes.plot_surface(*surface, rcount=_LARGEST, ccount=_LARGEST, facecolors=colours, **look)
+    look: Look = {"facecolors": _COLOURS(norm(gain_dbi[:, around])), "edgecolor": (0.0, 0.0, 0.0, 0.15)}
+    axes.plot_surface(*surface, rcount=_LARGEST, ccount=_LARGEST, linewidth=0.2, shade=False, **look)
     for axis, name, end in zip(np.eye(3), "xyz", ends, strict=True):
         axes.plot(*np.outer(axis, (far[end], 1.3)), color=INK, linewidth=1.0, zorder=10)
         axes.text(*(1.45 * axis), name, color=INK, ha="center", va="center")
@@ -167,4 +163,3 @@ def _draw_surface(
     axes.set_axis_off()
     bar = figure.colorbar(ScalarMappable(norm, _COLOURS), ax=axes, shrink=0.6)
     bar.ax.set_title("dBi", fontsize=8.5)
-    bar.ax.grid(False)

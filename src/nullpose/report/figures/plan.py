@@ -18,7 +18,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_outlines, draw_shadows
 from nullpose.report.figures.names import place_names, write_name
 from nullpose.report.figures.scene import NULL_LINE
-from nullpose.report.figures.stage import AXIS, Stage, limits_m
+from nullpose.report.figures.stage import ALONE, AXIS, Stage, limits_m
 from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, MARKS, Look, house_style, inches
 from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import MINUS, capitalised
@@ -27,7 +27,7 @@ from nullpose.solver import Result
 from nullpose.study import Field
 
 _MOST_SPAN, _LEAST_SPAN = 30.0, 1.0  # of the colours: what is farther below the best is as dark as it gets
-_LEVELS = 8
+_LEVELS, _FREE = 8, 0.03  # of a map's contours; kept free around their numbers, of its longer side
 _FAR_M = 1e7  # of an airspace without an end
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # for labels and the colour bar
 _TALLEST_INCH = 8.0
@@ -73,9 +73,8 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         if stage.uncertain and not isinstance(point, Node):
             words = f"where the {kind} may be"
             axes.plot(*_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=words)
-    radius_m = stage.view.pattern * stage.extent_m
-    reach = AXIS * radius_m * pose.antenna_axis[:2]
-    ends = np.stack([pose.position_m[:2] - reach, pose.position_m[:2] + reach])
+    reach = AXIS * stage.view.pattern * stage.extent_m * pose.antenna_axis[:2]
+    ends = pose.position_m[:2] + np.stack([-reach, reach])
     is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None
     axes.plot(*ends.T, zorder=6.5, label="antenna axis (null)" if is_null else None, **NULL_LINE)
     axes.scatter(x, y, color=DRONE, zorder=7, label="drone", **rim)
@@ -84,18 +83,16 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
 def _outline_of_set_m(point: Jammer | Eavesdropper) -> FloatArray:
     """List places around the set that a point may be anywhere in, from above, (n, 2), metres."""
     around = np.linspace(0.0, math.tau, 73)
-    half_m = point.uncertainty_matrix_m[:2]
-    away = np.stack([np.cos(around), np.sin(around)], axis=-1) @ half_m
-    away /= np.maximum(np.linalg.norm(away, axis=-1, keepdims=True), 1e-300)
-    return np.asarray(point.position_m[:2] + away @ half_m.T)
+    turn, half_axes_m, _ = np.linalg.svd(point.uncertainty_matrix_m[:2])
+    away_m = (turn * half_axes_m) @ np.stack([np.cos(around), np.sin(around)])
+    return np.asarray(away_m.T + point.position_m[:2])
 
 
 def _filled(axes: Axes, box_m: FloatArray) -> FloatArray:
     """Widen a box, (2, 2), to the shape of the axes."""
-    middle, sides = box_m.mean(axis=0), np.ptp(box_m, axis=0)
-    scale = float(np.max(sides / axes.bbox.size))
-    half = 0.5 * scale * np.asarray(axes.bbox.size)
-    return np.stack([middle - half, middle + half])
+    shape = np.asarray(axes.bbox.size)
+    half = 0.5 * shape * np.max(np.ptp(box_m, axis=0) / shape)
+    return np.stack([box_m.mean(axis=0) - half, box_m.mean(axis=0) + half])
 
 
 def draw_value_map(result: Result, field: Field, width: str | None = None) -> Figure:
@@ -114,30 +111,29 @@ def draw_value_map(result: Result, field: Field, width: str | None = None) -> Fi
         axes = figure.add_subplot()
         draw_field(axes, result, field)
         if width is None:
-            title = f"{result.scenario.name}\n{result.label}: {field.title}"
-            axes.set_title(title, fontsize=9, parse_math=False)
+            words = f"{result.label}: {field.title}"
+            axes.set_title(f"{result.scenario.name}\n{words}", fontsize=9, parse_math=False)
         place_names(axes)
     return figure
 
 
-def _open_ground(scenario: Scenario, altitude_m: float) -> Path:
+def _open_ground(scenario: Scenario, altitude_m: float) -> shapely.Geometry:
     """Outline where the vehicle may be at an altitude: inside the fence and outside all zones and balls."""
     airspace = scenario.airspace
-    (west, south, _), (east, north, _) = np.clip([airspace.lower_m, airspace.upper_m], -_FAR_M, _FAR_M)
-    ground = shapely.box(west, south, east, north)
+    low, high = np.clip([airspace.lower_m, airspace.upper_m], -_FAR_M, _FAR_M)
+    ground = shapely.box(*low[:2], *high[:2])
     if airspace.geofence_m is not None:
         ground = ground.intersection(shapely.Polygon(airspace.geofence_outline_m))
+    up_m = altitude_m - scenario.point_positions_m[:, 2]
+    across_m = np.sqrt(np.maximum(airspace.keep_out_m**2 - up_m**2, 0.0))
     zones = [zone for zone in airspace.no_fly if zone.floor_m < altitude_m < zone.ceiling_m]
     walls = [each for each in scenario.buildings if each.floor_m < altitude_m < each.heights_m[1]]
-    closed = [shapely.Polygon(outline_m(zone)) for zone in zones]
-    closed += [shapely.Polygon(each.outline_m, each.courtyard_outlines_m) for each in walls]
-    for point in scenario.points:
-        x, y, z = point.position_m
-        across_m = math.sqrt(max(airspace.keep_out_m**2 - (altitude_m - z) ** 2, 0.0))
-        closed.append(shapely.Point(x, y).buffer(across_m, 24))
-    parts = shapely.get_parts(ground.difference(shapely.union_all(closed)))
-    rings = [shapely.get_coordinates(ring) for part in parts for ring in (part.exterior, *part.interiors)]
-    return Path.make_compound_path(*(Path(ring, closed=True) for ring in rings))
+    closed = [
+        *shapely.buffer(shapely.points(scenario.point_positions_m[:, :2]), across_m, quad_segs=24),
+        *(shapely.Polygon(outline_m(zone)) for zone in zones),
+        *(shapely.Polygon(each.outline_m, each.courtyard_outlines_m) for each in walls),
+    ]
+    return ground.difference(shapely.union_all(closed))
 
 
 def draw_field(axes: Axes, result: Result, field: Field) -> None:
@@ -156,14 +152,19 @@ def draw_field(axes: Axes, result: Result, field: Field) -> None:
     white: Look = {"colors": "white", "linewidths": 0.6, "linestyles": "solid", "zorder": 0.8}
     lines = axes.contour(east, north, spread, levels, **white)
     labels = axes.clabel(lines, fontsize=6.5, fmt=lambda level: f"{level:g}".replace("-", MINUS))
-    outline = PathPatch(_open_ground(result.scenario, field.altitude_m), transform=axes.transData)
+    ground = _open_ground(result.scenario, field.altitude_m)
+    rings = [ring for part in shapely.get_parts(ground) for ring in (part.exterior, *part.interiors)]
+    paths = (Path(shapely.get_coordinates(ring), closed=True) for ring in rings)
+    outline = PathPatch(Path.make_compound_path(*paths), transform=axes.transData)
     mesh.set_clip_path(outline)
     lines.set_clip_path(outline)
+    free_m = _FREE * max(np.ptp(east), np.ptp(north))  # where a number is in the frame and on open ground
+    inner = ground.intersection(shapely.box(east[0], north[0], east[-1], north[-1])).buffer(-free_m)
     for label in labels:
-        label.set(clip_on=True, clip_path=outline)
+        label.set_visible(bool(shapely.contains_xy(inner, *label.get_position())))
     axes.grid(visible=False)
-    draw_plan(axes, Stage.of(result), result.pose, np.array([[east[0], north[0]], [east[-1], north[-1]]]))
+    box_m = np.array([[east[0], north[0]], [east[-1], north[-1]]])
+    draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE), result.pose, box_m)
     words = f"{capitalised(result.objective.quantity.smallest)} {field.altitude_m:.3g} m up ({field.unit})"
     beside = axes.inset_axes((1.03, 0.0, 0.045, 1.0))  # as high as the map, whatever its shape
-    extend = "min" if float(values.min()) < low else "neither"
-    axes.figure.colorbar(mesh, cax=beside, label=words, extend=extend)
+    axes.figure.colorbar(mesh, cax=beside, label=words, extend="min" if values.min() < low else "neither")

@@ -6,10 +6,10 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import zip_longest
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
@@ -37,10 +37,12 @@ from nullpose.solver.robust import RobustDetails
 from nullpose.study import ResultRow
 
 _PLAN_INCH = 4.2  # width of a plan on a screen
-_PLAN_SHARE = 0.64  # width of a plan over that of the scene beside it
-_COLUMN = {"width_ratios": (1.75, 1.0), "height_ratios": (1.2, 1.0)}  # of the plan and the scene beside it
+_PLAN_SHARES, _ROWS = (
+    (0.64, 1.75),
+    (1.2, 1.0),
+)  # of a plan over a panel beside it; in a column, over its legend
+_PAGE_SHARE, _COLUMN_SHARES = 0.46, (0.84, 0.71)  # heights over widths; in a column without a plan, and with
 _LEGEND_COLUMN_INCH = 1.7
-_PAGE_INCH, _COLUMN_INCH = 3.3, (2.9, 2.45)  # heights: of a column without a plan beside the scene, and with
 
 
 def draw_panels(
@@ -65,68 +67,53 @@ def draw_panels(
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
     count, is_narrow = len(stage.poses), is_column(width)
-    is_small = is_narrow and plan
-    size = (stage.view.inches[0] * count + _PLAN_INCH * plan, stage.view.inches[1])
-    if width is not None:
-        size = (inches(size, width, 0.0)[0], _COLUMN_INCH[plan] if is_narrow else _PAGE_INCH)
+    is_solid = plan or not is_narrow
+    usual = (stage.view.inches[0] * count + _PLAN_INCH * plan, stage.view.inches[1])
     stage = replace(stage, view=replace(stage.view, is_small=is_narrow))
-    with house_style(width):
+    with house_style(width), rc_context({"text.parse_math": False}):
         # the name of z is beyond its panel
         layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0 if is_narrow else 0.98, 1.0))
+        size = inches(usual, width, _COLUMN_SHARES[plan] if is_narrow else _PAGE_SHARE)
         figure = Figure(figsize=size, layout=layout)
-        row = figure.add_gridspec(1, count + plan, width_ratios=[1.0] * count + [_PLAN_SHARE] * plan)
-        places = [row[index] for index in range(count + plan)]
-        if is_small:  # the legend has the corner
-            grid = figure.add_gridspec(2, 2, **_COLUMN)
-            places = [grid[0, 1], grid[:, 0]]
-        for pose, place, title in zip_longest(stage.poses, places[:count], titles):
-            axes = figure.add_subplot(place, projection=None if is_narrow and not plan else "3d")
-            if axes.name == "3d":
-                axes.patch.set_visible(False)  # it would cover what another panel has at its edge
+        shares = [_PLAN_SHARES[is_narrow]] * plan + [1.0] * count
+        grid = figure.add_gridspec(2, len(shares), width_ratios=shares, height_ratios=_ROWS)
+        rows = slice(1 if is_narrow and plan else 2)  # the legend has the corner below
+        for index, (pose, title) in enumerate(zip(stage.poses, titles or [""] * count, strict=True)):
+            axes = figure.add_subplot(
+                grid[rows, plan + index], projection="3d" if is_solid else None, facecolor="none"
+            )
+            if is_solid:
                 draw_panel(axes, stage, pose, draw_vehicle)
             else:
                 draw_plan(axes, stage, pose)
-            axes.set_title(
-                (title or "").replace(", ", "\n") if is_narrow else title, fontsize="medium", y=0.96
-            )
+            words = title.replace(", ", "\n") if is_narrow else title
+            axes.set_title(words, fontsize="medium", y=0.96, parse_math=True)
         if plan:
-            draw_plan(figure.add_subplot(places[-1]), stage, stage.poses[0])
+            draw_plan(figure.add_subplot(grid[:, 0]), stage, stage.poses[0])
         if width is None:
-            figure.suptitle(head, fontsize=10, parse_math=False)
-        _draw_legend(figure, stage, None if is_narrow else surface)
+            figure.suptitle(head, fontsize=10)
+        _draw_legend(figure, stage, surface)
         for axes in figure.axes:
             place_names(axes)
     return figure
 
 
-def _draw_legend(figure: Figure, stage: Stage, surface: str | None) -> None:
+def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
     """Draw the legend of all panels: below them, or in a column in the corner beside the plan."""
     marks: dict[str, dict[type, Any]] = {}
-    for axes in figure.axes:
-        drawn: dict[str, dict[type, Any]] = {}
-        for mark, name in zip(*axes.get_legend_handles_labels(), strict=True):
-            drawn.setdefault(name, {})[type(mark)] = mark
-        marks |= drawn  # those of the plan, if there is one
-    if surface is None:
+    for axes in figure.axes:  # the plan, if there is one, is the last
+        drawn = [*zip(*axes.get_legend_handles_labels(), strict=True)]
+        marks |= {name: {type(mark): mark for mark, label in drawn if label == name} for _, name in drawn}
+    look: Look = {"loc": "outside lower center", "title": stage.note.replace("\n", " ")}
+    look["ncols"] = min(len(marks) + 1, int(figure.get_figwidth() / _LEGEND_COLUMN_INCH))
+    if stage.view.is_small:
         del marks["drone"]  # it has its name in the plan
+        if len(stage.poses) == 1:
+            look = {"loc": "lower right", "title": stage.note}
     else:
         marks[surface] = {Patch: Patch(color=SURFACE, alpha=0.8)}
-    look: Look = {
-        "handlelength": 1.7,
-        "frameon": False,
-        "alignment": "left",
-        "columnspacing": 1.0,
-        "borderaxespad": 0.1,
-        "handletextpad": 0.5,
-    }
-    is_corner = surface is None and len(stage.poses) == 1
-    note = stage.note if is_corner else stage.note.replace("\n", " ")
-    columns = 1 if is_corner else min(len(marks), int(figure.get_figwidth() / _LEGEND_COLUMN_INCH))
-    look["loc"] = "lower right" if is_corner else "outside lower center"
     handles: Any = [tuple(each.values()) for each in marks.values()]
-    legend = figure.legend(handles, marks, ncols=columns, title=note, **look)
-    for text in legend.get_texts():
-        text.set_parse_math(False)
+    figure.legend(handles, marks, alignment="left", borderaxespad=0.1, handlelength=1.7, **look)
 
 
 _LETTERS = 120  # in a line of a title
@@ -136,7 +123,7 @@ _SURFACE = "radiation pattern"
 # Lengths drawn, as shares of the scene's extent.
 _ARRAY = 0.10  # from the middle to the outermost element
 _UPRIGHT = 0.018  # half of an element
-_HEADING = _BEAM = 0.20  # the heading's arrow, and the beam where the gain is largest
+_BEAM = 0.20  # the heading's arrow, and the beam where the gain is largest
 _ELSEWHERE_DEG = ALONE.azimuth_deg + 27.0  # where the camera stands if the array would be seen end on
 
 
@@ -174,15 +161,18 @@ def draw_robust(result: Result, width: str | None = None) -> Figure:
     """
     scenario, quantity, details = result.scenario, Quantity.of(result.scenario), result.details
     assert isinstance(details, RobustDetails), "the caller asks"
+
+    def words(value: float) -> str:
+        return with_unit(quantity.in_unit(value), quantity)
+
     poses = {"robust pose": details.robust, "best pose without errors": details.nominal}
-    titles = []
-    for name, pose in poses.items():
-        guaranteed = with_unit(quantity.in_unit(pose.guaranteed), quantity)
-        nominal = with_unit(quantity.in_unit(pose.nominal), quantity)
-        titles.append(f"{name}\n{guaranteed} guaranteed, {nominal} without errors")
+    titles = [
+        f"{name}\n{words(pose.guaranteed)} guaranteed, {words(pose.nominal)} without errors"
+        for name, pose in poses.items()
+    ]
     errors = f"{quantity.smallest}; errors: {error_words(scenario)}"
     head = f"{scenario.name}\n{textwrap.shorten(errors, _LETTERS, placeholder=' ...')}"
-    both = tuple(pose.pose for pose in poses.values())
+    both = (details.robust.pose, details.nominal.pose)
     stage = Stage(scenario=scenario, poses=both, view=PAIR, uncertain=True)
     return draw_panels(stage, draw_dipole, surface=_SURFACE, head=head, titles=titles, width=width)
 
@@ -191,11 +181,9 @@ def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
     """Write the value at a pose, and how far a dipole's null is off the jammers, or the eavesdroppers."""
     quantity = objective.quantity
     points: tuple[Jammer | Eavesdropper, ...] = scenario.eavesdroppers or scenario.jammers
-    angles_deg = [math.degrees(axis_angle_rad(pose, point.position_m)) for point in points]
-    nulls = [f"{angle:.1f}° off {point.name}" for angle, point in zip(angles_deg, points, strict=True)]
+    nulls = [f"{math.degrees(axis_angle_rad(pose, each.position_m)):.1f}° off {each.name}" for each in points]
     value = f"{quantity.smallest} {with_unit(quantity.in_unit(objective.value), quantity)}"
-    is_dipole = scenario.antenna_record.is_quadratic
-    return f"{value}, null {', '.join(nulls)}" if nulls and is_dipole else value
+    return f"{value}, null {', '.join(nulls)}" if nulls and scenario.antenna_record.is_quadratic else value
 
 
 def draw_dipole(axes: Axes3D, stage: Stage, pose: Pose) -> None:
@@ -220,10 +208,8 @@ def draw_array(result: Result, width: str | None = None) -> Figure:
     assert isinstance(details, ArrayDetails), "the caller asks"
     elements = placed_elements(result.scenario, result.pose)
     weights = details.weights[[link.node for link in result.links].index(result.binding_node)]
-    azimuth_deg = ALONE.azimuth_deg
-    if details.array.layout == "linear":  # seen more from the side
-        places = (azimuth_deg, _ELSEWHERE_DEG)
-        azimuth_deg = max(places, key=lambda deg: abs(math.sin(yaw_rad - math.radians(deg))))
+    sides_deg = (ALONE.azimuth_deg, _ELSEWHERE_DEG)  # a linear array is seen from that where it is longer
+    azimuth_deg = max(sides_deg, key=lambda deg: abs(math.sin(yaw_rad - math.radians(deg))))
     value = with_unit(quantity.in_unit(result.objective.value), quantity)
     yaw = f"yaw {math.degrees(yaw_rad):.1f}°".replace("-", MINUS)
     view = replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM)
@@ -245,7 +231,7 @@ def _draw_elements(
     extent_m, position = stage.extent_m, pose.position_m
     surface = beam_surface_m(position, elements, weights, _BEAM * extent_m)
     draw_surface(axes, surface, SURFACE, [surface[:, surface.shape[1] // 2]], DRONE)
-    ahead = _HEADING * extent_m * np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
+    ahead = _BEAM * extent_m * np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
     arrow = {"linewidth": 1.2, "arrow_length_ratio": 0.16, "zorder": 7.1, "label": "heading (yaw)"}
     axes.quiver(*position, *ahead, color=INK, **arrow)
     reach = max(float(np.linalg.norm(elements, axis=1).max()), 1e-9)
@@ -253,5 +239,5 @@ def _draw_elements(
     up = np.array([0.0, 0.0, _UPRIGHT * extent_m])
     for place in places:
         draw_line(axes, place - up, place + up, color=DRONE, linewidth=1.4, zorder=7.2)
-    dots: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 22, "depthshade": False}
-    axes.scatter(*places.T, color=DRONE, label="elements, not to scale", zorder=7.3, **dots)
+    dots: Look = {"edgecolors": "white", "linewidths": 0.5, "label": "elements, not to scale"}
+    axes.scatter(*places.T, s=22, color=DRONE, depthshade=False, zorder=7.3, **dots)

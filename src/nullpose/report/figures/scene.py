@@ -14,13 +14,13 @@ from numpy.typing import ArrayLike
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.buildings import draw_bodies
+from nullpose.report.figures.buildings import draw_bodies, walls_m
 from nullpose.report.figures.names import write_name
+from nullpose.report.figures.pattern import ball_rings
 from nullpose.report.figures.stage import Stage, limits_m
 from nullpose.report.figures.style import FORBIDDEN, GREY, INK, MARKS, NULL, Look
 from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone
 
-_NONE = np.zeros((0, 2))
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
 _MERIDIANS, _PARALLELS, _STEPS = 8, 3, 6  # lines of a set from pole to pole, around them, points between two
 
@@ -44,14 +44,12 @@ def draw_panel(
     axes.computed_zorder = False
     _frame(axes, stage, pose)
     position, floor_m = pose.position_m, axes.get_zlim()[0]
-    ground = np.array([*position[:2], floor_m])
-    draw_line(axes, ground, position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
+    draw_line(axes, [*position[:2], floor_m], position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
     for kind, point in stage.points:
         place, (colour, marker) = np.asarray(point.position_m), MARKS[kind]
-        order = 3.0 if kind == "node" else 6.0
-        mark: Look = {"color": colour, "marker": marker, "s": 18 if stage.view.is_small else 38}
-        axes.scatter(*place, zorder=order, depthshade=False, label=kind, **mark)
         line: Look = {"color": colour, "label": kind}
+        mark: Look = line | {"marker": marker, "s": 18 if stage.view.is_small else 38}
+        axes.scatter(*place, zorder=3.0 if kind == "node" else 6.0, depthshade=False, **mark)
         if isinstance(point, Node):
             draw_line(axes, place, position, linewidth=0.8, alpha=0.7, zorder=2, **line)
         else:
@@ -94,16 +92,15 @@ def _frame(axes: Axes3D, stage: Stage, pose: Pose) -> None:
 def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray, *, is_named: bool) -> None:
     """Draw a zone as a body that can be seen through, or the geofence (None) as a line on the ground."""
     bottom_m, top_m = axes.get_zlim()
+    ring = np.vstack([corners_m, corners_m[:1]])
     if zone is None:
-        ring = np.vstack([corners_m, corners_m[:1]])
         axes.plot(*ring.T, bottom_m, color=GREY, linewidth=1.2, linestyle=(0, (6, 2)), label="geofence")
         return
     low_m, high_m = max(zone.floor_m, bottom_m), min(zone.ceiling_m, top_m)
     if not high_m > low_m:
         return
-    lower, upper = (np.column_stack([corners_m, np.full(len(corners_m), z)]) for z in (low_m, high_m))
-    walls = np.stack([lower, np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0), upper], axis=1)
-    for faces, edge in ((walls, "none"), ([lower, upper], FORBIDDEN)):
+    flat = [np.insert(ring, 2, z, axis=1) for z in (low_m, high_m)]
+    for faces, edge in ((walls_m(ring, low_m, high_m), "none"), (flat, FORBIDDEN)):
         look: Look = {"facecolor": (FORBIDDEN, 0.10), "edgecolor": edge, "label": "no-fly zone"}
         axes.add_collection3d(Poly3DCollection(faces, linewidth=0.8, zorder=1.0, **look))
     if is_named:
@@ -112,11 +109,8 @@ def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray, *, i
 
 def draw_set(axes: Axes3D, point: Jammer | Eavesdropper, colour: str, label: str) -> None:
     """Draw wires on the surface ``{position + A x : |x| = 1}`` of the set that a point may be anywhere in."""
-    around, down = np.meshgrid(
-        np.linspace(0.0, math.tau, _MERIDIANS * _STEPS + 1),
-        np.linspace(0.0, math.pi, (_PARALLELS + 1) * _STEPS + 1),
-    )
-    ball = np.stack([np.sin(down) * np.cos(around), np.sin(down) * np.sin(around), np.cos(down)], axis=-1)
-    surface_m = np.asarray(point.position_m) + ball @ point.uncertainty_matrix_m.T
+    around = np.linspace(0.0, math.tau, _MERIDIANS * _STEPS + 1)
+    ball, _ = ball_rings((_PARALLELS + 1) * _STEPS + 1, around)
+    away_m = np.tensordot(point.uncertainty_matrix_m, ball, 1)
     look = {"color": colour, "linewidth": 0.6, "alpha": 0.75, "zorder": 5.5, "label": label}
-    axes.plot_wireframe(*np.moveaxis(surface_m, -1, 0), rstride=_STEPS, cstride=_STEPS, **look)
+    axes.plot_wireframe(*(away_m.T + point.position_m).T, rstride=_STEPS, cstride=_STEPS, **look)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from nullpose.antenna.harmonics import directions
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import outline_m
@@ -48,9 +48,8 @@ class View:
     @property
     def camera(self) -> FloatArray:
         """Direction towards the camera, shape ``(3,)``."""
-        elevation, azimuth = math.radians(self.elevation_deg), math.radians(self.azimuth_deg)
-        flat = math.cos(elevation)
-        return np.array([flat * math.cos(azimuth), flat * math.sin(azimuth), math.sin(elevation)])
+        ring = directions(np.array([90.0 - self.elevation_deg]), np.array([self.azimuth_deg]))
+        return np.asarray(ring[0, 0])
 
 
 PANELS = View(inches=(4.6, 3.7), elevation_deg=20.0, pattern=0.15)
@@ -83,26 +82,26 @@ class Stage:
     @classmethod
     def of(cls, result: Result, view: View = ALONE) -> Stage:
         """Set the stage of a result: with what each node gets, or of many with the names of the worst."""
-        quantity, numbers = result.objective.quantity, dict[str, str]()
+        quantity, worst = result.objective.quantity, binding_nodes(result)
+        numbers = {
+            each.node: with_unit(quantity.in_unit(quantity.at(each)), quantity) for each in result.links
+        }
         note = f"At nodes: {quantity.noun},\nthe smallest in bold"
-        names = [link.node for link in result.links]
-        if len(names) > _MOST_NUMBERS or len("".join(names)) > _MOST_LETTERS:
-            least = with_unit(quantity.in_unit(result.objective.value), quantity)
-            note = f"{capitalised(quantity.smallest)}: {least},\nat nodes in bold"
-        else:
-            numbers = {
-                link.node: with_unit(quantity.in_unit(quantity.at(link)), quantity) for link in result.links
-            }
-        stage = cls(scenario=result.scenario, poses=(result.pose,), view=view, numbers=numbers, note=note)
-        return replace(stage, worst=binding_nodes(result))
+        if len(numbers) > _MOST_NUMBERS or len("".join(numbers)) > _MOST_LETTERS:
+            note = f"{capitalised(quantity.smallest)}: {numbers[min(worst)]},\nat nodes in bold"
+            numbers = {}
+        poses = (result.pose,)
+        return cls(scenario=result.scenario, poses=poses, view=view, numbers=numbers, worst=worst, note=note)
 
     @property
     def points(self) -> list[tuple[str, Node | Jammer | Eavesdropper]]:
         """All points with their kinds, those that a null is for before the nodes."""
         scene = self.scenario
-        kinds: dict[str, Sequence[Node | Jammer | Eavesdropper]]
-        kinds = {"jammer": scene.jammers, "eavesdropper": scene.eavesdroppers, "node": scene.nodes}
-        return [(kind, point) for kind, points in kinds.items() for point in points]
+        return [
+            *(("jammer", point) for point in scene.jammers),
+            *(("eavesdropper", point) for point in scene.eavesdroppers),
+            *(("node", point) for point in scene.nodes),
+        ]
 
     @property
     def places_m(self) -> FloatArray:
@@ -120,10 +119,8 @@ class Stage:
         """The fence (None) and the no-fly zones with their corners, those left out that reach far away."""
         airspace, places_m = self.scenario.airspace, self.places_m[:, :2]
         middle_m, far_m = 0.5 * (places_m.min(axis=0) + places_m.max(axis=0)), _FAR * self.extent_m
-        outlines: list[tuple[NoFlyZone | None, FloatArray]]
-        outlines = [(zone, outline_m(zone)) for zone in airspace.no_fly]
-        if airspace.geofence_m is not None:
-            outlines.append((None, airspace.geofence_outline_m))
+        fence = [] if airspace.geofence_m is None else [(None, airspace.geofence_outline_m)]
+        outlines = [*((zone, outline_m(zone)) for zone in airspace.no_fly), *fence]
         return [outline for outline in outlines if np.all(np.abs(outline[1] - middle_m) <= far_m)]
 
 
@@ -133,11 +130,10 @@ def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
     hidden = [point for _, point in stage.points if not isinstance(point, Node) and stage.uncertain]
     points = np.vstack([points, *map(set_box_m, hidden)])
     positions = np.array([pose.position_m[:2] for pose in stage.poses])
-    around = ((points[:, :2], _MARGIN), (positions, AXIS * stage.view.pattern))  # the latter for the pattern
-    flat = [middle + side * reach * extent_m for middle, reach in around for side in (-1.0, 1.0)]
-    edge_m = _MARGIN_OF_ZONES * extent_m
-    flat += [corners_m + side * edge_m for _, corners_m in stage.zones for side in (-1.0, 1.0)]
-    low, high = np.vstack(flat).min(axis=0), np.vstack(flat).max(axis=0)
+    around = [(points[:, :2], _MARGIN), (positions, AXIS * stage.view.pattern)]  # the latter for the pattern
+    around += [(corners_m, _MARGIN_OF_ZONES) for _, corners_m in stage.zones]
+    low = np.min([places.min(axis=0) - share * extent_m for places, share in around], axis=0)
+    high = np.max([places.max(axis=0) + share * extent_m for places, share in around], axis=0)
     top_m = max(pose.position_m[2] for pose in stage.poses) + 1.3 * stage.view.pattern * extent_m
     return np.append(low, min(0.0, points[:, 2].min())), np.append(high, top_m)
 

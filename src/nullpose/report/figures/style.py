@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import prepare_folder, replacing
 from nullpose.physics.types import FloatArray
 
@@ -29,7 +29,6 @@ MARKS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {"node": (NODE, "s"), "jammer": (JAMMER, "X"), "eavesdropper": (EAVESDROPPER, "D")}
 )
 """Colour and marker of points: told apart in grey and with any colour vision."""
-_FORMATS = (".png", ".svg", ".pdf")
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +108,9 @@ _RC: dict[Any, Any] = {
     "ytick.labelcolor": INK,
     "text.color": INK,
     "svg.hashsalt": "nullpose",  # the same figure gives the same file
+    "legend.frameon": False,
+    "legend.handletextpad": 0.5,
+    "legend.columnspacing": 1.2,
     "hatch.linewidth": 0.5,
     "pdf.fonttype": 42,  # fonts are embedded whole, as TrueType
 }
@@ -188,8 +190,7 @@ def draw_curve(
     if band is not None:
         finite = np.isfinite(band[0]) & np.isfinite(band[1])
         shade: Look = {"color": look.colour, "alpha": 0.12, "linewidth": 0.0, "zorder": 1.0}
-        if np.any(finite):
-            axes.fill_between(across, *band, where=finite, step="post" if steps else None, **shade)
+        axes.fill_between(across, *band, where=finite, step="post" if steps else None, **shade)
 
 
 def prepare_figure_file(path: Path) -> None:
@@ -199,8 +200,10 @@ def prepare_figure_file(path: Path) -> None:
         UsageError: the name ends in none of .png, .svg and .pdf.
         OutputError: its folder cannot be made or written.
     """
-    if path.suffix.lower() not in _FORMATS:
-        raise UsageError(f"figure: given {path}; allowed: a name that ends in .png, .svg or .pdf")
+    require_usage(
+        path.suffix.lower() in (".png", ".svg", ".pdf"),
+        f"figure: given {path}; allowed: a name that ends in .png, .svg or .pdf",
+    )
     prepare_folder(path.parent)
 
 

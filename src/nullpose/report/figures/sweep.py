@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.certainty import certainty_lines
 from nullpose.report.figures.style import (
@@ -37,14 +36,9 @@ _BELOW: Look = {"marker": _CARET_UP, "markersize": 7.0, "zorder": 1.5}  # seen b
 _MARKERS = 13  # at most so many markers on a curve, so that they do not merge into a band
 
 
-def quantity_of(table: ResultTable) -> Quantity:
-    """Look up the quantity that a sweep of at least one row maximised."""
-    return table.rows[0].objective.quantity
-
-
 def value_label(table: ResultTable) -> str:
     """Name what a sweep found, with its unit."""
-    quantity = quantity_of(table)
+    quantity = table.rows[0].objective.quantity
     if table.rows[0].tilt:
         return "Least tilt (deg)"
     return f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
@@ -71,7 +65,7 @@ def _draw_tilts(axes: Axes, table: ResultTable) -> None:
 def draw_curves(axes: Axes, table: ResultTable, *, bounds: bool = False) -> None:
     """Draw a curve for each scheme, with a band up to its upper bounds if they are asked for."""
     highest_rate = float(np.max(_numbers(table.rows)[0]))
-    apart = 0.01 * highest_rate if quantity_of(table).is_rate else _VISIBLE
+    apart = 0.01 * highest_rate if table.rows[0].objective.quantity.is_rate else _VISIBLE
     for index, scheme in enumerate(table.names):
         rows, look = table.of(scheme), curve_of(scheme)
         values, highest = _numbers(rows)
@@ -95,7 +89,7 @@ def _keep_curves_large(axes: Axes, table: ResultTable) -> None:
     """Let bounds that are far above every curve leave the picture, rather than flatten the curves."""
     values, bounds = _numbers(table.rows)
     low, high = np.fmin.reduce(values), np.fmax.reduce(values)  # unlike the maximum, they pass over NaN
-    least = max(0.5 * high, 1e-3) if quantity_of(table).is_rate else _FREE
+    least = max(0.5 * high, 1e-3) if table.rows[0].objective.quantity.is_rate else _FREE
     free = max(least, high - low)
     if np.fmax.reduce(bounds) > high + free:
         axes.set_ylim(low - 0.05 * free, high + free)
@@ -120,12 +114,10 @@ def draw_sweep(
             else "Each band ends at the upper bound, a small triangle."
         )
     with house_style(width):
-        size = inches((7.0, 4.6), width, 0.8 if is_column(width) else 0.5)
-        figure = Figure(figsize=size, layout="constrained")
+        share, columns = (0.8, 2) if is_column(width) else (0.5, 4)
+        figure = Figure(figsize=inches((7.0, 4.6), width, share), layout="constrained")
         draw_sweep_axes(figure.add_subplot(), table, log=log, bounds=bounds)
-        columns = 2 if is_column(width) else 4
-        look: Look = {"handlelength": 3.2, "columnspacing": 1.4, "frameon": False}
-        figure.legend(loc="outside upper center", ncols=columns, **look)
+        figure.legend(loc="outside upper center", ncols=columns, handlelength=3.2)
         draw_caption(figure, lines, width)
     return figure
 
@@ -138,6 +130,5 @@ def draw_sweep_axes(axes: Axes, table: ResultTable, *, log: bool = False, bounds
         draw_curves(axes, table, bounds=bounds)
         if bounds:
             _keep_curves_large(axes, table)
-    scale = "log" if log else "linear"
-    axes.set(xlabel=axis_label(table.path), xscale=scale, ylabel=value_label(table))
+    axes.set(xlabel=axis_label(table.path), ylabel=value_label(table), xscale="log" if log else "linear")
     axes.margins(x=0.02)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import cycle
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from nullpose.objectives import FloatArray
-from nullpose.report.figures.style import GREY, INK, VEHICLES, Look, house_style, inches, is_column
+from nullpose.report.figures.style import GREY, INK, VEHICLES, draw_curve, house_style, inches, is_column
 from nullpose.study.least_tilt import LeastTilt
 
 _TILTS_DEG, _MOUNTS_DEG = np.linspace(0.0, 90.0, 181), np.linspace(0.0, 90.0, 91)
@@ -22,6 +23,7 @@ MOUNT_CURVES = tuple(
 )
 """How mounts are drawn, in their order."""
 _LEAST = 1e-3  # share that is drawn
+_EDGE_DEG = 8.0  # nearer to it a number would be cut
 
 
 def draw_least_tilt(
@@ -36,10 +38,9 @@ def draw_least_tilt(
     """
     angles_deg, shares = values[0], values[1] / found.omnidirectional.objective.value
     with house_style(width):
-        is_narrow = is_column(width)
-        size = inches((9.0, 4.0), width, 1.6 if is_narrow else 0.45)
-        figure = Figure(figsize=size, layout="constrained")
-        first, second = figure.subplots(2, 1) if is_narrow else figure.subplots(1, 2)
+        share, grid = (1.6, (2, 1)) if is_column(width) else (0.45, (1, 2))
+        figure = Figure(figsize=inches((9.0, 4.0), width, share), layout="constrained")
+        first, second = figure.subplots(*grid)
         _draw_shares(first, found, angles_deg, shares)
         _draw_losses(second, angles_deg, shares)
         if width is None:
@@ -61,20 +62,18 @@ def reached(
 
 
 def _draw_shares(axes: Axes, found: LeastTilt, angles_deg: FloatArray, shares: FloatArray) -> None:
-    best = [] if found.best is None or found.mounts else [found.best]
-    for mount, look in zip((*found.mounts, *best), cycle(MOUNT_CURVES), strict=False):
+    mounts = found.mounts or tuple(filter(None, [found.best]))
+    for mount, look in zip(mounts, cycle(MOUNT_CURVES), strict=False):
         curve = reached(angles_deg, shares, _TILTS_DEG, mount.mount_deg)
-        line: Look = {"color": look.colour, "linestyle": look.line, "linewidth": look.width}
-        axes.plot(_TILTS_DEG, curve, **line, label=f"mount {mount.mount_deg:.4g}°")
-        if mount.suffices_deg is not None:
-            axes.plot(mount.suffices_deg, found.share, "o", color=look.colour, markersize=5.0, zorder=4.0)
-        if mount.fails_deg is not None:
-            axes.plot(mount.fails_deg, found.share, "|", color=look.colour, markersize=11.0, zorder=4.0)
+        draw_curve(axes, replace(look, label=f"mount {mount.mount_deg:.4g}°"), _TILTS_DEG, curve, every=20)
+        for side_deg, mark, size in ((mount.suffices_deg, "o", 5.0), (mount.fails_deg, "|", 11.0)):
+            if side_deg is not None:
+                axes.plot(side_deg, found.share, mark, color=look.colour, markersize=size, zorder=4.0)
     axes.axhline(found.share, color=GREY, linewidth=0.9, linestyle="--")
-    axes.set(xlim=(0.0, 90.0), xlabel="largest tilt (deg)")
-    axes.set(ylim=(None, 1.02), ylabel="share of the omnidirectional value")
-    axes.legend(frameon=False, loc="lower right")
-    axes.set_title(f"dot: suffices for {found.share:.4g}; bar: proved too little", fontsize="small")
+    axes.set(xlim=(0.0, 90.0), xlabel="Largest tilt (deg)")
+    axes.set(ylim=(None, 1.02), ylabel="Share of the omnidirectional value")
+    axes.legend(loc="lower right", handlelength=3.2)
+    axes.set_title(f"Dot: suffices for {found.share:.4g}; bar: proved too little", fontsize="small")
 
 
 def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None:
@@ -84,9 +83,10 @@ def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None
         _TILTS_DEG, _MOUNTS_DEG, loss_db, cmap="viridis_r", vmin=0.0, vmax=3.0, rasterized=True
     )
     lines = axes.contour(_TILTS_DEG, _MOUNTS_DEG, loss_db, levels=_LOSSES_DB, colors=_LINES, linewidths=0.9)
-    middles = [max(parts, key=len) for parts in lines.allsegs if parts]
-    places = [tuple(part[len(part) // 2]) for part in middles]
-    axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=places)
-    axes.set(xlabel="largest tilt (deg)", ylabel="mount of the antenna (deg)")
-    axes.set_title("loss against an omnidirectional vehicle", fontsize="small")
+    longest = [max(parts, key=len) for parts in lines.allsegs if parts]
+    middles = [tuple(part[len(part) // 2]) for part in longest]
+    inside = [middle for middle in middles if min(middle) > _EDGE_DEG]
+    axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=inside)
+    axes.set(xlabel="Largest tilt (deg)", ylabel="Mount of the antenna (deg)")
+    axes.set_title("Loss against an omnidirectional vehicle", fontsize="small")
     axes.figure.colorbar(shown, ax=axes, label="dB", extend="max")

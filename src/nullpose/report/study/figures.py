@@ -8,10 +8,11 @@ from itertools import cycle
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import GREY, INK, VEHICLES, Curve, draw_curve, house_style, line_style
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 Line: TypeAlias = str | tuple[int, tuple[float, ...]]
 
 _SHARES = ([0.0, 0.1, 0.25, 0.5, 0.75, 1.0], ["0", "10 %", "25 %", "50 %", "75 %", "100 %"])
-_WIDTH = 7.0  # inches: the text of a page
+_WIDTH, _NOTE = 7.0, 0.2  # inches: the text of a page, and each of two lines below
 _DEEPEST = 40.0  # dB below the median of the lowest curve: deeper values leave the picture
 _STEPS = 1000  # of a curve; more are not seen, and make a heavy file
 _COLOURS = ("#d55e00", "#000000", "#8c564b", "#7f7f00", "#6a3d9a", "#8c8c8c")
@@ -100,11 +101,12 @@ def _gains(summary: Summary, points: Sequence[int]) -> Figure:
     colours, places = [looks[case] for case in compared], np.arange(len(compared))
 
     def draw(axes: Axes, point: int) -> None:
-        rows = summary.at(point).loc[compared]
-        low, high = _finite(rows["gain_worst_tenth"]), _finite(rows["gain_best_tenth"])
+        rows = summary.at(point).loc[compared].select_dtypes("number")
+        rows = rows.where(np.isfinite(rows))
+        low, high = rows["gain_worst_tenth"], rows["gain_best_tenth"]
         axes.hlines(places - 0.14, low, high, color=colours, zorder=2.0, linewidth=5.0, alpha=0.3)
         for name, marker, below in (("gain_median", "o", -0.14), ("shift_worst_tenth", "D", 0.2)):
-            value, low, high = (_finite(rows[f"{name}{end}"]) for end in ("", "_low", "_high"))
+            value, low, high = (rows[f"{name}{end}"] for end in ("", "_low", "_high"))
             axes.hlines(places + below, low, high, color=INK, linewidth=1.1, zorder=2.6)
             axes.scatter(value, places + below, marker=marker, c=colours, s=20.0, zorder=3.0)
         axes.axvline(0.0, color=INK, linewidth=0.8, zorder=1.4)
@@ -118,12 +120,7 @@ def _gains(summary: Summary, points: Sequence[int]) -> Figure:
         f"Disc: median gain. Diamond: gain in the worst tenth. Lines: {percent(CONFIDENCE)} confidence. "
         "Bar: 10th to 90th percentile."
     )
-    height = 0.6 + 0.27 * len(compared)
-    return _panels(summary, points, draw, across=across, note=note, height=height)
-
-
-def _finite(numbers: pd.Series) -> FloatArray:
-    return np.where(np.isfinite(numbers), numbers, np.nan)
+    return _panels(summary, points, draw, across=across, note=note, height=0.6 + 0.27 * len(compared))
 
 
 def _looks(cases: pd.DataFrame) -> list[Curve]:
@@ -155,8 +152,10 @@ def _panels(
     """Set a panel for each combination of swept values, two in a row, with a legend of looks above them."""
     columns = min(2, len(points))
     down = -(-len(points) // columns)
-    with house_style():
-        figure = Figure(figsize=(_WIDTH, 1.3 + height * down), layout="constrained")
+    with house_style(), rc_context({"text.parse_math": False}):  # names are shown as they are
+        high = 1.3 + height * down
+        layout = ConstrainedLayoutEngine(rect=(0.0, 2.0 * _NOTE / high, 1.0, 1.0 - 2.0 * _NOTE / high))
+        figure = Figure(figsize=(_WIDTH, high), layout=layout)
         panels = list(figure.subplots(down, columns, sharex=True, sharey=True, squeeze=False).flat)
         for axes, point in zip(panels, points, strict=False):
             axes.set_title(point_words(summary.spec, point), loc="left", fontsize=9.0)
@@ -165,10 +164,8 @@ def _panels(
             axes.remove()
         if looks:
             handles = [Line2D([], [], **line_style(look)) for look in looks]
-            figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False, fontsize=8.5)
+            figure.legend(handles=handles, loc="outside upper center", ncols=3, fontsize=8.5)
         figure.supylabel(up, fontsize=9.5)
-        figure.supxlabel(f"{across}\n", fontsize=9.5)
-        for text in figure.findobj(Text):
-            text.set_parse_math(False)  # names are shown as they are
+        figure.supxlabel(across, y=_NOTE / high, va="bottom", fontsize=9.5)
         figure.text(0.012, 0.008, note, fontsize=7.5, color=GREY, va="bottom", ha="left")
     return figure

@@ -114,14 +114,8 @@ def summarise(
     frames = []
     for point, swept in enumerate(spec.points):
         at = {name: numbers[:, point] for name, numbers in arrays.items()}
-        columns = {
-            "point": point,
-            **swept,
-            "case": cases.index,
-            **_reached(at),
-            **_gained(cases, at["value"]),
-        }
-        frames.append(pd.DataFrame(columns | _outage(at, requirement) | _proofs(at)))
+        numbers = _reached(at) | _gained(cases, at["value"]) | _outage(at, requirement) | _proofs(at)
+        frames.append(pd.DataFrame({"point": point, **swept, "case": cases.index, **numbers}))
     return Summary(
         spec=spec,
         value=arrays["value"],

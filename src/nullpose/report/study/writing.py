@@ -96,9 +96,8 @@ def report_study(
     figures = _write_figures(summary, prepare_folder(target / "figures"))
     leader = _leader(summary)
     reference = str(summary.cases.loc[leader, "against"] if leader else summary.cases.index[0])
-    done = f"{summary.scenes:,} of {table.spec.n_scenes:,} scenes"
-    unfinished = "" if summary.is_complete else f"This study is not finished: {done} are done."
-    unit, spec = table.quantity.unit, table.spec
+    unit, spec, done = table.quantity.unit, table.spec, f"{summary.scenes:,} of {table.spec.n_scenes:,}"
+    unfinished = "" if summary.is_complete else f"This study is not finished: {done} scenes are done."
     page: dict[str, object] = {
         "summary": summary,
         "title": spec.name or "A study without a name",
