@@ -55,7 +55,7 @@ def dipole_sum(
         for jet in jets:
             centre = centre + squares(jet.value) * (scale * (sign * (1.0 - family.leak)))
         if family.leak > 0.0:
-            gain, _ = _gain(family, boxes, point)
+            gain = _gain(family, boxes, point)[0]
             centre = centre + shear.gram * (gain * scale * (sign * family.leak))
     for form, _, weight in held:
         centre = centre + form.value * weight
@@ -144,59 +144,63 @@ def _spread(vectors: Interval, weight: FloatArray) -> Interval:
     return total
 
 
-def _gain(family: Family, boxes: Boxes, point: IntArray) -> tuple[Interval, Interval]:
-    """Return a point's gain over ``|r|^2``, whatever the axis, and its derivatives, (3, b)."""
+def _gain(family: Family, boxes: Boxes, point: IntArray) -> tuple[Interval, Interval, Jet, np.ndarray]:
+    """Return a point's gain over ``|r|^2``, whatever the axis, its derivatives, (3, b), and its link vector.
+
+    And whether there is one, (b,).
+    """
     points_m, axes = family.points_m[point], family.ground_axes[point]
     has = np.any(axes != 0.0, axis=1)
     jet = link_vector(points_m, axes, boxes)
     r = (Interval(points_m) - boxes.centre).T
     plain = 1.0 / r.squared().total()
     gain = where(has, jet.value.squared().total(), plain)
-    return gain, where(has, dot(jet.slopes, jet.value[:, None]) * 2.0, r * plain.squared() * 2.0)
+    return gain, where(has, dot(jet.slopes, jet.value[:, None]) * 2.0, r * plain.squared() * 2.0), jet, has
 
 
 def _leaking(
     family: Family, shear: Shear, boxes: Boxes, point: IntArray, scale: Interval, sign: float
 ) -> Linear:
     """Return an upper bound on ``sign * scale * g (I + E)^T (I + E)``, g being a point's gain."""
-    gain, change = _gain(family, boxes, point)
+    gain, change, jet, has = _gain(family, boxes, point)
     form = identity_form(shear)
     m0, m1, m2 = (shear.most[i] for i in range(3))
-    points_m, axes = family.points_m[point], family.ground_axes[point]
-    i1 = 1.0 / boxes.nearest(points_m)
+    i1 = 1.0 / boxes.nearest(family.points_m[point])
     a1, a2 = i1.squared() * VECTOR_SLOPE, i1 * i1.squared() * VECTOR_BEND
-    jet = link_vector(points_m, axes, boxes)
     reach = dot(Interval(jet.slopes.squared().total().sqrt().high), boxes.half.T) + a2 * boxes.half2 * 0.5
     of_dipole = smaller(i1.most(), (jet.value.squared().total().sqrt() + reach).most())
-    most = where(np.any(axes != 0.0, axis=1), of_dipole, i1.most())
+    most = where(has, of_dipole, i1.most())
     bent = (a1.squared() + most * a2) * (m0 + 1.0).squared() * 2.0
     bent = bent + most * a1 * m1 * (m0 + 1.0) * 8.0
     bent = bent + most.squared() * (m2 * (m0 + 1.0) + m1.squared()) * 2.0
     loose, share = (scale * bent * boxes.half2 * 0.5).most(), Interval(np.ones(len(boxes)))
     if sign < 0.0:
-        share, loose = _beside_null(family, shear, boxes, point, scale, loose)
+        share, loose = _beside_null(jet, has & ~shear.on, boxes, a2.most(), scale, loose)
     weight = scale * share * sign
     slopes = form.slopes * gain + shear.gram[:, None] * change
     return Linear(form.value * (gain * weight) + shear.gram * loose, slopes * weight)
 
 
 def _beside_null(
-    family: Family, shear: Shear, boxes: Boxes, point: IntArray, scale: Interval, plain: Interval
+    jet: Jet, fine: np.ndarray, boxes: Boxes, most: Interval, scale: Interval, plain: Interval
 ) -> tuple[Interval, Interval]:
     """Return by what to multiply a dipole's own gain, and what to take off it then, where that is less.
 
     ``|a + s|^2 >= (1 - eta) |a|^2 - |s|^2 / eta`` for the linear part of a link vector and the rest.
+
+    Args:
+        jet: of the link vectors.
+        fine: (b,) where it may be done.
+        boxes: b of them.
+        most: bounds on the second derivatives.
+        scale: what the gains are multiplied by.
+        plain: what is to be taken off them elsewhere.
     """
-    points_m, axes = family.points_m[point], family.ground_axes[point]
-    jet, near = link_vector(points_m, axes, boxes), boxes.nearest(points_m)
-    reach = boxes.half2.sqrt()
-    bound = smaller(
-        (VECTOR_BEND / (near.squared() * near)).most(), (size_of(jet.bends) + jet.over * reach).most()
-    )
+    bound = smaller(most, (size_of(jet.bends) + jet.over * boxes.half2.sqrt()).most())
     bend = (bound * boxes.half2 * 0.5).most()
     gain = jet.value.squared().total().middle()
     eta = bend.high / np.sqrt(np.maximum(gain, 1e-300))
-    fine = np.any(axes != 0.0, axis=1) & ~shear.on & (eta > 0.0) & (eta < 0.5)
+    fine = fine & (eta > 0.0) & (eta < 0.5)
     eta = np.where(fine, eta, 0.5)
     rest = (bend.squared() / eta * scale).most()
     fine &= eta * gain * scale.high + rest.high < plain.high

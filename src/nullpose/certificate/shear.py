@@ -15,7 +15,7 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
 from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITY, ROW, gram, squares
 from nullpose.certificate.frames import axes_across
-from nullpose.certificate.interval import Interval, dot, stack, where
+from nullpose.certificate.interval import Interval, dot, stack, swapped, where
 from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import DIRECTION_THIRD, ROUNDING, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
 from nullpose.problem.family import Family
@@ -90,95 +90,84 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
     anchor = np.where(turning, leaves.point, 0)
     points_m, axes = family.points_m[anchor], family.ground_axes[anchor]
     is_dipole = np.any(axes != 0.0, axis=1)
-    jet = link_vector(points_m, np.where(is_dipole[:, None], axes, [0.0, 0.0, 1.0]), boxes)
-    of_dipole, of_offset = _dipole_turn(jet, points_m, boxes), _direction_turn(points_m, boxes)
-    chosen = [where(is_dipole, *pair) for pair in zip(of_dipole, of_offset, strict=True)]
-    upright, still, first, second, most = chosen
-    is_sharp = still.radius().max(axis=0) < _SHARP * np.linalg.norm(still.middle(), axis=0)
-    on = turning & (upright.low > _UPRIGHT) & is_sharp
-    # E = still w^T for a dipole, w still^T for a point without
+    d0, length, y, first, second, most = _turn(points_m, axes, is_dipole, boxes)
+    is_sharp = d0.radius().max(axis=0) < _SHARP
+    on = turning & ((y / length).low > _UPRIGHT) & is_sharp
+    # E = d0 w^T for a dipole, w d0^T for a point without
     e_first, e_second = (
-        where(on, where(is_dipole, still[:, None, None] * w[None], w[:, None] * still[None, :, None]), 0.0)
+        where(on, where(is_dipole, d0[:, None, None] * w[None], w[:, None] * d0[None, :, None]), 0.0)
         for w in (first, second)
     )
-    length = still.squared().total().sqrt()
-    bounds = where(on, (most * length).most(), 0.0)
-    basis, anchored = _basis(on, is_dipole, still)
+    basis, upright = _basis(on, is_dipole, d0)
     products = gram(basis)
-    rho = (Interval(points_m) - boxes.centre).T.squared().total().sqrt()
-    pull = where(on & ~is_dipole, still * 2.0 / rho, 0.0)
-    across = where((COLUMN == 2)[:, None], 0.0, products - squares(dot(basis, still[:, None])))
-    shape = where(on, where(is_dipole, anchored, across / rho.squared()), 0.0)
-    return Shear(on, anchor, is_dipole, e_first, e_second, bounds, basis, products, shape, pull)
+    pull = where(on & ~is_dipole, d0 * 2.0 / length, 0.0)
+    across = where((COLUMN == 2)[:, None], 0.0, products - squares(dot(basis, d0[:, None])))
+    square = length.squared()
+    shape = where(on, where(is_dipole, upright * square, across / square), 0.0)
+    return Shear(on, anchor, is_dipole, e_first, e_second, where(on, most, 0.0), basis, products, shape, pull)
 
 
-def _dipole_turn(jet: Jet, points_m: FloatArray, boxes: Boxes) -> tuple[Interval, ...]:
-    """Return ``a.a0 / |a0|^2`` at least, -a0, and w = (a - a0) / (a.a0): derivatives, and bounds on them."""
-    a, first, second = jet.value, jet.slopes, jet.bends
-    near, half = boxes.nearest(points_m), Interval(boxes.half.T)
-    reach = boxes.half2.sqrt().most()
-    square, length = a.squared().total(), a.squared().total().sqrt().most()
-    a3 = jet.over
-    a2 = smaller((VECTOR_BEND / (near.squared() * near)).most(), (size_of(second) + a3 * reach).most())
-    a1 = smaller((VECTOR_SLOPE / near.squared()).most(), (size_of(first) + a2 * reach).most())
-    bend = (a2 * boxes.half2 * 0.5).most()
-    along = Interval(dot(first, a[:, None]).magnitude())
-    y = square - dot(along, half) - length * bend
-    g = (bend + dot(Interval(first.squared().total().sqrt().high), half)).most()
+def _turn(
+    points_m: FloatArray, axes: FloatArray, is_dipole: np.ndarray, boxes: Boxes
+) -> tuple[Interval, ...]:
+    """Return d0, ``a.d0`` at the centre and at least, the derivatives of w, and bounds on them and on w.
+
+    w is ``(a0 - a) / (a.d0)`` of a dipole's link vector a, or ``a / (a.d0) - d0`` of the way to a point.
+    """
+    jet = link_vector(points_m, np.where(is_dipole[:, None], axes, [0.0, 0.0, 1.0]), boxes)
+    near, half, reach = boxes.nearest(points_m), Interval(boxes.half.T), boxes.half2.sqrt().most()
+    bend = smaller(
+        (VECTOR_BEND / near / near.squared()).most(), (size_of(jet.bends) + jet.over * reach).most()
+    )
+    slope = smaller((VECTOR_SLOPE / near.squared()).most(), (size_of(jet.slopes) + bend * reach).most())
+    way = (Interval(points_m) - boxes.centre).T
+    pairs = (
+        (jet.value, way),
+        (jet.slopes, -_UNIT),
+        (jet.bends, 0.0),
+        (slope, 1.0),
+        (bend, 0.0),
+        (jet.over, 0.0),
+    )
+    value, first, second, slope, bend, third = (where(is_dipole, *pair) for pair in pairs)
+    length = value.squared().total().sqrt()
+    d0 = value / length
+    along = dot(first, d0[:, None])
+    moved = (bend * boxes.half2 * 0.5).most()
+    y = length - moved - dot(Interval(along.magnitude()), half)
+    moved = (moved + dot(Interval(first.squared().total().sqrt().high), half)).most()
     safe = where(y.low > 0.0, y, 1.0)
-    r1, r2, r3 = length * a1 / safe, length * a2 / safe, length * a3 / safe
-    i1 = r1 / safe
-    i2 = (r2 + r1.squared() * 2.0) / safe
-    i3 = (r3 + r1 * r2 * 6.0 + r1 * r1.squared() * 6.0) / safe
+    lean, rate = smaller(moved, (slope * reach).most()) / safe, slope / safe
+    grown = where(is_dipole, lean + 1.0, (lean.squared() + 1.0).sqrt())
+    twice, thrice = np.where(is_dipole, [[2.0], [6.0]], [[1.0], [DIRECTION_THIRD]])
     most = stack(
         [
-            g / safe,
-            a1 / safe + g * i1,
-            a2 / safe + a1 * i1 * 2.0 + g * i2,
-            a3 / safe + a2 * i1 * 3.0 + a1 * i2 * 3.0 + g * i3,
+            lean,
+            grown * rate,
+            grown * bend / safe + (lean * 2.0 + twice) * rate.squared(),
+            grown * (third + bend * rate * 6.0) / safe + (lean * 6.0 + thrice) * rate.squared() * rate,
         ]
     ).most()
-    lean = dot(first, a[:, None])
-    mixed = first[:, ROW] * lean[COLUMN] + first[:, COLUMN] * lean[ROW]
-    return y / square, -a, first / square, (second - mixed / square) / square, most
+    across = where(is_dipole, first, first - d0[:, None] * along)
+    mixed = across[:, ROW] * along[COLUMN] + across[:, COLUMN] * along[ROW]
+    scale = Interval(np.where(is_dipole, -1.0, 1.0)) / length
+    return d0, length, y, across * scale, (second - mixed / length) * scale, most
 
 
-def _direction_turn(points_m: FloatArray, boxes: Boxes) -> tuple[Interval, ...]:
-    """Return ``y / rho``, d0, and w = d / (d.d0) - d0: its derivatives, and bounds on them."""
-    r = (Interval(points_m) - boxes.centre).T
-    rho = r.squared().total().sqrt()
-    d = r / rho
-    y = rho - dot(Interval(d.magnitude()), Interval(boxes.half.T))
-    safe = where(y.low > 0.0, y, 1.0)
-    reach = boxes.half2.sqrt() / safe
-    most = stack(
-        [
-            reach,
-            (reach.squared() + 1.0).sqrt() / safe,
-            (reach * 2.0 + 1.0) / safe.squared(),
-            (reach * 6.0 + DIRECTION_THIRD) / (safe.squared() * safe),
-        ]
-    ).most()
-    across = d[:, None] * d[None] - _UNIT  # minus the projector
-    second = (across[:, ROW] * d[COLUMN] + across[:, COLUMN] * d[ROW]) / rho.squared()
-    return y / rho, d, across / rho, second, most
-
-
-def _basis(on: np.ndarray, is_dipole: np.ndarray, still: Interval) -> tuple[Interval, Interval]:
-    """Return the bases, and the anchors' dipole forms in them, which have one entry exactly."""
-    third = np.where(on, still.middle(), _UNIT[2])
+def _basis(on: np.ndarray, is_dipole: np.ndarray, d0: Interval) -> tuple[Interval, Interval]:
+    """Return the bases, and ``d0 d0^T`` in them for dipoles, which has one entry exactly."""
+    third = np.where(on, d0.middle(), _UNIT[2])
     third = third / np.linalg.norm(third, axis=0)
     axes = axes_across(third, on)
     axes[:, 2, on] = third[:, on]
     plain = Interval(axes)
     # across the dipole's vector for certain, so that its form has no first and second row
-    square = still.squared().total()
-    tilted = plain - still[:, None] * (dot(plain, still[:, None]) / square)[None]
+    square = d0.squared().total()
+    tilted = plain - d0[:, None] * (dot(plain, d0[:, None]) / square)[None]
     straight = where(on & is_dipole, tilted, plain)
-    exact = where(on & ~is_dipole, still, plain[:, 2])  # the direction itself, not a rounded one
-    basis = stack([straight[:, 0], straight[:, 1], exact])
-    basis = Interval(basis.low.swapaxes(0, 1), basis.high.swapaxes(0, 1))
-    form = where((np.arange(6) == 2)[:, None], dot(basis[:, 2], still).squared(), 0.0)
+    exact = where(on & ~is_dipole, d0, plain[:, 2])  # the direction itself, not a rounded one
+    basis = swapped(stack([straight[:, 0], straight[:, 1], exact]))
+    form = where((np.arange(6) == 2)[:, None], dot(basis[:, 2], d0).squared(), 0.0)
     return basis, form
 
 

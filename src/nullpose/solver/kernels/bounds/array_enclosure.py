@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.objectives import FloatArray
+from nullpose.solver.kernels.bounds.curved import mix_in
 from nullpose.solver.kernels.bounds.sight import excess_range
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.linear_algebra.vectors import along, dot, minus, over, row, square_range
@@ -29,7 +30,6 @@ from nullpose.solver.kernels.search.array_response import channels_at, node_powe
 
 _BEND = 2.0 / math.sqrt(3.0)  # a direction's second derivative along a line is at most this over r^2
 _CYCLE = 2.0 * math.pi
-_PASSES = 3
 
 
 class Spans(NamedTuple):
@@ -127,52 +127,6 @@ def node_bound(problem, channels, spans, nulls, q, centre, half, slope):
     return value + square_linear + 2.0 * (math.sqrt(value) + first) * rest + square_further
 
 
-@inner_kernel
-def mean_of(share, level, slope, other, other_slope, half):
-    """Evaluate the mean of two bounds with its first-order terms."""
-    total = share * level + (1.0 - share) * other
-    for a in range(4):
-        total += abs(share * slope[a] + (1.0 - share) * other_slope[a]) * half[a]
-    return total
-
-
-@inner_kernel
-def best_share(level, slope, other, other_slope, half):
-    """Choose the share of one bound in the best mean of two: where a slope cancels, or all or nothing."""
-    chosen, best = 1.0, mean_of(1.0, level, slope, other, other_slope, half)
-    for a in range(5):
-        share = 0.0
-        if a < 4:
-            bend = other_slope[a] - slope[a]
-            share = other_slope[a] / bend if bend != 0.0 else 1.0
-        if 0.0 <= share <= 1.0:
-            total = mean_of(share, level, slope, other, other_slope, half)
-            if total < best:
-                best, chosen = total, share
-    return chosen
-
-
-@inner_heap_kernel
-def best_mean(levels, slopes, half):
-    """Find the least mean of the nodes' bounds that a few passes of pairwise blending find."""
-    slope, level, best = slopes[0].copy(), math.inf, math.inf
-    for q in range(len(levels)):
-        total = mean_of(1.0, levels[q], slopes[q], 0.0, slope, half)
-        if total < best:
-            best, level = total, levels[q]
-            slope[:] = slopes[q]
-    if not level < math.inf:
-        return math.inf
-    for _ in range(_PASSES):
-        for q in range(len(levels)):
-            if levels[q] < math.inf:
-                share = best_share(level, slope, levels[q], slopes[q], half)
-                level = share * level + (1.0 - share) * levels[q]
-                for a in range(4):
-                    slope[a] = share * slope[a] + (1.0 - share) * slopes[q, a]
-    return mean_of(1.0, level, slope, 0.0, slope, half)
-
-
 @heap_kernel
 def box_bound(problem, centre, half):
     """Bound the smallest ratio (not its logarithm) over a box.
@@ -201,4 +155,4 @@ def box_bound(problem, centre, half):
         silent = min(silent, len(problem.base) * spans.power[q])  # K times one dipole without jamming
         if spans.further[q] < math.inf:
             levels[q] = node_bound(problem, channels, spans, nulls, q, centre, half, slopes[q])
-    return min(silent, best_mean(levels, slopes, half))
+    return min(silent, mix_in(levels, slopes, half, np.empty(nodes)))

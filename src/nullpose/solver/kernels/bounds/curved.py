@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from nullpose.solver.kernels.bounds.borders import borders, weigh_borders
 from nullpose.solver.kernels.bounds.constants import ROUNDING
 from nullpose.solver.kernels.bounds.enclosure import BEND, JET, LEAST, MOST, RADIUS, SLOPE, link_jet
@@ -29,12 +27,13 @@ from nullpose.solver.kernels.bounds.node import (
 )
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.linear_algebra.forms import entry
-from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, copy_into, eigen3
+from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, copy_into, eigen3, entry
 from nullpose.solver.kernels.search.zones import MOST_ALTERNATIVES
 
 _SHARES = 5  # sizes of mu that are tried along concave directions
 _LESS = 0.25
+_MOST_SIDES = 4  # of a box over which linear functions are mixed
+_PASSES = 3  # over all of them
 
 
 @inner_kernel
@@ -191,8 +190,10 @@ def impact(total, half):
 
 @inner_kernel
 def linear_bound(value, slopes, half):
-    """Return the largest value of a linear function over the box."""
-    return value + half[0] * abs(slopes[0]) + half[1] * abs(slopes[1]) + half[2] * abs(slopes[2])
+    """Return the largest value of a linear function over a box of any number of sides."""
+    for i in range(half.shape[0]):
+        value += half[i] * abs(slopes[i])
+    return value
 
 
 @inner_kernel
@@ -219,49 +220,50 @@ def curved_multipliers(family, axis_field, row, below, jet, workspace):
             if i == j:  # concave along a side counts for nothing here: the mix is of linear functions
                 radius = max(0.0, radius + nw[k] * jet[BEND + e] + minus[BEND + e])
             values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
-    lead = 0
-    weights[:ratios] = 0.0
-    for k in range(ratios):
-        if linear_bound(values[k], gradients[k], half) < linear_bound(values[lead], gradients[lead], half):
-            lead = k
-    weights[lead] = 1.0
-    mix_in(values, gradients, half, np.int64(lead), weights)
+    mix_in(values, gradients, half, weights[:ratios])
     keep_largest(weights, ratios, row)
     return smallest
 
 
 @inner_kernel
-def mix_in(values, gradients, half, lead, weights):
-    """Lower the bound of a mix of linear functions, beginning with one of them, by exact line searches."""
-    ratios = values.shape[0]
-    value = values[lead]
-    gradient = scratch(3)
+def mix_in(values, gradients, half, weights):
+    """Fill the weights of a mix of linear functions that is low over a box; return its largest value there.
+
+    Begins with the one that is lowest, and mixes in one at a time by exact line searches.
+    """
+    lead, bound = 0, math.inf
+    for k in range(values.shape[0]):
+        weights[k] = 0.0
+        candidate = linear_bound(values[k], gradients[k], half)
+        if candidate < bound:
+            lead, bound = k, candidate
+    weights[lead] = 1.0
+    value, gradient, trial = values[lead], scratch(_MOST_SIDES), scratch(_MOST_SIDES)
+    sides = half.shape[0]
     copy_into(gradients[lead], gradient)
-    bound = linear_bound(value, gradient, half)
-    trial = scratch(3)
-    for _ in range(3):
+    for _ in range(_PASSES):
         before = bound
-        for k in range(ratios):
+        for k in range(values.shape[0]):
             best_share = 0.0
-            for i in range(4):  # the bound is piecewise linear in the share: its kinks, and the end
-                if i < 3:
+            for i in range(sides + 1):  # the bound is piecewise linear in the share: its kinks, and the end
+                share = 1.0
+                if i < sides:
                     change = gradients[k, i] - gradient[i]
                     share = -gradient[i] / change if change != 0.0 else -1.0
-                else:
-                    share = 1.0
                 if not 0.0 < share <= 1.0:
                     continue
-                for m in range(3):
+                for m in range(sides):
                     trial[m] = gradient[m] + share * (gradients[k, m] - gradient[m])
                 candidate = linear_bound(value + share * (values[k] - value), trial, half)
                 if candidate < bound:
                     bound, best_share = candidate, share
             if best_share > 0.0:
-                for m in range(ratios):
+                for m in range(values.shape[0]):
                     weights[m] *= 1.0 - best_share
                 weights[k] += best_share
                 value += best_share * (values[k] - value)
-                for m in range(3):
+                for m in range(sides):
                     gradient[m] += best_share * (gradients[k, m] - gradient[m])
         if bound < 0.0 or bound >= before:
             break
+    return bound

@@ -17,23 +17,25 @@ from nullpose.solver.kernels.bounds.constants import (
 from nullpose.solver.kernels.bounds.denominators import group_weight
 from nullpose.solver.kernels.bounds.expansion import min_square
 from nullpose.solver.kernels.bounds.link_field import excess_end
-from nullpose.solver.kernels.bounds.link_vectors import add_shear, size_of, third_of, vector_jet
+from nullpose.solver.kernels.bounds.link_vectors import add_shear, size_of, third_of
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import WORLD
 from nullpose.solver.kernels.compiler.jit import inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.forms import add_point, entry, in_frame
-from nullpose.solver.kernels.linear_algebra.links import isotropic_share
+from nullpose.solver.kernels.linear_algebra.forms import add_denominator, add_point, in_frame
+from nullpose.solver.kernels.linear_algebra.links import isotropic_share, vector_jet
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_identity,
     add_scaled,
     add_square,
+    entry,
     form_product,
     matrix_of,
 )
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, norm, row, store
 
 _MOST_ETA = 0.25
+_THIRD_AXIS = (0.0, 0.0, 1.0)  # of a frame
 _SHARE = 0.1  # of the anchor's form that may be given up where the axis hardly sees it
 
 
@@ -122,10 +124,7 @@ def add_leak(family, j, has, shear, frame, centre, half, sign, scale, matrix, sl
         change = 2.0 * dot(a, first[i]) if has else 2.0 * gain * gain * dot(r, basis[i])
         add_identity(weight * change, slopes[i])
     add_turned_slopes(shear, weight * gain, slopes)
-    e0 = e1 = e2 = 0.0
-    if shear.kind != WORLD:
-        size = norm(shear.still)
-        e0, e1, e2 = size * shear.most[0], size * shear.most[1], size * shear.most[2]
+    e0, e1, e2 = shear.most[0], shear.most[1], shear.most[2]
     i2 = 1.0 / (least * least)
     most = 1.0 / least
     if has:
@@ -146,10 +145,10 @@ def add_turned_slopes(shear, weight, slopes):
     if shear.kind == WORLD:
         return
     for i in range(3):
-        for s in range(6):
-            a, b = entry(s)
-            w = shear.still[a] * shear.first[i, b] + shear.still[b] * shear.first[i, a]
-            slopes[i, s] += weight * w
+        x, y, z = row(shear.first, i)
+        slopes[i, 2] += 2.0 * weight * z
+        slopes[i, 4] += weight * x
+        slopes[i, 5] += weight * y
 
 
 @inner_kernel
@@ -159,10 +158,9 @@ def add_turned_identity(shear, half, weight, jamming, v, matrix, slopes, rest):
     add_turned_slopes(shear, weight, slopes)
     if shear.kind == WORLD:
         return
-    size = norm(shear.still)
-    add_identity(max(0.0, weight) * (size * shear.most[0]) ** 2, rest)
+    add_identity(max(0.0, weight) * shear.most[0] ** 2, rest)
     # twice the product of the part along the anchor's form with the other one
-    bend = abs(weight) * size * 0.5 * dot(half, half) * shear.most[2]
+    bend = abs(weight) * 0.5 * dot(half, half) * shear.most[2]
     upright, level = v[2] * v[2], v[0] * v[0] + v[1] * v[1]
     seen, unseen = (upright, 1.0) if shear.is_dipole else (level, upright)
     eta = min(max(bend, _SHARE * jamming), bend * math.sqrt(unseen / max(seen, 1e-300)))
@@ -179,17 +177,16 @@ def add_constant(shear, half, weight, q, matrix, slopes, rest):
     """Add ``weight L^T Q L`` of a constant form, from above."""
     add_scaled(weight, q, matrix)
     if shear.kind != WORLD:
-        still, turned = shear.still, scratch(3, 3)
+        turned = scratch(3, 3)
         matrix_of(q, turned)
         for i in range(3):
-            # E = left right^T
-            left, right = (still, shear.first[i]) if shear.is_dipole else (shear.first[i], still)
+            w = row(shear.first, i)
+            left, right = (_THIRD_AXIS, w) if shear.is_dipole else (w, _THIRD_AXIS)  # E is their product
             seen = dot(turned[0], left), dot(turned[1], left), dot(turned[2], left)
             for s in range(6):
                 a, b = entry(s)
                 slopes[i, s] += weight * (seen[a] * right[b] + seen[b] * right[a])
-        length = norm(still)
-        bend = length * shear.most[2] * dot(half, half) + (length * shear.most[0]) ** 2
+        bend = shear.most[2] * dot(half, half) + shear.most[0] ** 2
         add_identity(abs(weight) * math.sqrt(form_product(q, q)) * bend, rest)
     add_identity(4.0 * ROUNDING * abs(weight), rest)
 
@@ -232,10 +229,9 @@ def add_part(family, j, has, shear, frame, centre, half, v, sign, scale, matrix,
 def add_anchor(family, shear, frame, centre, half, scale, matrix, slopes, rest):
     """Add minus the form of the point that the shear turns with, from above."""
     if shear.is_dipole:
-        matrix[2] -= scale * dot(shear.still, shear.still) * (1.0 - ROUNDING)
+        matrix[2] -= scale * shear.square * (1.0 - ROUNDING)
         return
-    i2 = 1.0 / (frame.radius_m * frame.radius_m)
-    square = dot(half, half)
+    i2, square = shear.square, dot(half, half)
     beyond = 1.0 / min_square(family.points_m, frame.anchor, centre, half) ** 2
     for m in range(2):
         matrix[m] -= scale * i2
@@ -257,30 +253,21 @@ def identity_weight(family, row):
 
 @inner_kernel
 def centre_form(family, frame, row, matrix):
-    """Add a row's sum at its box's centre; return the anchor's strength in it."""
-    centre, jamming = row[CENTRE:HALF], 0.0
+    """Add a row's sum at its box's centre."""
+    centre, basis = row[CENTRE:HALF], frame.basis
     for s in range(int(row[COUNT])):
-        k = int(row[INDEX + s])
-        strength = row[WEIGHT + s] * family.numerator_weight[k]
-        add_point(family, family.numerator_point[k], centre, frame.basis, strength, 0.0, matrix)
-        weight = group_weight(family, row, s) * row[LEVEL]
-        g = family.denominator_of[k]
-        first, last = family.denominator_start[g], family.denominator_start[g + 1]
-        for e in range(first, last if weight > 0.0 else first):
-            j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
-            add_point(family, j, centre, frame.basis, -scale, 0.0, matrix)
-            jamming += scale if j == frame.anchor else 0.0
-    add_identity(identity_weight(family, row), matrix)
-    return jamming * (1.0 - family.leak)
+        k, share = int(row[INDEX + s]), row[WEIGHT + s]
+        weight, isotropic = share * family.numerator_weight[k], share * family.numerator_isotropic[k]
+        add_point(family, family.numerator_point[k], centre, basis, weight, isotropic, matrix)
+        less = group_weight(family, row, s) * row[LEVEL]
+        if less > 0.0:
+            add_denominator(family, family.denominator_of[k], -less, centre, basis, matrix)
 
 
 @inner_kernel
-def add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest):
+def add_links(family, shear, frame, row, v, matrix, slopes, rest):
     """Add a row's sum over its box from above: value at the centre, slopes, and what may come to them."""
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    if shear.kind != WORLD:
-        jamming *= dot(shear.still, shear.still) if shear.is_dipole else 1.0 / frame.radius_m**2
-    add_turned_identity(shear, half, identity_weight(family, row), jamming, v, matrix, slopes, rest)
+    centre, half, jamming = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
     add_identity(ROUNDING * row[LEVEL], rest)
     for s in range(int(row[COUNT])):
         k = int(row[INDEX + s])
@@ -294,4 +281,6 @@ def add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest):
         for e in range(first, last if weight > 0.0 else first):
             j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
             scale *= excess_end(family, family.channels, j, False, centre, half)
+            jamming += (1.0 - family.leak) * scale * shear.square if j == frame.anchor else 0.0
             add_link(family, j, shear, frame, centre, half, v, -1.0, scale, matrix, slopes, rest)
+    add_turned_identity(shear, half, identity_weight(family, row), jamming, v, matrix, slopes, rest)

@@ -17,9 +17,8 @@ from nullpose.channel.model import BY_DISTANCE
 from nullpose.solver.kernels.bounds.excess import EXCESS, fill_excess, product, quotient, square, total
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
-from nullpose.solver.kernels.linear_algebra.forms import entry
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
-from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, copy_table
+from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, copy_table, entry
 from nullpose.solver.kernels.linear_algebra.vectors import cross, dot, fill_affine, minus, norm, row, store
 
 JET = 18  # columns of a jet: the value, and from so many on

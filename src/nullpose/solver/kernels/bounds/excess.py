@@ -10,16 +10,11 @@ import math
 
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_ELEVATION
-from nullpose.solver.kernels.bounds.link_field import elevation_range
+from nullpose.solver.kernels.bounds.link_field import elevation_range, relative_range
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.channel import (
-    elevation_gain,
-    excess_jet,
-    sight_probability,
-    steepness,
-)
-from nullpose.solver.kernels.linear_algebra.forms import entry
+from nullpose.solver.kernels.linear_algebra.channel import excess_jet
+from nullpose.solver.kernels.linear_algebra.symmetric import entry
 from nullpose.solver.kernels.linear_algebra.vectors import square_range
 
 EXCESS = 10  # rows: the gain, its three relative slopes, its six relative second derivatives
@@ -55,18 +50,6 @@ def total(a, b):
 def within_one(a):
     """Return bounds on a cosine."""
     return max(-1.0, a[0]), min(1.0, a[1])
-
-
-@inner_kernel
-def relative_range(row, low, high):
-    """Return bounds on the gain and on ``g' / g`` and ``g'' / g`` by the elevation, between two tangents."""
-    p_low, p_high = sight_probability(row, math.atan(low)), sight_probability(row, math.atan(high))
-    gain = elevation_gain(row, p_low), elevation_gain(row, p_high)
-    ends = p_low * (1.0 - p_low), p_high * (1.0 - p_high)
-    spread = min(ends[0], ends[1]), (0.25 if p_low < 0.5 < p_high else max(ends[0], ends[1]))
-    first = steepness(row, gain[1]) * row[2] * spread[0], steepness(row, gain[0]) * row[2] * spread[1]
-    bent = row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low)
-    return gain, first, product(first, total(bent, first) if row[4] == DB_AVERAGE else bent)
 
 
 @inner_kernel
@@ -113,7 +96,8 @@ def fill_excess(row, r, is_above, point, centre, half, excess):
         return
     slopes, bends, steep, bent = scratch(3), scratch(3, 3), scratch(3, 2), scratch(6, 2)
     low, high = elevation_range(r, point, centre, half)
-    gain, first, second = relative_range(row, low, high)
+    gain, first, bent_range = relative_range(row, low, high)
+    second = product(first, total(bent_range, first) if row[4] == DB_AVERAGE else bent_range)
     fill_angle_range(r, point, centre, half, steep, bent)
     at_centre, left_out = excess_jet(row, r, slopes, bends), 0.0
     for e in range(6):

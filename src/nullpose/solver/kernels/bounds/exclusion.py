@@ -48,7 +48,7 @@ from nullpose.solver.kernels.bounds.node import (
 )
 from nullpose.solver.kernels.bounds.records import WORLD
 from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
-from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
+from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.forms import congruence, form_value
 from nullpose.solver.kernels.linear_algebra.symmetric import (
@@ -193,10 +193,10 @@ def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
         v, weights, turned, half = scratch(3), scratch(3), scratch(3, 6), row[HALF:LEVEL]
         shear = shear_at(
             family, frame, row[CENTRE:HALF], half,
-            Shear(np.int64(WORLD), False, scratch(3), scratch(3, 3), scratch(6, 3), scratch(4)),
+            Shear(np.int64(WORLD), False, 0.0, scratch(3, 3), scratch(6, 3), zeroed(4)),
         )  # fmt: skip
         matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
-        jamming = centre_form(family, frame, row, matrix)
+        centre_form(family, frame, row, matrix)
         q = scratch(6)
         for number in range(3):
             weights[number], level = constraint_of(axis_field, row, number, q)
@@ -208,7 +208,7 @@ def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
         for number in range(3):
             if weights[number] > 0.0:
                 add_constant(shear, half, weights[number], turned[number], matrix, slopes, rest)
-        add_links(family, shear, frame, row, v, jamming, matrix, slopes, rest)
+        add_links(family, shear, frame, row, v, matrix, slopes, rest)
 
 
 @small_kernel

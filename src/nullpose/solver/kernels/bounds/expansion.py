@@ -23,10 +23,9 @@ from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVE
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.forms import seen_from
-from nullpose.solver.kernels.linear_algebra.links import isotropic_share
-from nullpose.solver.kernels.linear_algebra.symmetric import tangents
+from nullpose.solver.kernels.linear_algebra.links import isotropic_share, strongest_point
+from nullpose.solver.kernels.linear_algebra.symmetric import fill_identity, tangents
 from nullpose.solver.kernels.linear_algebra.vectors import (
     along,
     cross,
@@ -71,9 +70,7 @@ def frame_at(family, kind, anchor, centre, half, basis):
     """
     points = family.points_m
     if kind == WORLD:
-        for i in range(3):
-            for m in range(3):
-                basis[i, m] = 1.0 if i == m else 0.0
+        fill_identity(basis)
         return Frame(kind, anchor, basis, math.inf, math.inf)
     a, b, c = scratch(3), scratch(3), scratch(3)
     r = minus(row_of(points, anchor), centre)
@@ -172,20 +169,6 @@ def reach_of_link(family, j, is_above, centre, half):
     """Return the reach of point j's link vector over a box, in a frame at rest."""
     field = amplitude(family, family.channels, j, is_above, centre, half)
     return scaled_inverse(field, min_distance(family.points_m, j, centre, half))
-
-
-@small_kernel
-def strongest_point(family, centre):
-    """Return the denominators' point that is received most strongly at the centre, or -1."""
-    strongest = 0.0
-    anchor = -1
-    for e in range(family.denominator_weight.shape[0]):
-        j, weight = family.denominator_point[e], family.denominator_weight[e]
-        r = minus(row_of(family.points_m, j), centre)
-        received, square = weight * excess_at(family, family.channels, j, centre), dot(r, r)
-        if received > strongest * square:
-            strongest, anchor = received / square, j
-    return anchor
 
 
 @inner_kernel

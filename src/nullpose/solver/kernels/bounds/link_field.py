@@ -46,15 +46,22 @@ class Reach(NamedTuple):
 
 
 @small_kernel
+def times_amplitude(field, reach):
+    """Return the reach of a vector times an amplitude: the rule *scale*."""
+    slope = field.most * reach.slope + field.slope * reach.length
+    bend = field.most * reach.bend + 2.0 * field.slope * reach.slope + field.bend * reach.length
+    return Reach(field.most * reach.length, slope, bend)
+
+
+@small_kernel
 def scaled_inverse(field, a):
     """Return the reach of ``h r / |r|^2``, a being the least length of r: the rules *invert* and *scale*.
 
     ``H0 / a``, ``H0 / a^2 + H1 / a`` and ``2 H0 / a^3 + 2 H1 / a^2 + H2 / a``.
     """
     inverse = 1.0 / a
-    length = field.most * inverse
-    slope = (length + field.slope) * inverse
-    return Reach(length, slope, (2.0 * slope + field.bend) * inverse)
+    square = inverse * inverse
+    return times_amplitude(field, Reach(inverse, square, 2.0 * square * inverse))
 
 
 @small_kernel
@@ -145,20 +152,25 @@ def distance_amplitude(row, r, least, most):
 
 
 @inner_kernel
+def relative_range(row, low, high):
+    """Return bounds on a gain g by elevation, ``g' / g`` and ``k (1 - 2 P)``, between two tangents of it."""
+    p_low, p_high = sight_probability(row, math.atan(low)), sight_probability(row, math.atan(high))
+    gain = elevation_gain(row, p_low), elevation_gain(row, p_high)
+    ends = p_low * (1.0 - p_low), p_high * (1.0 - p_high)
+    spread = min(ends[0], ends[1]), (0.25 if p_low < 0.5 < p_high else max(ends[0], ends[1]))
+    first = steepness(row, gain[1]) * row[2] * spread[0], steepness(row, gain[0]) * row[2] * spread[1]
+    return gain, first, (row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low))
+
+
+@inner_kernel
 def elevation_amplitude(row, r, least, is_above, point, centre, half):
     """Return the amplitude of a channel by elevation, over squared distances of ``least`` or more."""
     low, high = elevation_range(r, point, centre, half)
-    p_low, p_high = sight_probability(row, math.atan(low)), sight_probability(row, math.atan(high))
-    bottom, top = elevation_gain(row, p_low), elevation_gain(row, p_high)
+    (bottom, top), (rest, first), bent = relative_range(row, low, high)
     # h' / h = g' / (2 g) and h'' / h = g'' / (2 g) - (g' / (2 g))^2
-    spread_low, spread_high = p_low * (1.0 - p_low), p_high * (1.0 - p_high)
-    spread = 0.25 if p_low < 0.5 < p_high else max(spread_low, spread_high)
-    first = 0.5 * steepness(row, bottom) * row[2] * spread
-    rest = 0.5 * steepness(row, top) * row[2] * min(spread_low, spread_high)
-    sign = 1.0 if row[4] == DB_AVERAGE else -1.0
-    ends = row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low)
-    shift = (rest, first) if sign > 0.0 else (-first, -rest)
-    second = first * max(abs(ends[0] + shift[0]), abs(ends[1] + shift[1]))
+    rest, first = 0.5 * rest, 0.5 * first
+    shift = (rest, first) if row[4] == DB_AVERAGE else (-first, -rest)
+    second = first * max(abs(bent[0] + shift[0]), abs(bent[1] + shift[1]))
     root = math.sqrt(top)
     steep = max(abs(low), abs(high))
     bend = 0.5 * (second + math.sqrt(second * second + 4.0 * first * first))

@@ -31,7 +31,7 @@ from nullpose.solver.kernels.bounds.whitened import (
 from nullpose.solver.kernels.compiler.jit import inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers, positive_definite
-from nullpose.solver.kernels.linear_algebra.forms import form_value
+from nullpose.solver.kernels.linear_algebra.forms import smallest_form
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_square,
     copy_into,
@@ -182,9 +182,7 @@ def interior_multipliers(
     accuracy = max(_INTERIOR * coarseness, min(_FINE, max(_FINEST, coarseness)))
     primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix)
     top_eigenvector(matrix, v)
-    reached = math.inf
-    for k in range(ratios):
-        reached = min(reached, form_value(forms, k, v))
+    _, reached = smallest_form(forms, v)
     if primal > level and primal - reached > coarseness * level:
         # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
         primal, total = sparse_dual(forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix)

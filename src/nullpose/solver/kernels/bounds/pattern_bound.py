@@ -27,6 +27,7 @@ from nullpose.solver.kernels.bounds.attitude import (
 )
 from nullpose.solver.kernels.bounds.sight import excess_range
 from nullpose.solver.kernels.compiler.jit import inner_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.harmonics import cap_bounds, gain_at, gain_jet
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import (
@@ -38,13 +39,14 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
     square_range,
     unit,
 )
+from nullpose.solver.kernels.search.pattern_search import quotient
 
 _WIDEST = 1.0  # radians: directions in wider caps are not expanded
 _HALVINGS = 14
 _PACE = 2.0
 _STEPS = 40
 
-LEAST, MOST, REST = 0, 1, 2  # columns of a point's bounds over a cell
+LEAST, MOST, REST = 0, 1, 2  # rows of a point's bounds over a cell
 
 
 @inner_kernel
@@ -62,7 +64,7 @@ def fill_points(family, pattern, row, space):
     Of ``g / r^2``: least and largest over the cell, and a bound on the remainder of the second
     order, with a margin for rounding. Returns how far any frame may turn in the cell, radians.
     """
-    points = family.points_m
+    points, caps = family.points_m, scratch(5)
     anchor = int(row[ANCHOR])
     anchor_m = vector_to(points, anchor, row)
     fill_frame(row, anchor_m, space.frame)
@@ -75,22 +77,22 @@ def fill_points(family, pattern, row, space):
         e = reach / math.sqrt(near) if near > 0.0 else math.inf
         is_anchor = j == anchor
         width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
-        cap_bounds(pattern, unit(a), min(width, math.pi), space.caps)
-        least, most = -space.caps[0], space.caps[1]
+        cap_bounds(pattern, unit(a), min(width, math.pi), caps)
+        least, most = -caps[0], caps[1]
         low, high = excess_range(family, family.channels, j, row[:3], row[HALF : HALF + 3])
         end = space.excess[j] = high if space.is_numerator[j] > 0.0 else low
-        space.wide[j, LEAST] = low * least / far if least >= 0.0 else high * least / near
-        space.wide[j, MOST] = high * most / near if most >= 0.0 else low * most / far
-        space.wide[j, REST] = math.inf
+        space.wide[LEAST, j] = low * least / far if least >= 0.0 else high * least / near
+        space.wide[MOST, j] = high * most / near if most >= 0.0 else low * most / far
+        space.wide[REST, j] = math.inf
         is_sided = space.one_sided[j] > 0.0 or low == high  # one end of the excess bounds it
         # in wider cells the third derivative's bound is of no use
         if is_sided and width < _WIDEST and e < 0.5:
             turning = held if is_anchor else whole
             g0 = max(abs(least), abs(most))
             away = 0.0 if is_anchor else e
-            rest = third(turning, width, e, away, g0, space.caps[2], space.caps[3], space.caps[4])
+            rest = third(turning, width, e, away, g0, caps[2], caps[3], caps[4])
             below = (high - low) * max(0.0, -least)  # where a gain is negative the other end counts
-            space.wide[j, REST] = (end * (rest + pattern.rounding) + below) / near
+            space.wide[REST, j] = (end * (rest + pattern.rounding) + below) / near
     return whole[0]
 
 
@@ -98,12 +100,7 @@ def fill_points(family, pattern, row, space):
 def weak_ratio(family, level, space):
     """Return a ratio that stays below a level by the bounds of its points over the cell, or -1."""
     for k in range(family.numerator_point.shape[0]):
-        g = family.denominator_of[k]
-        below = family.denominator_isotropic[g]
-        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            below += family.denominator_weight[e] * space.wide[family.denominator_point[e], LEAST]
-        above = family.numerator_isotropic[k]
-        above += family.numerator_weight[k] * space.wide[family.numerator_point[k], MOST]
+        above, below = quotient(family, k, space.wide[MOST], space.wide[LEAST])
         if above < level * below * (1.0 - 1e-12):
             return k
     return -1
@@ -120,42 +117,39 @@ def middle(family, pattern, level, row, space):
         a = in_body(space.frame, vector_to(family.points_m, j, row))
         square = dot(a, a)
         x, y, z = over(a, math.sqrt(square))
-        space.value[j] = space.excess[j] * gain_at(pattern, x, y, z) / square
+        value, rest = space.excess[j] * gain_at(pattern, x, y, z) / square, space.wide[REST, j]
+        space.value[j] = value
+        space.parts[j] = min(space.wide[MOST, j], value + rest)
+        space.factor[j] = max(space.wide[LEAST, j], value - rest)
     least, promising = math.inf, False  # an expansion costs ten times as much as this look
     for k in range(family.numerator_point.shape[0]):
-        g, j = family.denominator_of[k], family.numerator_point[k]
-        isotropic, weight = family.numerator_isotropic[k], family.numerator_weight[k]
-        above = isotropic + weight * min(space.wide[j, MOST], space.value[j] + space.wide[j, REST])
-        value = isotropic + weight * space.value[j]
-        below = base = family.denominator_isotropic[g]
-        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            j, weight = family.denominator_point[e], family.denominator_weight[e]
-            below += weight * max(space.wide[j, LEAST], space.value[j] - space.wide[j, REST])
-            base += weight * space.value[j]
+        above, below = quotient(family, k, space.parts, space.factor)
         promising = promising or above < level * below
-        least = min(least, value / base)
+        above, below = quotient(family, k, space.value, space.value)
+        least = min(least, above / below)
     return least, promising
 
 
 @inner_kernel
 def expand(family, pattern, row, space):
     """Fill value, gradient and Hessian of every point's ``g / r^2`` at a cell's middle."""
-    points, first, stiff = family.points_m, int(row[CHART]), space.stiff
+    points, first = family.points_m, int(row[CHART])
+    firsts, seconds, slopes, stiff = scratch(6, 3), scratch(6, 6, 3), scratch(3), scratch(3, 3)
     for j in range(points.shape[0]):
         a = in_body(space.frame, vector_to(points, j, row))
         square = dot(a, a)
         length, excess = math.sqrt(square), space.excess[j]
-        move(space.frame, a, space.firsts, space.seconds)
-        space.value[j] = excess * gain_jet(pattern, over(a, length), space.pull, stiff) / square
+        move(space.frame, a, firsts, seconds)
+        space.value[j] = excess * gain_jet(pattern, over(a, length), slopes, stiff) / square
         p1, p2 = excess / (square * length), excess / (square * square)
-        pull = scaled(p1, space.pull)
+        pull = scaled(p1, slopes)
         for m in range(6):
-            i, f = (first + m) % 3 if m < 3 else m, row_of(space.firsts, m)
+            i, f = (first + m) % 3 if m < 3 else m, row_of(firsts, m)
             space.slope[j, i] = dot(pull, f)
             pushed = scaled(p2, (dot(stiff[0], f), dot(stiff[1], f), dot(stiff[2], f)))
             for n in range(m, 6):
                 k = (first + n) % 3 if n < 3 else n
-                bend = dot(pushed, row_of(space.firsts, n)) + dot(pull, row_of(space.seconds[m], n))
+                bend = dot(pushed, row_of(firsts, n)) + dot(pull, row_of(seconds[m], n))
                 space.bend[j, i, k] = bend
                 space.bend[j, k, i] = bend
 
@@ -166,8 +160,8 @@ def add_point(space, k, j, weight):
 
     Where the bound over the cell alone is nearer than the expansion's remainder, it takes the place of both.
     """
-    value, limit = space.value[j], space.wide[j, MOST] if weight > 0.0 else space.wide[j, LEAST]
-    rest = space.wide[j, REST]
+    value, limit = space.value[j], space.wide[MOST, j] if weight > 0.0 else space.wide[LEAST, j]
+    rest = space.wide[REST, j]
     if space.one_sided[j] and abs(limit - value) < rest:
         rest = abs(limit - value)
         for i in range(6):
@@ -212,10 +206,7 @@ def upper(family, level, half, multipliers, space):
     coordinate.
     """
     total = weigh(family, level, multipliers, space)
-    slope, bend, parts = space.sum_slope, space.sum_bend, space.parts
-    slope[:] = 0.0
-    bend[:] = 0.0
-    points = space.factor.shape[0]
+    slope, bend, parts, points = zeroed(6), zeroed(6, 6), space.parts, space.factor.shape[0]
     for j in range(points):
         c = space.factor[j]
         if c != 0.0:

@@ -31,16 +31,11 @@ _ROUNDING_RAD = 1e-9  # radians
 class Space(NamedTuple):
     """Where the kernels of one thread write."""
 
-    caps: FloatArray
     wide: FloatArray
     value: FloatArray
     slope: FloatArray
     bend: FloatArray
     frame: FloatArray
-    firsts: FloatArray
-    seconds: FloatArray
-    pull: FloatArray
-    stiff: FloatArray
     f: FloatArray
     rest: FloatArray
     by_l: FloatArray
@@ -49,8 +44,6 @@ class Space(NamedTuple):
     at: FloatArray
     factor: FloatArray
     parts: FloatArray
-    sum_slope: FloatArray
-    sum_bend: FloatArray
     one_sided: FloatArray
     is_numerator: FloatArray
     excess: FloatArray
@@ -88,10 +81,9 @@ def space_of(family):
             if family.denominator_point[e] == family.numerator_point[k]:
                 one_sided[family.numerator_point[k]] = 0.0
     return Space(
-        np.empty(5), np.empty((m, 3)), np.empty(m), np.empty((m, 6)), np.empty((m, 6, 6)), np.empty((18, 3)),
-        np.empty((6, 3)), np.empty((6, 6, 3)), np.empty(3), np.empty((3, 3)), np.empty(n), np.empty(n),
-        np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m), np.empty(m), np.empty(6),
-        np.empty((6, 6)), one_sided, is_numerator, np.empty(m),
+        np.empty((3, m)), np.empty(m), np.empty((m, 6)), np.empty((m, 6, 6)), np.empty((18, 3)),
+        np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m),
+        np.empty(m), one_sided, is_numerator, np.empty(m),
     )  # fmt: skip
 
 

@@ -22,19 +22,20 @@ _ENTRIES = 62  # of denominators that are looked at: bits of a number
 
 
 @inner_kernel
-def blocked_end(points, sides, start, row, is_above, centre, half):
-    """Return the share that a link keeps among buildings all over a box: the most or least, by ``is_above``.
+def blocked_end(family, channels, j, is_above, centre, half):
+    """Return the share that link j keeps among buildings all over a box: the most or least, by ``is_above``.
 
     A shadow is convex: beyond one of its sides the box is clear of it, inside of all it is in it.
     """
-    for shadow in range(points[0], points[1]):
+    sides, start = family.shadow_sides, family.shadow_start
+    for shadow in range(family.shadows_of_point[j], family.shadows_of_point[j + 1]):
         piece = sides[start[shadow] : start[shadow + 1]]
         if not is_outside(piece, centre, half):
             inside = True
             for s in range(piece.shape[0]):
                 inside = inside and reach_beyond(piece[s], centre, half) < 0.0
             if inside or not is_above:
-                return row[BLOCKED]
+                return channels[j, BLOCKED]
     return 1.0
 
 
@@ -44,9 +45,8 @@ def excess_range(family, channels, j, centre, half):
     low = excess_end(family, channels, j, False, centre, half)
     high = excess_end(family, channels, j, True, centre, half)
     if channels is not None and family.shadow_sides.shape[0] > 0:
-        shadows, sides, start = family.shadows_of_point[j : j + 2], family.shadow_sides, family.shadow_start
-        low *= blocked_end(shadows, sides, start, channels[j], False, centre, half)
-        high *= blocked_end(shadows, sides, start, channels[j], True, centre, half)
+        low *= blocked_end(family, channels, j, False, centre, half)
+        high *= blocked_end(family, channels, j, True, centre, half)
     return low, high
 
 
@@ -154,8 +154,7 @@ def fill_pieces(family, domain, row, pieces, ends):
         if must_be_seen(family, row, k):
             node = family.numerator_point[k]
             for shadow in range(of_point[node], of_point[node + 1]):
-                piece = sides[start[shadow] : start[shadow + 1]]
-                count = add_piece(piece, centre, half, pieces, ends, count)
+                count = add_piece(sides[start[shadow] : start[shadow + 1]], centre, half, pieces, ends, count)
     return count
 
 
@@ -182,9 +181,8 @@ def is_seen_with_nodes(family, domain, j, row):
 @inner_kernel
 def shadows_in_box(family, j, row):
     """Count the shadows of point j that reach into a box, and return the last of them."""
-    sides, start, of_point = family.shadow_sides, family.shadow_start, family.shadows_of_point
-    count, last = 0, -1
-    for shadow in range(of_point[j], of_point[j + 1]):
+    sides, start, count, last = family.shadow_sides, family.shadow_start, 0, -1
+    for shadow in range(family.shadows_of_point[j], family.shadows_of_point[j + 1]):
         if not is_outside(sides[start[shadow] : start[shadow + 1]], row[CENTRE:HALF], row[HALF:LEVEL]):
             count, last = count + 1, shadow
     return count, last
@@ -195,12 +193,10 @@ def is_hidden_by_several(family, j, row):
     """Check whether shadows of point j that touch or overlap hold all of a box."""
     if shadows_in_box(family, j, row)[0] < 2:
         return False
-    sides, start, of_point = family.shadow_sides, family.shadow_start, family.shadows_of_point
     pieces, ends, inside, count = scratch(_ROWS, 4), scratch_int(_PIECES), scratch(_SIDES, 4), 0
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    for shadow in range(of_point[j], of_point[j + 1]):
-        piece = sides[start[shadow] : start[shadow + 1]]
-        count = add_piece(piece, centre, half, pieces, ends, count)
+    centre, half, sides, start = row[CENTRE:HALF], row[HALF:LEVEL], family.shadow_sides, family.shadow_start
+    for shadow in range(family.shadows_of_point[j], family.shadows_of_point[j + 1]):
+        count = add_piece(sides[start[shadow] : start[shadow + 1]], centre, half, pieces, ends, count)
     return is_covered(inside, 0, pieces, ends, count, centre, half)
 
 
@@ -238,8 +234,7 @@ def meet_nowhere(family, entries, row, pieces, ends, count):
     for e in range(_ENTRIES):
         if entries >> e & 1:
             _, shadow = shadows_in_box(family, family.denominator_point[e], row)
-            piece = sides[start[shadow] : start[shadow + 1]]
-            size = add_shadow(piece, centre, half, inside, size)
+            size = add_shadow(sides[start[shadow] : start[shadow + 1]], centre, half, inside, size)
     return entries != 0 and is_covered(inside, size, pieces, ends, count, centre, half)
 
 
@@ -274,12 +269,9 @@ def norm_along(side, half):
 def multiply_by_sight(family, domain, channels, points, is_above, seen, row, weights):
     """Multiply weights by what buildings leave of their points' links, at best, all over a row's box."""
     if channels is not None and family.shadow_sides.shape[0] > 0:
-        sides, start = family.shadow_sides, family.shadow_start
         for k in range(weights.shape[0]):
-            j = points[k]
-            shadows = family.shadows_of_point[j : j + 2]
-            centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-            left = blocked_end(shadows, sides, start, channels[j], is_above, centre, half)
+            j, half = points[k], row[HALF:LEVEL]
+            left = blocked_end(family, channels, j, is_above, row[CENTRE:HALF], half)
             if left < 1.0 and not is_above and norm(half) < _SMALL_M:
                 left = 1.0 if j == seen or is_seen_with_nodes(family, domain, j, row) else left
             if left == 1.0 and is_above and is_hidden_by_several(family, j, row):

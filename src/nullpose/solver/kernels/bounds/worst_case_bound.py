@@ -17,7 +17,7 @@ import numpy as np
 
 from nullpose.channel.model import BY_DISTANCE
 from nullpose.solver.kernels.bounds.constants import VECTOR_BEND, VECTOR_SLOPE
-from nullpose.solver.kernels.bounds.link_field import Reach, distance_amplitude
+from nullpose.solver.kernels.bounds.link_field import Reach, distance_amplitude, times_amplitude
 from nullpose.solver.kernels.bounds.node import split_across
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel
 from nullpose.solver.kernels.linear_algebra.channel import excess_in_sight
@@ -148,17 +148,13 @@ def link_reach(channels, j, q, near, far, is_dipole):
         is_dipole: whether the vector is that of a dipole.
     """
     slope, bend = (VECTOR_SLOPE, VECTOR_BEND) if is_dipole else (1.0, 2.0)
-    inverse = 1.0 / near
-    length, slope, bend = inverse, slope * inverse * inverse, bend * inverse * inverse * inverse
+    reach = Reach(1.0 / near, slope / near**2, bend / near**3)
     if channels is not None:
         if channels[j, 0] == BY_DISTANCE:
-            field = distance_amplitude(channels[j], q, near * near, far * far)
-            bend = field.most * bend + 2.0 * field.slope * slope + field.bend * length
-            slope = field.most * slope + field.slope * length
-            length *= field.most
-        elif near == far:
-            length *= math.sqrt(excess_in_sight(channels[j], q))
-    return Reach(length, slope, bend)
+            return times_amplitude(distance_amplitude(channels[j], q, near * near, far * far), reach)
+        if near == far:
+            return Reach(reach.length * math.sqrt(excess_in_sight(channels[j], q)), reach.slope, reach.bend)
+    return reach
 
 
 @inner_kernel

@@ -28,6 +28,7 @@ from nullpose.solver.kernels.linear_algebra.forms import (
     fill_forms,
     form_value,
     inverse_factor,
+    smallest_form,
 )
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.polynomial import real_roots
@@ -42,6 +43,7 @@ from nullpose.solver.kernels.linear_algebra.vectors import dot, store, unit
 
 _MAX_CANDIDATES = 4000
 _FLAT = 1e-10
+_IDENTITY = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
 _DINKELBACH_STEPS = 60
 
 
@@ -108,9 +110,7 @@ def equal_cone(difference, curves):
 def add_candidate(found, members, v, count, floor):
     """Append a direction at which the working set's smallest form reaches ``floor``; return the count."""
     normalise(v)
-    smallest = math.inf
-    for m in range(members):
-        smallest = min(smallest, form_value(found.forms, m, v))
+    _, smallest = smallest_form(found.forms[:members], v)
     if not smallest >= floor or count >= _MAX_CANDIDATES:
         return count
     copy_into(v, found.directions[count])
@@ -141,9 +141,7 @@ def add_pair(found, members, i, j, count, floor):
     for c in range(equal_cone(difference, curves)):
         curve = curves[c]
         quartic(forms[i], curve, q)
-        n[0], n[1] = dot(curve[0], curve[0]), 2.0 * dot(curve[0], curve[1])
-        n[2] = 2.0 * dot(curve[0], curve[2]) + dot(curve[1], curve[1])
-        n[3], n[4] = 2.0 * dot(curve[1], curve[2]), dot(curve[2], curve[2])
+        quartic(_IDENTITY, curve, n)
         poly[:] = 0.0
         for a in range(5):  # q' n - q n', in which the seventh power cancels
             for b in range(5):
@@ -167,17 +165,6 @@ def add_single(found, members, i, count, floor):
     eigen3(matrix, values, vectors)
     copy_into(vectors[:, 0], v)
     return add_candidate(found, members, v, count, floor)
-
-
-@inner_kernel
-def smallest_form(forms, v):
-    """Return the index of the smallest form at a vector, and its value."""
-    least, smallest = 0, math.inf
-    for k in range(forms.shape[0]):
-        value = form_value(forms, k, v)
-        if value < smallest:
-            least, smallest = k, value
-    return least, smallest
 
 
 @heap_kernel

@@ -44,9 +44,7 @@ def blocked_gain(points, sides, start, row, p):
     for shadow in range(points[0], points[1]):
         inside = True
         for s in range(start[shadow], start[shadow + 1]):
-            if not sides[s, 0] * p[0] + sides[s, 1] * p[1] + sides[s, 2] * p[2] < sides[s, 4]:
-                inside = False
-                break
+            inside = inside and dot(sides[s], p) < sides[s, 4]
         if inside:
             return row[BLOCKED]
     return 1.0

@@ -5,19 +5,11 @@ from __future__ import annotations
 import math
 
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
-from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
+from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
-from nullpose.solver.kernels.linear_algebra.symmetric import add_identity
+from nullpose.solver.kernels.linear_algebra.symmetric import add_identity, entry, fill_identity
 from nullpose.solver.kernels.linear_algebra.vectors import along, dot, minus, row, scaled
-
-
-@inner_kernel
-def entry(k):
-    """Return the row and the column of number k of a form."""
-    if k < 3:
-        return k, k
-    return (0 if k < 5 else 1), (1 if k == 3 else 2)
 
 
 @kernel
@@ -30,6 +22,17 @@ def form_value(forms, k, v):
         + a[2] * v[2] * v[2]
         + 2.0 * (a[3] * v[0] * v[1] + a[4] * v[0] * v[2] + a[5] * v[1] * v[2])
     )
+
+
+@inner_kernel
+def smallest_form(forms, v):
+    """Return the index of the smallest form at a vector, and its value."""
+    least, smallest = 0, math.inf
+    for k in range(forms.shape[0]):
+        value = form_value(forms, k, v)
+        if value < smallest:
+            least, smallest = k, value
+    return least, smallest
 
 
 @kernel
@@ -144,8 +147,8 @@ def fill_forms(family, p, numerators, denominators):
     n0, nw, npt = family.numerator_isotropic, family.numerator_weight, family.numerator_point
     numerators[:, :] = 0.0
     denominators[:, :] = 0.0
-    world = zeroed(3, 3)
-    world[0, 0] = world[1, 1] = world[2, 2] = 1.0
+    world = scratch(3, 3)
+    fill_identity(world)
     for k in range(nw.shape[0]):
         add_point(family, npt[k], p, world, nw[k], n0[k], numerators[k])
     for g in range(denominators.shape[0]):

@@ -17,6 +17,13 @@ import math
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet, sight_gain
+from nullpose.solver.kernels.linear_algebra.symmetric import (
+    PLACE,
+    add_scaled,
+    entry,
+    fill_identity,
+    smallest_of,
+)
 from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, minus, row, scaled, store
 
 
@@ -37,6 +44,20 @@ def isotropic_share(leaks, j):
     if leaks is not None:
         return leaks[j]
     return 1.0
+
+
+@small_kernel
+def strongest_point(family, centre):
+    """Return the denominators' point that is received most strongly at the centre, or -1."""
+    strongest = 0.0
+    anchor = -1
+    for e in range(family.denominator_weight.shape[0]):
+        j, weight = family.denominator_point[e], family.denominator_weight[e]
+        r = minus(row(family.points_m, j), centre)
+        received, square = weight * excess_at(family, family.channels, j, centre), dot(r, r)
+        if received > strongest * square:
+            strongest, anchor = received / square, j
+    return anchor
 
 
 @inner_kernel
@@ -99,10 +120,7 @@ def log_ratios(family, p, u, log_denominators, out):
 def min_log_ratio(family, p, u, log_denominators, out):
     """Return the smallest log ratio at a pose: the objective that every solver here maximises."""
     log_ratios(family, p, u, log_denominators, out)
-    smallest = out[0]
-    for k in range(1, out.shape[0]):
-        smallest = min(smallest, out[k])
-    return smallest
+    return smallest_of(out)
 
 
 @small_kernel
@@ -116,22 +134,18 @@ def add_excess(family, channels, j, weight, p, u, grad, hess, second):
     """Do what ``add_form`` does, by the product rule for the excess gain."""
     if channels is None:
         return add_turned_form(family, j, weight, p, u, grad, hess, second)
-    slopes, bends, g, h = scratch(3), scratch(3, 3), zeroed(6), zeroed(6, 6)
+    slopes, bends, g, h = zeroed(6), scratch(3, 3), zeroed(6), zeroed(6, 6)
     gain = sight_gain(family, channels, j, p)
-    gain *= excess_jet(channels[j], minus(row(family.points_m, j), p), slopes, bends)
+    gain *= excess_jet(channels[j], minus(row(family.points_m, j), p), slopes[:3], bends)
     value = add_turned_form(family, j, gain * weight, p, u, g, h, second)
     for i in range(6):
-        grad[i] += g[i] + (value * slopes[i] if i < 3 else 0.0)
+        grad[i] += g[i] + value * slopes[i]
     if second:
         for i in range(6):
             for k in range(6):
-                hess[i, k] += h[i, k]
-                if i < 3:
-                    hess[i, k] += slopes[i] * g[k]
-                if k < 3:
-                    hess[i, k] += g[i] * slopes[k]
-                if i < 3 and k < 3:
-                    hess[i, k] += value * bends[i, k]
+                hess[i, k] += h[i, k] + slopes[i] * g[k] + g[i] * slopes[k]
+        for i in range(3):
+            add_scaled(value, bends[i], hess[i, :3])
     return value
 
 
@@ -214,61 +228,73 @@ def add_seen_form(family, j, weight, p, u, grad, hess, second):
 
 
 @inner_kernel
+def vector_jet(r, v, basis, value, first, second):
+    """Fill a link vector and its derivatives by the position, all in the frame's coordinates.
+
+    Args:
+        r: to the point, in the frame.
+        v: the dipole's axis, in the frame.
+        basis: the frame's axes in columns; its rows are the world's axes in the frame.
+        value: output, (3,).
+        first: output, (3, 3), the derivative along each of the world's axes.
+        second: output, (6, 3).
+    """
+    i2 = 1.0 / dot(r, r)
+    i3 = i2 * math.sqrt(i2)
+    vr = dot(v, r)
+    across, lengthways = scratch(3), scratch(3)
+    for m in range(3):
+        value[m] = (v[m] - vr * i2 * r[m]) * i3 / i2
+    for i in range(3):
+        e = row(basis, i)
+        lengthways[i], across[i] = dot(r, e), dot(v, e)
+        for m in range(3):
+            first[i, m] = i3 * (
+                v[m] * lengthways[i] + e[m] * vr + r[m] * across[i] - 3.0 * i2 * vr * lengthways[i] * r[m]
+            )
+    for s in range(6):
+        i, j = entry(s)
+        e, f = row(basis, i), row(basis, j)
+        same = 1.0 if i == j else 0.0
+        ri, rj, vi, vj = lengthways[i], lengthways[j], across[i], across[j]
+        along_v = 3.0 * i2 * ri * rj - same
+        along_e, along_f = 3.0 * i2 * vr * rj - vj, 3.0 * i2 * vr * ri - vi
+        along_r = 3.0 * i2 * (vi * rj + vj * ri + vr * same) - 15.0 * i2 * i2 * vr * ri * rj
+        for m in range(3):
+            second[s, m] = i3 * (along_v * v[m] + along_e * e[m] + along_f * f[m] + along_r * r[m])
+
+
+@inner_kernel
 def add_dipole_form(family, axes, j, weight, p, u, grad, hess, second):
     """Do what ``add_seen_form`` does, for a point with a dipole.
 
-    The form is ``(1 - l) B^2 s^-3 + l C uu s^-2`` with ``s = |r|^2``, ``B = (u.v) s - (u.r) (v.r)``, ``uu =
-    |u|^2`` and ``C = |v x r|^2``.
+    The form is ``(1 - l) (u.a)^2 + l |u|^2 |a|^2`` with the point's link vector a.
     """
     if axes is not None:
-        leak, r, v = family.leak, scratch(3), axes[j]
+        r, a, slopes, bends = scratch(3), scratch(3), scratch(3, 3), scratch(6, 3)
+        world, by = scratch(3, 3), scratch(3)
+        fill_identity(world)
         store(minus(row(family.points_m, j), p), r)
-        s, uu = dot(r, r), dot(u, u)
-        uv, ur, vr = dot(u, v), dot(u, r), dot(v, r)
-        side, other = cross(u, r), cross(v, r)
-        b, c = dot(side, other), dot(other, other)
-        i2 = 1.0 / s
-        i4 = i2 * i2
-        whole, leaking = (1.0 - leak) * weight * i4 * i2, leak * weight * i4
-        br, bu, cr = scratch(3), scratch(3), scratch(3)
+        vector_jet(r, axes[j], world, a, slopes, bends)
+        # u.a as a product of two cross products: no cancellation beside the null
+        b, uu, aa = dot(cross(u, r), cross(axes[j], r)) / dot(r, r) ** 1.5, dot(u, u), dot(a, a)
+        kept, leaking = 2.0 * (1.0 - family.leak) * weight, 2.0 * family.leak * weight
         for i in range(3):
-            br[i] = 2.0 * uv * r[i] - vr * u[i] - ur * v[i]
-            bu[i] = s * v[i] - vr * r[i]
-            cr[i] = 2.0 * (r[i] - vr * v[i])
-            grad[i] -= 2.0 * whole * b * (br[i] - 3.0 * b * i2 * r[i])
-            grad[i] -= leaking * uu * (cr[i] - 4.0 * c * i2 * r[i])
-            grad[3 + i] += 2.0 * (whole * b * bu[i] + leaking * c * u[i])
+            by[i] = dot(u, slopes[i])
+            grad[i] += kept * b * by[i] + leaking * uu * dot(a, slopes[i])
+            grad[3 + i] += kept * b * a[i] + leaking * aa * u[i]
         if second:
             for i in range(3):
                 for k in range(3):
-                    same = 1.0 if i == k else 0.0
-                    bent = 2.0 * uv * same - u[i] * v[k] - v[i] * u[k]
-                    far = r[i] * r[k]
-                    hess[i, k] += (
-                        2.0
-                        * whole
-                        * (
-                            br[i] * br[k]
-                            + b * (bent - 6.0 * i2 * (br[i] * r[k] + r[i] * br[k]))
-                            + b * b * i2 * (24.0 * i2 * far - 3.0 * same)
-                        )
-                    )
-                    hess[i, k] += (
-                        leaking
-                        * uu
-                        * (
-                            2.0 * (same - v[i] * v[k])
-                            - 4.0 * i2 * (cr[i] * r[k] + r[i] * cr[k])
-                            + c * i2 * (24.0 * i2 * far - 4.0 * same)
-                        )
-                    )
-                    hess[3 + i, 3 + k] += 2.0 * (whole * bu[i] * bu[k] + leaking * c * same)
-                    mixed = whole * (br[k] - 6.0 * b * i2 * r[k]) * bu[i]
-                    mixed += whole * b * (2.0 * v[i] * r[k] - v[k] * r[i] - vr * same)
-                    mixed += leaking * u[i] * (cr[k] - 4.0 * c * i2 * r[k])
-                    hess[3 + i, k] -= 2.0 * mixed
-                    hess[k, 3 + i] -= 2.0 * mixed
-        return whole * b * b + leaking * uu * c
+                    bend = bends[PLACE[i, k]]
+                    hess[i, k] += kept * (by[i] * by[k] + b * dot(u, bend))
+                    hess[i, k] += leaking * uu * (dot(slopes[i], slopes[k]) + dot(a, bend))
+                    hess[3 + i, 3 + k] += kept * a[i] * a[k] + (leaking * aa if i == k else 0.0)
+                    mixed = kept * (a[i] * by[k] + b * slopes[k, i])
+                    mixed += 2.0 * leaking * u[i] * dot(a, slopes[k])
+                    hess[3 + i, k] += mixed
+                    hess[k, 3 + i] += mixed
+        return 0.5 * (kept * b * b + leaking * uu * aa)
     return 0.0
 
 

@@ -11,7 +11,15 @@ from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.vectors import cross, dot, perpendicular, store, unit
 
 _SWEEPS = 30
-_PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # where an entry of the matrix stands in the form
+PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # where an entry of the matrix stands in the form
+
+
+@inner_kernel
+def entry(k):
+    """Return the row and the column of number k of a form."""
+    if k < 3:
+        return k, k
+    return (0 if k < 5 else 1), (1 if k == 3 else 2)
 
 
 @inner_kernel
@@ -41,6 +49,14 @@ def add_identity(factor, form):
     """Add a multiple of the identity to a form."""
     for i in range(3):
         form[i] += factor
+
+
+@inner_kernel
+def fill_identity(matrix):
+    """Fill the unit matrix of three rows."""
+    for i in range(3):
+        for j in range(3):
+            matrix[i, j] = 1.0 if i == j else 0.0
 
 
 @inner_kernel
@@ -85,7 +101,7 @@ def matrix_of(form, matrix):
     """Fill the 3x3 matrix of a form."""
     for i in range(3):
         for j in range(3):
-            matrix[i, j] = form[_PLACE[i, j]]
+            matrix[i, j] = form[PLACE[i, j]]
 
 
 @inner_kernel
@@ -99,7 +115,7 @@ def add_square(factor, v, form):
     """Add a multiple of ``v v^T`` to a form."""
     for i in range(3):
         for j in range(i, 3):
-            form[_PLACE[i, j]] += factor * v[i] * v[j]
+            form[PLACE[i, j]] += factor * v[i] * v[j]
 
 
 @inner_kernel
@@ -136,7 +152,7 @@ def longest_row(a, v):
         if abs(a[i]) > abs(a[lead]):
             lead = i
     for i in range(3):
-        v[i] = a[_PLACE[lead, i]]
+        v[i] = a[PLACE[lead, i]]
 
 
 @kernel
@@ -174,9 +190,7 @@ def eigen3(matrix, values, vectors):
     """
     a = scratch(3, 3)
     copy_table(matrix, a)
-    for i in range(3):
-        for j in range(3):
-            vectors[i, j] = 1.0 if i == j else 0.0
+    fill_identity(vectors)
     for _ in range(_SWEEPS):
         off = a[0, 1] ** 2 + a[0, 2] ** 2 + a[1, 2] ** 2
         if off <= 1e-36 * (a[0, 0] ** 2 + a[1, 1] ** 2 + a[2, 2] ** 2) or off == 0.0:

@@ -16,7 +16,7 @@ import math
 from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.links import isotropic_share
+from nullpose.solver.kernels.linear_algebra.links import isotropic_share, strongest_point
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_scaled,
     copy_into,
@@ -77,13 +77,8 @@ def rotation_rates(family, p, u, out):
     that has a dipole, its link vector a is what the axis stays across: ``du = -a (u.da) / |a|^2``.
     """
     out[:, :] = 0.0
-    strongest, j = 0.0, -1
-    if family.turn.shape[0] > 0:  # points that see different axes have no common rotation
-        return
-    for e in range(family.denominator_weight.shape[0]):
-        rho2 = squared_distance(family.points_m[family.denominator_point[e]], p)
-        if family.denominator_weight[e] / rho2 > strongest:
-            strongest, j = family.denominator_weight[e] / rho2, family.denominator_point[e]
+    # points that see different axes have no common rotation
+    j = strongest_point(family, p) if family.turn.shape[0] == 0 else -1
     if j < 0:
         return
     r = minus(row(family.points_m, j), p)

@@ -13,9 +13,9 @@ import numpy as np
 
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.axis import best_axis_of_forms, smallest_form
+from nullpose.solver.kernels.linear_algebra.axis import best_axis_of_forms
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
-from nullpose.solver.kernels.linear_algebra.forms import bilinear, fill_forms
+from nullpose.solver.kernels.linear_algebra.forms import bilinear, fill_forms, smallest_form
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, normalise, squared_distance, tangents
 

@@ -8,12 +8,25 @@ import numpy as np
 
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel, kernel
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
+from nullpose.solver.kernels.linear_algebra.forms import in_frame
 from nullpose.solver.kernels.linear_algebra.harmonics import gain_at
-from nullpose.solver.kernels.linear_algebra.vectors import cross, dot, norm, row, scaled, unit
+from nullpose.solver.kernels.linear_algebra.vectors import cross, dot, minus, norm, row, scaled, unit
 from nullpose.solver.kernels.search.domain import contains
 
 _STEP = 1e-6  # of differences, radians
 _LEAST = -1e3  # logarithm that counts for a ratio of zero
+
+
+@inner_kernel
+def quotient(family, k, above, below):
+    """Return ratio k's numerator and denominator from each point's gain over squared distance in either."""
+    g = family.denominator_of[k]
+    total = family.denominator_isotropic[g]
+    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+        total += family.denominator_weight[e] * below[family.denominator_point[e]]
+    return family.numerator_isotropic[k] + family.numerator_weight[k] * above[
+        family.numerator_point[k]
+    ], total
 
 
 @kernel
@@ -29,22 +42,12 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
         out: output, (ratios,).
     """
     for j in range(family.points_m.shape[0]):
-        x = family.points_m[j, 0] - position[0]
-        y = family.points_m[j, 1] - position[1]
-        z = family.points_m[j, 2] - position[2]
-        square = x * x + y * y + z * z
-        length = math.sqrt(square)
-        a = (rotation[0, 0] * x + rotation[1, 0] * y + rotation[2, 0] * z) / length
-        b = (rotation[0, 1] * x + rotation[1, 1] * y + rotation[2, 1] * z) / length
-        c = (rotation[0, 2] * x + rotation[1, 2] * y + rotation[2, 2] * z) / length
-        links[j] = excess_at(family, family.channels, j, position) * gain_at(pattern, a, b, c) / square
+        r = minus(row(family.points_m, j), position)
+        x, y, z = unit(in_frame(rotation, r))
+        links[j] = excess_at(family, family.channels, j, position) * gain_at(pattern, x, y, z) / dot(r, r)
     least = math.inf
     for k in range(family.numerator_point.shape[0]):
-        g = family.denominator_of[k]
-        below = family.denominator_isotropic[g]
-        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            below += family.denominator_weight[e] * links[family.denominator_point[e]]
-        above = family.numerator_isotropic[k] + family.numerator_weight[k] * links[family.numerator_point[k]]
+        above, below = quotient(family, k, links, links)
         out[k] = math.log(above / below) if above > 0.0 else -math.inf
         least = min(least, out[k])
     return least

@@ -13,12 +13,7 @@ import numpy as np
 from nullpose.problem.records import Domain
 from nullpose.solver.kernels.compiler.jit import inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_table
-
-
-@inner_kernel
-def slack_of(side, p):
-    """Return the distance of a position beyond a shadow's side."""
-    return side[0] * p[0] + side[1] * p[1] + side[2] * p[2] - side[4]
+from nullpose.solver.kernels.linear_algebra.vectors import dot
 
 
 @inner_kernel
@@ -44,7 +39,7 @@ def domain_in_sight(family, domain, p):
         first, end = family.shadow_start[shadow], family.shadow_start[shadow + 1]
         outside = -math.inf
         for s in range(first, end):
-            outside = max(outside, slack_of(family.shadow_sides[s], p))
+            outside = max(outside, dot(family.shadow_sides[s], p) - family.shadow_sides[s, 4])
         keeps_out = family.shadow_sides[first, 4] > family.shadow_sides[first, 3]  # a node's
         if keeps_out == (outside > 0.0):
             for s in range(first, end):
