@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from nullpose.antenna import QuadraticAntenna
 from nullpose.physics.gain import dipole_gain
-from nullpose.solver.kernels.search.worst_case_links import Sets, clearance, strongest_link
+from nullpose.solver.kernels.search.set_links import Sets
+from nullpose.solver.kernels.search.worst_case_links import clearance, strongest_link
 
 SEEDS = st.integers(0, 2**32 - 1)
 LOOSE, ROUNDING = 1e-3, 1e-12

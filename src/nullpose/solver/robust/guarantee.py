@@ -163,8 +163,8 @@ class Inner:
         self, ratio: int, p: FloatArray, u: FloatArray, accuracy: float, nominal: FloatArray
     ) -> RatioGuarantee:
         from nullpose.solver.kernels.bounds.worst_case_bound import worst_case
+        from nullpose.solver.kernels.search.set_links import Sets
         from nullpose.solver.kernels.search.worst_case import Errors, Ratio
-        from nullpose.solver.kernels.search.worst_case_links import Sets
 
         family = self.family
         group = family.denominator_of[ratio]

@@ -10,7 +10,17 @@ from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel, kern
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.forms import in_frame
 from nullpose.solver.kernels.linear_algebra.harmonics import gain_at
-from nullpose.solver.kernels.linear_algebra.vectors import cross, dot, minus, norm, row, scaled, unit
+from nullpose.solver.kernels.linear_algebra.vectors import (
+    along,
+    cross,
+    dot,
+    minus,
+    norm,
+    row,
+    scaled,
+    store,
+    unit,
+)
 from nullpose.solver.kernels.search.domain import contains
 
 _STEP = 1e-6  # of differences, radians
@@ -54,19 +64,15 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
 
 
 @inner_kernel
-def turned_by(rotation, x, y, z, out):
+def turned_by(rotation, w, out):
     """Fill a rotation times that by a small rotation vector (Rodrigues)."""
-    angle = math.sqrt(x * x + y * y + z * z)
+    angle = norm(w)
     s, c = 1.0, 0.5
     if angle > 1e-9:
         s, c = math.sin(angle) / angle, (1.0 - math.cos(angle)) / (angle * angle)
-    w = (x, y, z)
     for i in range(3):
-        a = row(rotation, i)
-        first = cross(a, w)  # a row times the matrix of the vector
-        second = cross(first, w)
-        for k in range(3):
-            out[i, k] = a[k] + s * first[k] + c * second[k]
+        first = cross(row(rotation, i), w)  # a row times the matrix of the vector
+        store(along(along(row(rotation, i), s, first), c, cross(first, w)), out[i])
 
 
 @inner_kernel
@@ -97,8 +103,7 @@ def bring_within_reach(reach, rotation):
     tilt, about = tilt_of(reach, row(rotation, 2))
     turn = min(max(tilt, -reach.tilt_max_rad), reach.tilt_max_rad) - tilt
     if turn != 0.0:
-        x, y, z = scaled(turn, unit(about)) if norm(about) > 0.0 else (0.0, turn, 0.0)
-        turned_by(rotation, x, y, z, rotation)
+        turned_by(rotation, scaled(turn, unit(about)) if norm(about) > 0.0 else (0.0, turn, 0.0), rotation)
 
 
 @heap_kernel
@@ -117,7 +122,7 @@ def move(reach, state, step, unit_m, position, rotation):
     """Fill the position and the rotation that a step, (6,), leads to from a state, (12,)."""
     for i in range(3):
         position[i] = state[i] + unit_m * step[i]
-    turned_by(state[3:].reshape(3, 3), step[3], step[4], step[5], rotation)
+    turned_by(state[3:].reshape(3, 3), (step[3], step[4], step[5]), rotation)
     bring_within_reach(reach, rotation)
 
 

@@ -26,7 +26,8 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
     store,
     unit,
 )
-from nullpose.solver.kernels.search.worst_case_links import Sets, channel_slopes, has_dipole, strongest_link
+from nullpose.solver.kernels.search.set_links import Sets, channel_slopes, has_dipole
+from nullpose.solver.kernels.search.worst_case_links import strongest_link
 
 _LOOSE = 1e-3  # tolerance of an ellipsoid's strongest link in the search, which asks for what is attained
 _STEPS = 200
