@@ -236,8 +236,7 @@ def _proof_lines(comparison: ResultTable) -> list[str]:
     solved = [row for row in comparison.rows if row.status is not Status.POSE_GIVEN]
     statuses = dict.fromkeys(row.status for row in solved)
     return [
-        "Bounds are rounded up.",
-        *(f"{_STATUS[status]}: {status.message.removeprefix('certified ')}" for status in statuses),
+        *(f"{_STATUS[status]}: {status.message.removeprefix('certified ')}." for status in statuses),
         *grouped((row.label, row.reason) for row in solved),
-        *rigour_lines((row.label, row.objective.rigour) for row in solved),
+        *(f"Bounds, rounded up: {line}" for line in rigour_lines((row.label, row.rigour) for row in solved)),
     ]
