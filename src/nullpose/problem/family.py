@@ -59,10 +59,8 @@ class Family:
     def digest(self) -> str:
         """SHA-256 of every number in the family: two families with the same digest are the same problem."""
         sha = hashlib.sha256()
-        for name, value in sorted(self.fields.items()):
-            if value is None:
-                continue
-            array = np.ascontiguousarray(value)
+        for name in sorted(name for name, value in self.fields.items() if value is not None):
+            array = np.ascontiguousarray(getattr(self, name))
             sha.update(f"{name}:{array.dtype.str}:{array.shape};".encode())
             sha.update(array.tobytes())
         return sha.hexdigest()

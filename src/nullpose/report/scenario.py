@@ -67,8 +67,9 @@ def _on_earth(scenario: Scenario, origin: Origin) -> list[PlainTable]:
         *[("geofence", airspace.geofence_outline_m, airspace.altitude_m)] * (airspace.geofence_m is not None),
         *((zone.name, outline_m(zone), zone.altitude_m) for zone in airspace.no_fly),
     ]
-    rows: list[PlainTable]
-    rows = [{"name": point.name} | origin.place(point.position_m) for point in scenario.points]
+    rows: list[PlainTable] = [
+        {"name": point.name} | origin.place(point.position_m) for point in scenario.points
+    ]
     for name, outline, altitude_m in areas:
         corners = outline if len(outline) else [(0.0, 0.0)]  # of an airspace without sides
         places = [origin.place([*corner, end]) for corner in corners for end in altitude_m or (0.0,)]

@@ -115,10 +115,9 @@ def _channel_faults(
     """
     receiver: Receiver | None = scenario.receiver
     keep_out_m = getattr(scenario.airspace, "keep_out_m", None)
-    for place, table in tables.items():
-        if table.channel is None or table.channel.model != "power-law":
-            continue
-        d0_m = table.channel.gain_distance_m
+    channels = {place: table.channel for place, table in tables.items() if table.channel is not None}
+    for place in [place for place, channel in channels.items() if channel.model == "power-law"]:
+        d0_m = channels[place].gain_distance_m
         key = (*place, "channel", "reference_distance_m")
         if keep_out_m is not None and d0_m > keep_out_m:
             yield (
