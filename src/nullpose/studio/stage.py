@@ -98,12 +98,12 @@ class Stage:
 
 
 def _narrowed(shapes: Shapes) -> Shapes:
-    """Leave out the contours' labels, and make all others smaller."""
+    """Leave out the labels of contours and of the null, and make all others smaller."""
     small = {"font_screen_scale": 0.75}
     return {
         name: shape._replace(values={**shape.values, **small}) if shape.kind == "label" else shape
         for name, shape in shapes.items()
-        if not name.startswith("/map/level")
+        if not name.startswith(("/map/level", "/drone-a/angle/"))
     }
 
 
