@@ -35,7 +35,7 @@ RISES, HOLDS, DRAGS = 28, 6, 34  # frames of 80 ms
 LEAST_DB, MOST_DB = -20.0, 20.0
 TURN_RAD = np.radians(10.0)  # of the camera, forth and back
 QUALITY = 62
-NEARER, BELOW = 0.9, -0.02  # of the camera's distance; of the scene's size, for the captions
+NEARER, BELOW = 0.88, 0.06  # of the camera's distance; of the scene's size, for the captions
 MOST_BYTES = 4_000_000
 CAPTIONS = (
     "The jammer M grows. The null, orange, is still off it, and the SINR falls.",
