@@ -11,7 +11,9 @@ from tempfile import TemporaryDirectory
 from claims.page import check_claims, claims_page
 
 import nullpose
+from nullpose.antenna.files import read_pattern
 from nullpose.paper.reproduce import reproduce
+from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.poses import draw_result
 from nullpose.solver import solve
 
@@ -22,16 +24,18 @@ from twins import darken, write  # noqa: E402
 
 IMAGES = DOCS / "images"
 EXAMPLES = DOCS.parent / "examples"
+PATTERN = DOCS.parent / "tests" / "antenna" / "data" / "hex35_above_10_half_off20mm_5deg.out.gz"
 
 
 def draw_examples() -> None:
-    """Draw the poses of the examples that pages show, as ``nullpose solve --figure`` does."""
+    """Draw the poses and the pattern that pages show, as ``--figure`` does."""
     plain = ("eavesdropper", "geodetic", "no-fly")
     results = {name: nullpose.solve(nullpose.load(EXAMPLES / f"{name}.toml")) for name in plain}
     results["robust"] = solve(nullpose.load(EXAMPLES / "robust.toml"), robust=True)
     results["array"] = solve(nullpose.load(EXAMPLES / "array.toml"))
     for name, result in results.items():
         write(draw_result(result), name)
+    write(draw_pattern(read_pattern(PATTERN, estimate=True)), "pattern-file")
 
 
 def main() -> None:

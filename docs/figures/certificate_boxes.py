@@ -96,7 +96,7 @@ def draw_floor(axes: Axes, solution: nullpose.Result, size: float) -> set[int]:
     axes.plot(x, y, "o", color=POSE, markeredgecolor="white", markeredgewidth=0.6, markersize=size, zorder=5)
     x, y, _ = SCENARIO.jammers[0].position_m
     axes.plot(
-        x, y, MARKS["jammer"][1], color=JAMMER, markersize=0.6 * size, markeredgecolor="white", zorder=6
+        x, y, MARKS["jammer"][1], color=JAMMER, markersize=1.8 * size, markeredgecolor="white", zorder=4
     )
     axes.set_aspect("equal")
     axes.grid(visible=False)
@@ -110,7 +110,7 @@ def draw_whole(axes: Axes, solution: nullpose.Result) -> None:
         axes: where to draw.
         solution: with a proof of one tree.
     """
-    draw_floor(axes, solution, 8.0)
+    draw_floor(axes, solution, 5.5)
     for node in SCENARIO.nodes:
         x, y, _ = node.position_m
         axes.plot(x, y, MARKS["node"][1], color=NODE, markersize=5)
@@ -129,7 +129,7 @@ def draw_near(axes: Axes, solution: nullpose.Result, exponent: int) -> set[int]:
         solution: with a proof of one tree.
         exponent: the gap, as a power of ten.
     """
-    used = draw_floor(axes, solution, 7.0)
+    used = draw_floor(axes, solution, 6.0)
     x, y, _ = solution.pose.position_m
     axes.set_xlim(x - WINDOW_M, x + WINDOW_M)
     axes.set_ylim(y - WINDOW_M, y + WINDOW_M)

@@ -21,11 +21,11 @@ from nullpose.antenna.table import PatternTable
 from nullpose.physics import Pose
 from nullpose.physics.array import steering_vectors
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import GREY, INK, Look, house_style
+from nullpose.report.figures.style import GREY, INK, NODE, Look, house_style
 
 _DOWN, _RINGS, _AROUND = 61, 91, 241  # steps of a dipole's and of a beam's: lobes of many elements are narrow
 _RANGE_DB, _TOP_STEP_DB, _RING_DB = 40.0, 5.0, 10.0
-_LINE, _COLOURS = "#0a3fd6", colormaps["viridis"]
+_COLOURS = colormaps["viridis"]
 _SPOKES_DEG = np.arange(0, 360, 45)
 _LARGEST = 91  # rows and columns of the surface; finer ones look the same
 
@@ -131,7 +131,7 @@ def _draw_cut(
     """Draw a cut, 0 degrees up: azimuths grow to the left, as seen from above, polar angles to both sides."""
     axes.set(theta_zero_location="N", theta_direction=turn)
     closed = np.append(np.radians(at_deg), np.radians(at_deg[0])), np.append(values_dbi, values_dbi[0])
-    axes.plot(*closed, color=_LINE, linewidth=1.6)
+    axes.plot(*closed, color=NODE, linewidth=1.6)
     axes.set_ylim(top_dbi - _RANGE_DB, top_dbi)
     angles_deg = _SPOKES_DEG if turn > 0 else np.minimum(_SPOKES_DEG, 360 - _SPOKES_DEG)
     axes.set_thetagrids(_SPOKES_DEG, [f"{degrees}°" for degrees in angles_deg])

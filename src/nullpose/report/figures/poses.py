@@ -116,7 +116,7 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
     figure.legend(handles, marks, alignment="left", borderaxespad=0.1, handlelength=1.7, **look)
 
 
-_LETTERS = 120  # in a line of a title
+_LETTERS = 130  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
 _SURFACE = "radiation pattern"
 
