@@ -96,12 +96,12 @@ class State:
         return replace(self, events=events)
 
     def latest(self, kind: type[_E], case: Case | None = None) -> _E | None:
-        """Return what was last found of a kind, for whatever version, or None."""
+        """Look up the latest event of a kind, of whatever version; None without one."""
         event = self.events.get((kind, case))
         return event if isinstance(event, kind) else None
 
     def present(self, kind: type[_E], case: Case | None = None) -> _E | None:
-        """Return what was found of a kind for the present version of the scene, or None."""
+        """Look up the event of a kind for the present version of the scene; None without one."""
         event = self.latest(kind, case)
         return event if event is not None and event.version == self.version else None
 
