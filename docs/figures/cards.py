@@ -40,7 +40,7 @@ def airframes(figure: Figure) -> None:
     for name, words, at in (
         ("omnidirectional", "any attitude", (2e1, 1.28)),
         ("level-horizontal", "level, flat", (5e1, 0.8)),
-        ("level-vertical", "level, upright", (1.2e-3, 0.66)),
+        ("level-vertical", "level, upright", (1.2e-3, 0.36)),
     ):
         axes.plot(table["jamming_ratio"], table[name], color=VEHICLES[name].colour, linewidth=1.8)
         axes.text(*at, words, color=VEHICLES[name].colour, fontsize=6.5, fontweight="bold")

@@ -104,15 +104,16 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
     for axes in figure.axes:  # the plan, if there is one, is the last
         drawn = [*zip(*axes.get_legend_handles_labels(), strict=True)]
         marks |= {name: {type(mark): mark for mark, label in drawn if label == name} for _, name in drawn}
+    rows = math.ceil((len(marks) + 1) * _LEGEND_COLUMN_INCH / figure.get_figwidth())
     look: Look = {"loc": "outside lower center", "title": stage.note.replace("\n", " ")}
-    look["ncols"] = min(len(marks) + 1, int(figure.get_figwidth() / _LEGEND_COLUMN_INCH))
     if stage.view.is_small:
         del marks["drone"]  # it has its name in the plan
         if len(stage.poses) == 1:
-            look = {"loc": "lower right", "title": stage.note}
+            rows, look = len(marks), {"loc": "lower right", "title": stage.note}
     else:
         marks[surface] = {Patch: Patch(color=SURFACE, alpha=0.8)}
     handles: Any = [tuple(each.values()) for each in marks.values()]
+    look["ncols"] = math.ceil(len(marks) / rows)
     figure.legend(handles, marks, alignment="left", borderaxespad=0.1, handlelength=1.7, **look)
 
 
@@ -239,5 +240,13 @@ def _draw_elements(
     up = np.array([0.0, 0.0, _UPRIGHT * extent_m])
     for place in places:
         draw_line(axes, place - up, place + up, color=DRONE, linewidth=1.4, zorder=7.2)
-    dots: Look = {"edgecolors": "white", "linewidths": 0.5, "label": "elements, not to scale"}
-    axes.scatter(*places.T, s=22, color=DRONE, depthshade=False, zorder=7.3, **dots)
+    axes.scatter(
+        *places.T,
+        s=22,
+        color=DRONE,
+        edgecolors="white",
+        linewidths=0.5,
+        depthshade=False,
+        zorder=7.3,
+        label="elements, not to scale",
+    )
