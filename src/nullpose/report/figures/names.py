@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
-from matplotlib.collections import PathCollection
-from matplotlib.lines import Line2D
+from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
 from mpl_toolkits.mplot3d import Axes3D, proj3d
+from numpy.typing import ArrayLike
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import INK, Look
@@ -118,19 +118,21 @@ def _in_the_way(
     axes: Axes | Axes3D, names: Sequence[Text], point_px: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """List marks and points on lines, (n, 2), and corners of letters, small zones and marks, (n, 2, 2)."""
-    groups = [each.get_offsets() for each in axes.collections if isinstance(each, PathCollection)]
-    marks = axes.transData.transform(np.vstack(groups))
-    lines = np.vstack([axes.transData.transform(_along(line)) for line in axes.lines])
+    to_px = axes.transData.transform
+    dots = [each.get_offsets() for each in axes.collections if isinstance(each, PathCollection)]
+    wires = [each.get_segments() for each in axes.collections if isinstance(each, LineCollection)]
+    paths = chain((line.get_xydata() for line in axes.lines), *wires)
     letters = [text for text in axes.findobj(Text) if text.get_text() and text not in names]
     zones = [zone.get_window_extent() for zone in axes.patches]
     boxes = [text.get_window_extent() for text in (*names, *letters)]
     boxes += [box for box in zones if max(box.size) < _TINY_PT * point_px]
-    rims = marks[:, None] + point_px * _MARK_PT * np.array([[-1.0], [1.0]])
-    return marks, lines, np.concatenate([[(box.min, box.max) for box in boxes], rims])
+    marks, rim = to_px(np.vstack(dots)), point_px * _MARK_PT
+    corners = [*((box.min, box.max) for box in boxes), *((mark - rim, mark + rim) for mark in marks)]
+    return marks, to_px(np.vstack([*map(_along, paths)])), np.array(corners)
 
 
-def _along(line: Line2D) -> FloatArray:
-    """List points along a line as it is seen, (n, 2)."""
-    ends = np.asarray(line.get_xydata())
+def _along(path: ArrayLike) -> FloatArray:
+    """List points along a path, (n, 2)."""
+    ends = np.asarray(path)
     steps = np.linspace(0.0, len(ends) - 1.0, _SAMPLES)
     return np.stack([np.interp(steps, np.arange(len(ends)), each) for each in ends.T], axis=-1)

@@ -31,6 +31,7 @@ _LEVELS, _FREE = 8, 0.03  # of a map's contours; kept free around their numbers,
 _FAR_M = 1e7  # of an airspace without an end
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # for labels and the colour bar
 _TALLEST_INCH = 8.0
+_SLIM = 0.75  # least width of a plan over its height
 
 
 def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = None) -> None:
@@ -89,8 +90,8 @@ def _outline_of_set_m(point: Jammer | Eavesdropper) -> FloatArray:
 
 
 def _filled(axes: Axes, box_m: FloatArray) -> FloatArray:
-    """Widen a box, (2, 2), to the shape of the axes."""
-    shape = np.asarray(axes.bbox.size)
+    """Widen a box, (2, 2), to the shape of the axes, but not too slim."""
+    shape = np.array([max(axes.bbox.width, _SLIM * axes.bbox.height), axes.bbox.height])
     half = 0.5 * shape * np.max(np.ptp(box_m, axis=0) / shape)
     return np.stack([box_m.mean(axis=0) - half, box_m.mean(axis=0) + half])
 

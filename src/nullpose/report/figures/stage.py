@@ -90,8 +90,14 @@ class Stage:
         if len(numbers) > _MOST_NUMBERS or len("".join(numbers)) > _MOST_LETTERS:
             note = f"{capitalised(quantity.smallest)}: {numbers[min(worst)]},\nat nodes in bold"
             numbers = {}
-        poses = (result.pose,)
-        return cls(scenario=result.scenario, poses=poses, view=view, numbers=numbers, worst=worst, note=note)
+        return cls(
+            scenario=result.scenario,
+            poses=(result.pose,),
+            view=view,
+            numbers=numbers,
+            worst=worst,
+            note=note,
+        )
 
     @property
     def points(self) -> list[tuple[str, Node | Jammer | Eavesdropper]]:
@@ -106,8 +112,7 @@ class Stage:
     @property
     def places_m(self) -> FloatArray:
         """All points and positions, (n, 3), metres."""
-        points_m = [point.position_m for _, point in self.points]
-        return np.array([*points_m, *(pose.position_m for pose in self.poses)])
+        return np.vstack([self.scenario.point_positions_m, *(pose.position_m for pose in self.poses)])
 
     @property
     def extent_m(self) -> float:

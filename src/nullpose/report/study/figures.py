@@ -87,10 +87,9 @@ def _range(summary: Summary, points: Sequence[int]) -> tuple[float, float]:
     if not len(finite):
         return -1.0, 1.0
     low, high = float(np.min(finite)), float(np.max(finite))
-    medians = summary.frame.loc[summary.frame["point"].isin(points), "median"]
-    lowest = medians[np.isfinite(medians)].min()
     if not summary.quantity.is_rate:
-        low = float(np.fmax(low, lowest - _DEEPEST))
+        medians = summary.frame.loc[summary.frame["point"].isin(points), "median"]
+        low = float(np.fmax(low, medians[np.isfinite(medians)].min() - _DEEPEST))
     margin = 0.03 * (high - low) or 0.5
     return low - margin, high + margin
 
