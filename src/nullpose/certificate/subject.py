@@ -97,13 +97,17 @@ def _left_out(certificate: Certificate) -> str:
 
 
 def _places(certificate: Certificate) -> str:
+    """Name all that bounds the positions: ranges, geofence, no-fly zones and points."""
     airspace = certificate.scenario.airspace
-    words = ["inside the geofence"] if airspace.geofence_m is not None else []
-    zones = len(airspace.no_fly)
-    if zones:
-        words.append("outside the no-fly zone" if zones == 1 else f"outside the {zones} no-fly zones")
-    margin = f" with a margin of {airspace.margin_m!r} m" if airspace.margin_m else ""
-    return f" {' and '.join(words)}{margin}" if words else ""
+    zones = f"{len(airspace.no_fly)} no-fly zones" if len(airspace.no_fly) > 1 else "no-fly zone"
+    areas = {"inside the geofence": airspace.geofence_m is not None, f"outside the {zones}": airspace.no_fly}
+    inside = " and ".join(words for words, holds in areas.items() if holds)
+    ranges = {"with x": airspace.x_m, "with y": airspace.y_m, "at an altitude": airspace.altitude_m}
+    words = [f"{name} from {ends[0]!r} to {ends[1]!r} m" for name, ends in ranges.items() if ends]
+    words += [f"{inside} with a margin of {airspace.margin_m!r} m" if airspace.margin_m else inside] * bool(
+        inside
+    )
+    return f" {', '.join(words)}, at least {airspace.keep_out_m!r} m from every point on the ground,"
 
 
 def claim_numbers(certificate: Certificate) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ import textwrap
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
@@ -22,8 +23,8 @@ from nullpose.study.case import OMNIDIRECTIONAL
 _ROW_INCH, _SENTENCE_INCH, _PRINTED = 0.33, 0.3, 0.66  # on a screen; height in print over that
 _NAME_LETTERS = 60  # in a line of a scene's name
 _GAP = 0.6  # between dipoles and arrays, in rows
-_DEEPEST_DB = 25.0  # dots farther below the best are at the edge, as arrows
-_FREE, _BEFORE = 0.4, 0.08  # beside the dots, for their numbers, and before them, of the width drawn
+_WIDEST_DB = 25.0  # from the best dipole; dots farther off are at the edge, as arrows
+_BESIDE = 0.08  # of the width drawn, free at both ends
 
 
 def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure:
@@ -35,7 +36,7 @@ def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure
         figure = Figure(figsize=(inches((7.0, high), width, 0.0)[0], high), layout="constrained")
         axes = figure.add_subplot()
         draw_dots(axes, comparison)
-        figure.legend(loc="outside upper center", ncols=2, handlelength=1.2)
+        figure.legend(loc="outside upper center", ncols=3, handlelength=1.2, columnspacing=1.2)
         if width is None:
             name = textwrap.fill(comparison.rows[0].scenario.name, _NAME_LETTERS)
             axes.set_title(name, loc="left", fontweight="bold", parse_math=False)
@@ -46,18 +47,21 @@ def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure
 def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     """Draw a dot for each row, a tick at its bound, and what it guarantees under errors.
 
-    Beside vehicles their difference from the omnidirectional one is written.
+    At the right stand the values, and with vehicles their difference from the omnidirectional one's.
     """
     found, quantity = comparison.rows, comparison.rows[0].objective.quantity
-    places = np.arange(len(found)) + _GAP * np.array([row.case.array is not None for row in found])
+    is_array = np.array([row.case.array is not None for row in found])
+    places = np.arange(len(found)) + _GAP * is_array
     values, bounds, nominal, robust, _ = numbers_of(comparison)
-    low = _frame(axes, quantity, places, np.array([values, bounds, nominal, robust]))
+    low, high = _frame(axes, quantity, places, np.array([values, bounds, nominal, robust]), is_array)
+    shown = np.clip(np.nan_to_num(values, nan=low), low, high)
     axes.hlines(places, *axes.get_xlim(), color="#cccccc", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.0)
-    axes.hlines(places, np.fmax(values, low), bounds, color=INK, linewidth=1.0, zorder=2.0)
+    axes.hlines(places, shown, np.fmin(bounds, high), color=INK, linewidth=1.0, zorder=2.0)
     dots: Look = {"linestyle": "", "clip_on": False, "zorder": 3.0}
     axes.plot([], [], "o", color=GREY, label="value found")
-    for place, row, value in zip(places, found, values, strict=True):
-        axes.plot(max(value, low), place, "o" if value >= low else "<", color=_colour(row), **dots)
+    for place, row, value, at in zip(places, found, values, shown, strict=True):
+        mark = ">" if value > high else "o" if value >= low else "<"
+        axes.plot(at, place, mark, color=_colour(row), **dots)
     marks: dict[str, tuple[FloatArray, Look]] = {
         "proved upper bound": (bounds, {"marker": "|", "color": INK, "markersize": 13.0}),
         "guaranteed, robust pose": (robust, {"marker": "d", "color": INK, "markersize": 5.0}),
@@ -68,34 +72,36 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     }
     for label, (numbers, look) in marks.items():
         if np.any(np.isfinite(numbers)):
-            axes.plot(np.where(numbers >= low, numbers, math.nan), places, label=label, **look | dots)
+            is_seen = (numbers >= low) & (numbers <= high)
+            axes.plot(np.where(is_seen, numbers, math.nan), places, label=label, **look | dots)
+    if np.any(shown != np.nan_to_num(values, nan=low)):
+        axes.plot([], [], ">", color=GREY, label="beyond the axis")
     whole = dict(zip(comparison.names, values.tolist(), strict=True)).get(OMNIDIRECTIONAL, math.nan)
     axes.axvline(whole, color=VEHICLES[OMNIDIRECTIONAL].colour, linewidth=0.9, zorder=1.5)
-    ends = np.fmax(np.fmax(np.nan_to_num(values, nan=low), low), bounds)
-    beside: Look = {
-        "xytext": (7, 0),
-        "textcoords": "offset points",
-        "va": "center",
-        "fontsize": "small",
-        "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-    }
-    for place, end, value in zip(places, ends, values.tolist(), strict=True):
-        axes.annotate(_difference_words(value, whole, quantity), (end, place), zorder=4.0, **beside)
     axes.set_yticks(places, [row.label for row in found])
+    beside = axes.secondary_yaxis("right")
+    beside.set_yticks(places, [_difference_words(value, whole, quantity) for value in values.tolist()])
+    beside.tick_params(axis="y", length=0)
+    beside.spines["right"].set_visible(False)
 
 
-def _frame(axes: Axes, quantity: Quantity, places: FloatArray, numbers: FloatArray) -> float:
-    """Set limits and names of the axes, with space for all numbers; return the lowest value in view."""
+def _frame(
+    axes: Axes, quantity: Quantity, places: FloatArray, numbers: FloatArray, is_array: NDArray[np.bool_]
+) -> tuple[float, float]:
+    """Set limits and names of the axes; return the lowest and the highest value in view."""
     finite: list[float] = numbers[np.isfinite(numbers)].tolist()
     low, high, least = min(0.0, *finite), max(1e-3, *finite), 1e-3
     if not quantity.is_rate:  # decibels have no natural zero
-        low, high, least = max(min(finite), max(finite) - _DEEPEST_DB), max(finite), 0.5
-    span = max(high - low, least)
+        dipoles = numbers[:, ~is_array] if np.any(np.isfinite(numbers[:, ~is_array])) else numbers
+        best, least = float(np.nanmax(dipoles)), 0.5
+        low = max(min(finite), best - _WIDEST_DB)
+        high = max(finite) if max(finite) - low <= _WIDEST_DB else best
+    beside = _BESIDE * max(high - low, least)
     axes.tick_params(axis="y", length=0)
-    axes.set(xlim=(low - _BEFORE * span, high + _FREE * span), ylim=(places[-1] + 0.6, -0.6))
+    axes.set(xlim=(low - beside, high + beside), ylim=(places[-1] + 0.6, -0.6))
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})")
-    return low
+    return low, high
 
 
 def _colour(row: ResultRow) -> str:
