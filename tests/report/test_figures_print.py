@@ -98,6 +98,33 @@ def test_a_name_stands_nearest_its_own_point(name: str) -> None:
         assert away[0] <= min(away) + 6.0 * figure.dpi / 72.0, text.get_text()
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_key_has_every_name_in_a_crowded_column(seed: int) -> None:
+    """Each node with its number, each jammer and zone, and the sign of each in the plan."""
+    places_m = (
+        np.random.default_rng(seed).permutation(np.mgrid[0:400:100, 0:400:100].reshape(2, -1).T).tolist()
+    )
+    nodes = [{"name": f"pumping station {i}", "position_m": [*at, 0.0]} for i, at in enumerate(places_m[:10])]
+    jammers = [{"name": f"van {i}", "position_m": [*at, 0.0]} for i, at in enumerate(places_m[10:12])]
+    zone = {"name": "mast", "centre_m": places_m[12], "radius_m": 20.0}
+    points = {"nodes": nodes, "jammers": jammers}
+    scene = {kind: [each | {"power_w": 1.0} for each in rows] for kind, rows in points.items()}
+    scene |= {"airspace": {"altitude_m": [30.0, 90.0], "no_fly": [zone]}}
+    result = solve(
+        Scenario.from_dict(scene | {"receiver": {"noise_w": 1e-9, "reference_gain_db": 0.0}}), certify=False
+    )
+    figure = draw_pose(result, "column")
+    assert figure.get_figheight() * 25.4 <= 75.01
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    for sign, link in enumerate(result.links, start=1):
+        number = f"{link.sinr_db:.2f}".replace("-", "\N{MINUS SIGN}")
+        assert f"{sign}  {link.node}  {number}" in words
+    assert {"A  van 0", "B  van 1", "a  mast"} <= set(words)
+    plan = figure.axes[-1]
+    signs = {text.get_text() for text in plan.texts if text.get_visible()}
+    assert {"A", "B", *map(str, range(1, 11))} <= signs
+
+
 @given(seed=st.integers(0, 10_000), nodes=st.integers(1, 14), zones=st.integers(0, 6))
 @settings(max_examples=12, deadline=None)
 def test_names_keep_apart_in_crowds(seed: int, nodes: int, zones: int) -> None:

@@ -36,7 +36,8 @@ def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure
         figure = Figure(figsize=(inches((7.0, high), width, 0.0)[0], high), layout="constrained")
         axes = figure.add_subplot()
         draw_dots(axes, comparison)
-        figure.legend(loc="outside upper center", ncols=3, handlelength=1.2, columnspacing=1.2)
+        count = len(axes.get_legend_handles_labels()[0])
+        figure.legend(loc="outside upper center", ncols=3 if count == 3 else 2, handlelength=1.2)
         if width is None:
             name = textwrap.fill(comparison.rows[0].scenario.name, _NAME_LETTERS)
             axes.set_title(name, loc="left", fontweight="bold", parse_math=False)
@@ -60,7 +61,8 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     dots: Look = {"linestyle": "", "clip_on": False, "zorder": 3.0}
     axes.plot([], [], "o", color=GREY, label="value found")
     for place, row, value, at in zip(places, found, values, shown, strict=True):
-        mark = ">" if value > high else "o" if value >= low else "<"
+        left, right = axes.get_xlim()
+        mark, at = (">", right) if value > high else ("o", at) if value >= low else ("<", left)
         axes.plot(at, place, mark, color=_colour(row), **dots)
     marks: dict[str, tuple[FloatArray, Look]] = {
         "proved upper bound": (bounds, {"marker": "|", "color": INK, "markersize": 13.0}),
@@ -95,7 +97,7 @@ def _frame(
         dipoles = numbers[:, ~is_array] if np.any(np.isfinite(numbers[:, ~is_array])) else numbers
         best, least = float(np.nanmax(dipoles)), 0.5
         low = max(min(finite), best - _WIDEST_DB)
-        high = max(finite) if max(finite) - low <= _WIDEST_DB else best
+        high = max(finite) if max(finite) <= best + _WIDEST_DB else best
     beside = _BESIDE * max(high - low, least)
     axes.tick_params(axis="y", length=0)
     axes.set(xlim=(low - beside, high + beside), ylim=(places[-1] + 0.6, -0.6))

@@ -24,13 +24,13 @@ _PLACES = np.array(
     [(0.0, 0.0, 0.0, 0.0)]
     + [
         (x, y, gap_pt, cost)
-        for gap_pt, cost in ((4.5, 0.0), (9.0, 0.6), (16.0, 2.0))
+        for gap_pt, cost in ((4.5, 0.0), (3.5, 0.1), (9.0, 0.6), (16.0, 2.0))
         for x, y in product(_SIDES, reversed(_SIDES))
         if max(abs(x), abs(y)) == 1.0
     ]
 )
 """Where a name may stand: from its point, over its half size, with a gap in points, and what that costs."""
-_SAMPLES, _CROSSED, _BESIDE = 60, 0.05, 0.5  # points on a line; costs of one below a name, of a mark beside
+_SAMPLES, _CROSSED, _BESIDE = 60, 0.05, 0.15  # points on a line; costs of one below a name, of a mark beside
 _MARK_PT, _BESIDE_PT, _TINY_PT = 3.0, 9.0, 18.0  # half of a mark; how far one is beside a name; a small zone
 _TRIES, _POINT = 6, 10.0  # tries; what the name of a point is worth over that of an area
 

@@ -45,7 +45,8 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         pose: of the drone.
         box_m: low and high corner of what is shown, (2, 2), metres; the whole stage if left out.
     """
-    low, high = _filled(axes, np.stack(limits_m(stage))[:, :2]) if box_m is None else box_m
+    whole_m = np.stack(limits_m(stage))[:, :2]
+    low, high = box_m if box_m is not None else whole_m if stage.key else _filled(axes, whole_m)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="East x (m)", ylabel="North y (m)")
     axes.set_aspect("equal")
     if box_m is None:  # a map has its own colours
@@ -57,10 +58,12 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
             look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
             middle = corners_m.mean(axis=0)
             if np.all((low <= middle) & (middle <= high)):
-                write_name(axes, zone.name, middle, is_area=True)
+                write_name(axes, stage.key.get((True, zone.name), zone.name), middle, is_area=True)
         axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
     x, y = pose.position_m[:2]
-    write_name(axes, f"drone {pose.position_m[2]:.3g} m up", pose.position_m)
+    drone = f"drone {pose.position_m[2]:.3g} m up"
+    if not stage.key:
+        write_name(axes, drone, pose.position_m)
     rim: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 30}
     for kind, point in stage.points:
         place, (colour, marker) = np.asarray(point.position_m[:2]), MARKS[kind]
@@ -69,8 +72,9 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         axes.plot([x, place[0]], [y, place[1]], color=colour, zorder=1.5, label=kind, **line)
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.0, label=kind, **rim)
         if np.all((low <= place) & (place <= high)):
-            number, is_worst = stage.numbers.get(point.name, ""), point.name in stage.worst
-            write_name(axes, point.name, place, number=number, is_bold=is_worst)
+            name = stage.key.get((False, point.name), point.name)
+            number = "" if stage.key else stage.numbers.get(point.name, "")
+            write_name(axes, name, place, number=number, is_bold=point.name in stage.worst)
         if stage.uncertain and not isinstance(point, Node):
             words = f"where the {kind} may be"
             axes.plot(*_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=words)
@@ -78,7 +82,7 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
     ends = pose.position_m[:2] + np.stack([-reach, reach])
     is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None
     axes.plot(*ends.T, zorder=6.5, label="antenna axis (null)" if is_null else None, **NULL_LINE)
-    axes.scatter(x, y, color=DRONE, zorder=7, label="drone", **rim)
+    axes.scatter(x, y, color=DRONE, zorder=7, label=drone if stage.key else "drone", **rim)
 
 
 def _outline_of_set_m(point: Jammer | Eavesdropper) -> FloatArray:

@@ -24,8 +24,16 @@ from nullpose.report.figures.names import place_names
 from nullpose.report.figures.pattern import beam_surface_m, draw_surface, pattern_surface_m
 from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.scene import NULL_LINE, draw_line, draw_panel
-from nullpose.report.figures.stage import ALONE, AXIS, PAIR, PANELS, Stage
-from nullpose.report.figures.style import DRONE, INK, SURFACE, Look, house_style, inches, is_column
+from nullpose.report.figures.stage import ALONE, AXIS, PAIR, PANELS, Stage, limits_m
+from nullpose.report.figures.style import (
+    DRONE,
+    INK,
+    SURFACE,
+    Look,
+    house_style,
+    inches,
+    is_column,
+)
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
@@ -37,12 +45,13 @@ from nullpose.solver.robust import RobustDetails
 from nullpose.study import ResultRow
 
 _PLAN_INCH = 4.2  # width of a plan on a screen
-_PLAN_SHARES, _ROWS = (
-    (0.64, 1.75),
-    (1.2, 1.0),
-)  # of a plan over a panel beside it; in a column, over its legend
+_PLAN_SHARES, _KEYED_SHARE = (0.64, 1.65), 1.7  # of a plan over a panel beside it; in a column with a key
+_ROWS = 1.2, 1.0  # of a panel in a column, over the legend below it
 _PAGE_SHARE, _COLUMN_SHARES = 0.46, (0.84, 0.71)  # heights over widths; in a column without a plan, and with
 _LEGEND_COLUMN_INCH = 1.7
+_KEY_PT, _WIDEST = 6.5, 0.99  # letters of a key; its width over the figure's
+_PLAN_WIDTH, _AXIS_INCH = 0.5, 0.5  # of a plan with a key, over the figure's; name of the axis below it
+_LOWEST_INCH, _HIGHEST_INCH = 1.0, 75.0 / 25.4  # of such a plan, and of the figure if the key has space
 
 
 def draw_panels(
@@ -75,9 +84,9 @@ def draw_panels(
         layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0 if is_narrow else 0.98, 1.0))
         size = inches(usual, width, _COLUMN_SHARES[plan] if is_narrow else _PAGE_SHARE)
         figure = Figure(figsize=size, layout=layout)
-        shares = [_PLAN_SHARES[is_narrow]] * plan + [1.0] * count
+        shares = [_PLAN_SHARES[is_narrow] if not stage.key else _KEYED_SHARE] * plan + [1.0] * count
         grid = figure.add_gridspec(2, len(shares), width_ratios=shares, height_ratios=_ROWS)
-        rows = slice(1 if is_narrow and plan else 2)  # the legend has the corner below
+        rows = slice(1 if is_narrow and plan and not stage.key else 2)  # the legend has the corner below
         for index, (pose, title) in enumerate(zip(stage.poses, titles or [""] * count, strict=True)):
             axes = figure.add_subplot(
                 grid[rows, plan + index], projection="3d" if is_solid else None, facecolor="none"
@@ -104,17 +113,42 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
     for axes in figure.axes:  # the plan, if there is one, is the last
         drawn = [*zip(*axes.get_legend_handles_labels(), strict=True)]
         marks |= {name: {type(mark): mark for mark, label in drawn if label == name} for _, name in drawn}
-    rows = math.ceil((len(marks) + 1) * _LEGEND_COLUMN_INCH / figure.get_figwidth())
+    columns = figure.get_figwidth() / _LEGEND_COLUMN_INCH
     look: Look = {"loc": "outside lower center", "title": stage.note.replace("\n", " ")}
     if stage.view.is_small:
         del marks["drone"]  # it has its name in the plan
-        if len(stage.poses) == 1:
-            rows, look = len(marks), {"loc": "lower right", "title": stage.note}
+        if stage.key:
+            columns = 3.0
+            look |= {"labelspacing": 0.25, "columnspacing": 0.8, "fontsize": _KEY_PT}
+        elif len(stage.poses) == 1:
+            columns, look = 1.0, {"loc": "lower right", "title": stage.note}
     else:
         marks[surface] = {Patch: Patch(color=SURFACE, alpha=0.8)}
-    handles: Any = [tuple(each.values()) for each in marks.values()]
-    look["ncols"] = math.ceil(len(marks) / rows)
-    figure.legend(handles, marks, alignment="left", borderaxespad=0.1, handlelength=1.7, **look)
+    entries = [(name, "", name) for name in marks]
+    if stage.key:
+        kinds = {kind for kind, _, _ in stage.keyed}
+        entries = stage.keyed + [entry for entry in entries if entry[0] not in kinds]
+    handles: Any = [tuple(marks[kind].values()) for kind, _, _ in entries]
+    look |= {"alignment": "left", "borderaxespad": 0.1, "handlelength": 1.3 if stage.key else 1.7}
+    for count in range(max(1, math.floor(columns)), 0, -1):
+        legend = figure.legend(handles, [words for _, _, words in entries], ncols=count, **look)
+        for text, (_, name, _) in zip(legend.get_texts(), entries, strict=True):
+            text.set_fontweight("bold" if name in stage.worst else "normal")
+        width_px, height_px = legend.get_window_extent().size
+        if not stage.key or count == 1 or width_px <= _WIDEST * figure.bbox.width:
+            break
+        legend.remove()
+    if stage.key:
+        wide_inch = figure.get_figwidth()
+        figure.set_figheight(_keyed_height(stage, wide_inch, height_px / figure.dpi))
+
+
+def _keyed_height(stage: Stage, wide_inch: float, key_inch: float) -> float:
+    """Compute the height of a column's figure with a key below its plan."""
+    low, high = limits_m(stage)
+    below_inch, shape = key_inch + _AXIS_INCH, (high - low)[1] / (high - low)[0]
+    most_inch = max(_LOWEST_INCH, _HIGHEST_INCH - below_inch)
+    return below_inch + float(np.clip(shape * _PLAN_WIDTH * wide_inch, _LOWEST_INCH, most_inch))
 
 
 _LETTERS = 130  # in a line of a title
@@ -146,7 +180,7 @@ def draw_pose(result: Result, width: str | None = None) -> Figure:
     scenario, pose = result.scenario, result.pose
     words = filter(None, (_words(scenario, result.objective, pose), sensitivity_caption(result)))
     return draw_panels(
-        Stage.of(result),
+        Stage.of(result, is_narrow=is_column(width)),
         draw_dipole,
         surface=_SURFACE,
         head=f"{scenario.name}\n{textwrap.fill('; '.join(words), _LETTERS)}",
@@ -215,7 +249,7 @@ def draw_array(result: Result, width: str | None = None) -> Figure:
     yaw = f"yaw {math.degrees(yaw_rad):.1f}°".replace("-", MINUS)
     view = replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM)
     return draw_panels(
-        Stage.of(result, view),
+        Stage.of(result, view, is_narrow=is_column(width)),
         lambda axes, stage, pose: _draw_elements(axes, stage, pose, elements, weights),
         surface=f"gain of the beam for {result.binding_node}, horizontal cut as a line",
         head=f"{result.scenario.name}\n{result.label}: {quantity.smallest} {value}, {yaw}; "

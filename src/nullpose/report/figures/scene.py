@@ -42,7 +42,7 @@ def draw_panel(
 ) -> None:
     """Draw the scene, the vehicle at a pose, and the names of points in axes whose place is set."""
     axes.computed_zorder = False
-    _frame(axes, stage, pose)
+    _frame(axes, stage)
     position, floor_m = pose.position_m, axes.get_zlim()[0]
     draw_line(axes, [*position[:2], floor_m], position, color=GREY, linewidth=1.1, linestyle=":", zorder=6)
     for kind, point in stage.points:
@@ -65,7 +65,7 @@ def draw_panel(
     draw_vehicle(axes, stage, pose)
 
 
-def _frame(axes: Axes3D, stage: Stage, pose: Pose) -> None:
+def _frame(axes: Axes3D, stage: Stage) -> None:
     """Set limits, names and ticks of the axes, and the camera."""
     low, high = limits_m(stage)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
@@ -83,8 +83,6 @@ def _frame(axes: Axes3D, stage: Stage, pose: Pose) -> None:
         else:
             axis.set_label_text(name)
             axis.labelpad = pad
-    if stage.view.is_small:
-        axes.set_zticks(pose.position_m[2:], [f"{pose.position_m[2]:.3g} m"])
     axes.tick_params(pad=-2, labelsize="small")
     axes.view_init(elev=stage.view.elevation_deg, azim=stage.view.azimuth_deg)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from string import ascii_lowercase, ascii_uppercase
 
 import numpy as np
 
@@ -22,6 +23,8 @@ _MARGIN_OF_ZONES = 0.03
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
 _MOST_NUMBERS, _MOST_LETTERS = 4, 45  # nodes, and letters of all their names, with numbers beside them
+_ZONE = "no-fly zone"
+_SHORT, _LONG, _MOST_KEYS = 3, 8, 26  # letters of a name that is its own key, and of one that needs a key
 AXIS = 1.5  # half-length of the antenna axis over the radius of the pattern
 
 
@@ -69,6 +72,7 @@ class Stage:
         numbers: what each node gets, by its name.
         worst: nodes that get the least.
         note: how the nodes' names and numbers are to be read.
+        key: what stands in the plan for names, of points (False) and of areas (True); empty for the names.
     """
 
     scenario: Scenario
@@ -78,16 +82,28 @@ class Stage:
     numbers: Mapping[str, str] = field(default_factory=dict)
     worst: frozenset[str] = frozenset()
     note: str = ""
+    key: Mapping[tuple[bool, str], str] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, result: Result, view: View = ALONE) -> Stage:
-        """Set the stage of a result: with what each node gets, or of many with the names of the worst."""
-        quantity, worst = result.objective.quantity, binding_nodes(result)
+    def of(cls, result: Result, view: View = ALONE, *, is_narrow: bool = False) -> Stage:
+        """Set the stage of a result: with what each node gets, or of many with the names of the worst.
+
+        Args:
+            result: the result.
+            view: size, camera and lengths.
+            is_narrow: whether long names and those of many nodes are to stand in a key.
+        """
+        quantity, worst, key = result.objective.quantity, binding_nodes(result), {}
         numbers = {
             each.node: with_unit(quantity.in_unit(quantity.at(each)), quantity) for each in result.links
         }
         note = f"At nodes: {quantity.noun},\nthe smallest in bold"
-        if len(numbers) > _MOST_NUMBERS or len("".join(numbers)) > _MOST_LETTERS:
+        if is_narrow:
+            key = _key_of(result.scenario)
+        if key:
+            note = f"Nodes with their {quantity.noun} in {quantity.unit}, the smallest in bold"
+            numbers = {name: text.removesuffix(f" {quantity.unit}") for name, text in numbers.items()}
+        elif len(numbers) > _MOST_NUMBERS or len("".join(numbers)) > _MOST_LETTERS:
             note = f"{capitalised(quantity.smallest)}: {numbers[min(worst)]},\nat nodes in bold"
             numbers = {}
         return cls(
@@ -97,6 +113,7 @@ class Stage:
             numbers=numbers,
             worst=worst,
             note=note,
+            key=key,
         )
 
     @property
@@ -108,6 +125,18 @@ class Stage:
             *(("eavesdropper", point) for point in scene.eavesdroppers),
             *(("node", point) for point in scene.nodes),
         ]
+
+    @property
+    def keyed(self) -> list[tuple[str, str, str]]:
+        """List the key: kind, name, and the words with what stands in the plan and the number."""
+        nodes = [each for each in self.points if each[0] == "node"]
+        others = [each for each in self.points if each[0] != "node"]
+        zones = [(_ZONE, zone) for zone in self.scenario.airspace.no_fly]
+        words = []
+        for kind, each in (*nodes, *others, *zones):
+            parts = self.key[kind == _ZONE, each.name], each.name, self.numbers.get(each.name, "")
+            words.append((kind, each.name, "  ".join(filter(None, dict.fromkeys(parts)))))
+        return words
 
     @property
     def places_m(self) -> FloatArray:
@@ -127,6 +156,21 @@ class Stage:
         fence = [] if airspace.geofence_m is None else [(None, airspace.geofence_outline_m)]
         outlines = [*((zone, outline_m(zone)) for zone in airspace.no_fly), *fence]
         return [outline for outline in outlines if np.all(np.abs(outline[1] - middle_m) <= far_m)]
+
+
+def _key_of(scenario: Scenario) -> dict[tuple[bool, str], str]:
+    """Number the nodes and letter other points and zones; empty if names have space, or a key has none."""
+    nodes = [node.name for node in scenario.nodes]
+    others = [each.name for points in (scenario.jammers, scenario.eavesdroppers) for each in points]
+    zones = [zone.name for zone in scenario.airspace.no_fly]
+    longest = max(map(len, (*nodes, *others)))
+    if (len(nodes) <= _MOST_NUMBERS and longest <= _LONG) or len(nodes + others + zones) > _MOST_KEYS:
+        return {}
+    key = {(True, name): letter for name, letter in zip(zones, ascii_lowercase, strict=False)}
+    if longest <= _SHORT:
+        return key | {(False, name): name for name in nodes + others}
+    key |= {(False, name): letter for name, letter in zip(others, ascii_uppercase, strict=False)}
+    return key | {(False, name): f"{number}" for number, name in enumerate(nodes, start=1)}
 
 
 def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
