@@ -59,10 +59,9 @@ def scaled_inverse(field, a):
 
     ``H0 / a``, ``H0 / a^2 + H1 / a`` and ``2 H0 / a^3 + 2 H1 / a^2 + H2 / a``.
     """
-    inverse = 1.0 / a  # written out: this runs for every link of every box
-    length = field.most * inverse
-    slope = (length + field.slope) * inverse
-    return Reach(length, slope, (2.0 * slope + field.bend) * inverse)
+    inverse = 1.0 / a
+    square = inverse * inverse
+    return times_amplitude(field, Reach(inverse, square, 2.0 * square * inverse))
 
 
 @small_kernel

@@ -206,7 +206,7 @@ def upper(family, level, half, multipliers, space):
     coordinate.
     """
     total = weigh(family, level, multipliers, space)
-    slope, bend, at, parts, points = zeroed(6), zeroed(6, 6), scratch(6), space.parts, space.factor.shape[0]
+    slope, bend, parts, points = zeroed(6), zeroed(6, 6), space.parts, space.factor.shape[0]
     for j in range(points):
         c = space.factor[j]
         if c != 0.0:
@@ -217,7 +217,7 @@ def upper(family, level, half, multipliers, space):
     for i in range(6):
         h, mixed = half[i], 0.0
         if h == 0.0:
-            at[i] = space.score[i] = 0.0
+            space.at[i] = space.score[i] = 0.0
             continue
         for n in range(6):
             if n != i:
@@ -227,18 +227,18 @@ def upper(family, level, half, multipliers, space):
             x = -abs(slope[i]) / curve
         total += abs(slope[i]) * x + 0.5 * curve * x * x
         space.score[i] = abs(slope[i]) * h + (abs(bend[i, i]) + mixed) * h * h
-        at[i] = math.copysign(x, slope[i])
+        space.at[i] = math.copysign(x, slope[i])
     # by Danskin's theorem the slopes by l are those at the maximum
     for i in range(6):
         for n in range(i + 1, 6):
             share = 0.0
             if half[i] > 0.0 and half[n] > 0.0:
-                share = 0.5 * (at[i] ** 2 * half[n] / half[i] + at[n] ** 2 * half[i] / half[n])
+                share = 0.5 * (space.at[i] ** 2 * half[n] / half[i] + space.at[n] ** 2 * half[i] / half[n])
             bend[n, i] = math.copysign(share, bend[i, n])
     for j in range(points):
         part = 0.0
         for i in range(6):
-            part += space.slope[j, i] * at[i] + 0.5 * at[i] ** 2 * space.bend[j, i, i]
+            part += space.slope[j, i] * space.at[i] + 0.5 * space.at[i] ** 2 * space.bend[j, i, i]
             for n in range(i + 1, 6):
                 part += bend[n, i] * space.bend[j, i, n]
         parts[j] = part

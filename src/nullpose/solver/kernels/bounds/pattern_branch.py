@@ -41,6 +41,7 @@ class Space(NamedTuple):
     by_l: FloatArray
     best: FloatArray
     score: FloatArray
+    at: FloatArray
     factor: FloatArray
     parts: FloatArray
     one_sided: FloatArray
@@ -81,7 +82,7 @@ def space_of(family):
                 one_sided[family.numerator_point[k]] = 0.0
     return Space(
         np.empty((3, m)), np.empty(m), np.empty((m, 6)), np.empty((m, 6, 6)), np.empty((18, 3)),
-        np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(6), np.empty(m),
+        np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m),
         np.empty(m), one_sided, is_numerator, np.empty(m),
     )  # fmt: skip
 

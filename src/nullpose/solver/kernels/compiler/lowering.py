@@ -7,6 +7,7 @@ few instructions. All else is numba's.
 
 from __future__ import annotations
 
+import operator
 import sys
 from functools import reduce
 
@@ -32,6 +33,11 @@ class _Lower(Lower):
         # where references are counted, numba must see where each ends
         self._lasting = set() if self.context.enable_nrt else _assigned_once(self.func_ir.blocks)
         self._singly_assigned_vars -= self._lasting
+
+    def _find_singly_assigned_variable(self) -> None:
+        self._singly_assigned_vars, self._blk_local_varmap = set(), {}
+        if self.context.enable_nrt:
+            super()._find_singly_assigned_variable()
 
     def _alloca_var(self, name: str, kind) -> None:
         if name not in self._lasting:
@@ -62,6 +68,21 @@ class _Lower(Lower):
                 store_item(self.context, self.builder, kind, value, found[0])
                 return
         super().lower_inst(inst)
+
+    def lower_binop(self, resty, expr, op):
+        ends = expr.lhs, expr.rhs
+        kinds = [self.typeof(each.name) for each in ends]
+        if op in (operator.pow, operator.ipow) or not all(isinstance(kind, types.Number) for kind in kinds):
+            return super().lower_binop(resty, expr, op)  # which sees what a constant exponent is
+        context, builder, signature = self.context, self.builder, self.fndesc.calltypes[expr]
+        function_type = context.typing_context.resolve_value_type(op)
+        if signature.args not in function_type._impl_keys:  # not typed since numba made this record of it
+            return super().lower_binop(resty, expr, op)
+        function = context.get_function(function_type, signature)
+        values = [
+            context.cast(builder, self.loadvar(ends[i].name), kinds[i], signature.args[i]) for i in range(2)
+        ]
+        return context.cast(builder, function(builder, values), signature.return_type, resty)
 
     def lower_expr(self, resty, expr):
         if expr.op in ("getitem", "static_getitem"):

@@ -57,6 +57,18 @@ def _maker(plain, item, fill: bool):
     return make
 
 
-scratch = _maker(lambda *lengths: np.empty(lengths), types.float64, False)
-scratch_int = _maker(lambda *lengths: np.empty(lengths, np.int64), types.int64, False)
-zeroed = _maker(lambda *lengths: np.zeros(lengths), types.float64, True)
+def _plain(*lengths: int):
+    return np.empty(lengths)
+
+
+def _plain_int(*lengths: int):
+    return np.empty(lengths, np.int64)
+
+
+def _plain_zeros(*lengths: int):
+    return np.zeros(lengths)
+
+
+scratch = _maker(_plain, types.float64, False)
+scratch_int = _maker(_plain_int, types.int64, False)
+zeroed = _maker(_plain_zeros, types.float64, True)
