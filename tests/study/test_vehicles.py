@@ -94,7 +94,7 @@ def test_the_best_mount_leaves_nothing_to_tilt_for(name: str) -> None:
     for level in ("level", "tilt-10", "tilt-20", "tilt-30"):
         (row,) = found.of(f"{level}-best")
         assert verdict_on(found, row) is Verdict.SUFFICES
-        assert row.label == f"{level.replace('-', ' ')}, best ({row.case.airframe.mount_deg:.4g})"
+        assert row.label == f"{level.replace('-', ' ')}, best ({row.case.airframe.mount_deg:.4g}°)"
         assert row.pose.tilt_rad <= row.case.airframe.tilt_max_rad + 1e-9
         assert row.pose.mount_rad == row.case.airframe.mount_rad
     assert row.objective.value == pytest.approx(whole.objective.value, rel=1e-9)

@@ -107,7 +107,8 @@ def _places(certificate: Certificate) -> str:
     words += [f"{inside} with a margin of {airspace.margin_m!r} m" if airspace.margin_m else inside] * bool(
         inside
     )
-    return f" {', '.join(words)}, at least {airspace.keep_out_m!r} m from every point on the ground,"
+    words.append(f"at least {airspace.keep_out_m!r} m from every node, jammer and eavesdropper")
+    return f" {', '.join(words)},"
 
 
 def claim_numbers(certificate: Certificate) -> tuple[str, ...]:

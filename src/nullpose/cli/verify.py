@@ -89,5 +89,7 @@ def _proved_view(certificate: Certificate, leaves: int) -> View:
         head(certificate.scenario.name),
         Text("PROVED", style="bold green"),
         pairs("", rows),
-        capitalised(f"{claim_words(certificate)} above the bound."),
+        capitalised(
+            f"{claim_words(certificate)} above the bound. The stated pose gives every node the pose's value."
+        ),
     )

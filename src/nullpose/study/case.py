@@ -170,7 +170,7 @@ class Case(Section):
         if self.scheme is not None:
             return self.scheme.label
         level_or_tilt, _, dipole = self.name.rpartition("-")
-        mount = f"best ({self.airframe.mount_deg:.4g})" if dipole == "best" and self.airframe else dipole
+        mount = f"best ({self.airframe.mount_deg:.4g}°)" if dipole == "best" and self.airframe else dipole
         is_usual = dipole in (*_MOUNTS_DEG, "best")
         return f"{level_or_tilt.replace('-', ' ')}, {mount}" if is_usual else self.name
 

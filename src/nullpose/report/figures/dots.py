@@ -62,10 +62,12 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     axes.plot([], [], "o", color=GREY, label="value found")
     for place, row, value, at in zip(places, found, values, shown, strict=True):
         left, right = axes.get_xlim()
-        mark, at = (">", right) if value > high else ("o", at) if value >= low else ("<", left)
+        mark, at = (">", 0.5 * (high + right)) if value > high else ("o", at) if value >= low else ("<", left)
         axes.plot(at, place, mark, color=_colour(row), **dots)
+    whole = dict(zip(comparison.names, values.tolist(), strict=True)).get(OMNIDIRECTIONAL, math.nan)
+    bound = "upper bound" if math.isnan(whole) else "upper bound (near enough)"
     marks: dict[str, tuple[FloatArray, Look]] = {
-        "proved upper bound": (bounds, {"marker": "|", "color": INK, "markersize": 13.0}),
+        bound: (bounds, {"marker": "|", "color": INK, "markersize": 13.0}),
         "guaranteed, robust pose": (robust, {"marker": "d", "color": INK, "markersize": 5.0}),
         "guaranteed, pose shown": (
             nominal,
@@ -78,8 +80,9 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
             axes.plot(np.where(is_seen, numbers, math.nan), places, label=label, **look | dots)
     if np.any(shown != np.nan_to_num(values, nan=low)):
         axes.plot([], [], ">", color=GREY, label="beyond the axis")
-    whole = dict(zip(comparison.names, values.tolist(), strict=True)).get(OMNIDIRECTIONAL, math.nan)
-    axes.axvline(whole, color=VEHICLES[OMNIDIRECTIONAL].colour, linewidth=0.9, zorder=1.5)
+    if math.isfinite(whole):
+        look = {"color": VEHICLES[OMNIDIRECTIONAL].colour, "linewidth": 0.9, "zorder": 1.5}
+        axes.axvline(whole, label=f"{OMNIDIRECTIONAL} (difference)", **look)
     axes.set_yticks(places, [row.label for row in found])
     beside = axes.secondary_yaxis("right")
     beside.set_yticks(places, [_difference_words(value, whole, quantity) for value in values.tolist()])

@@ -6,6 +6,7 @@ import math
 import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ _PLAN_SHARES, _KEYED_SHARE = (0.64, 1.65), 1.7  # of a plan over a panel beside 
 _ROWS = 1.2, 1.0  # of a panel in a column, over the legend below it
 _PAGE_SHARE, _COLUMN_SHARES = 0.46, (0.84, 0.71)  # heights over widths; in a column without a plan, and with
 _LEGEND_COLUMN_INCH = 1.7
-_KEY_PT, _WIDEST = 6.5, 0.99  # letters of a key; its width over the figure's
+_KEY_PT, _WIDEST = (6.5, 6.0), 0.985  # letters of a key; its width over the figure's
 _PLAN_WIDTH, _AXIS_INCH = 0.5, 0.5  # of a plan with a key, over the figure's; name of the axis below it
 _LOWEST_INCH, _HIGHEST_INCH = 1.0, 75.0 / 25.4  # of such a plan, and of the figure if the key has space
 
@@ -119,10 +120,10 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
         del marks["drone"]  # it has its name in the plan
         if stage.key:
             columns = 3.0
-            look |= {"labelspacing": 0.25, "columnspacing": 0.8, "fontsize": _KEY_PT}
+            look |= {"labelspacing": 0.25, "columnspacing": 0.8}
         elif len(stage.poses) == 1:
             columns, look = 1.0, {"loc": "lower right", "title": stage.note}
-    else:
+    if stage.key or not stage.view.is_small:
         marks[surface] = {Patch: Patch(color=SURFACE, alpha=0.8)}
     entries = [(name, "", name) for name in marks]
     if stage.key:
@@ -130,12 +131,16 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
         entries = stage.keyed + [entry for entry in entries if entry[0] not in kinds]
     handles: Any = [tuple(marks[kind].values()) for kind, _, _ in entries]
     look |= {"alignment": "left", "borderaxespad": 0.1, "handlelength": 1.3 if stage.key else 1.7}
-    for count in range(max(1, math.floor(columns)), 0, -1):
-        legend = figure.legend(handles, [words for _, _, words in entries], ncols=count, **look)
+    for count, points in product(
+        range(max(1, math.floor(columns)), 0, -1), _KEY_PT if stage.key else (None,)
+    ):
+        legend = figure.legend(
+            handles, [words for _, _, words in entries], ncols=count, fontsize=points, **look
+        )
         for text, (_, name, _) in zip(legend.get_texts(), entries, strict=True):
             text.set_fontweight("bold" if name in stage.worst else "normal")
         width_px, height_px = legend.get_window_extent().size
-        if not stage.key or count == 1 or width_px <= _WIDEST * figure.bbox.width:
+        if not stage.key or width_px <= _WIDEST * figure.bbox.width or (count, points) == (1, _KEY_PT[-1]):
             break
         legend.remove()
     if stage.key:
