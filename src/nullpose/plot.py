@@ -161,7 +161,7 @@ def comparison(found: ResultTable | Sequence[Result], ax: Axes | None = None) ->
     Example:
         >>> import nullpose
         >>> axes = nullpose.plot.comparison(nullpose.compare(nullpose.load("examples/paper.toml")))
-        >>> [text.get_text() for text in axes.texts]  # dB
+        >>> [text.get_text() for text in axes.child_axes[0].get_yticklabels()]  # dB
         ['0.98', '0.81', '−0.70', '−2.16']
     """
     if not isinstance(found, ResultTable):

@@ -7,7 +7,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from nullpose import Scenario, UsageError, solve
+from nullpose import Scenario, UsageError, load, solve
 from nullpose.certificate.certificate import DEEPEST
 from nullpose.solver.certificate_from_proof import certificate_of
 
@@ -67,19 +67,10 @@ def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyP
 
 
 def test_leaves_too_thin_for_a_certificate_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Four nodes on a ring, one altitude, level: without axes split early, boxes become ever thinner."""
-    monkeypatch.setattr(PROOF, "_TRIES", ((0.0, 200_000, False),))
+    """A proof whose boxes are thinner than a certificate can hold is one in floating point."""
     assert PROOF.MOST_HALVINGS == DEEPEST
-    ring_m = [[35.0, 0.0, 0.0], [0.0, 35.0, 0.0], [-35.0, 0.0, 0.0], [0.0, -35.0, 0.0]]
-    scenario = Scenario.from_dict(
-        {
-            "airspace": {"altitude_m": [8.0, 8.0]},
-            "receiver": {"noise_w": 1e-6, "reference_gain_db": 0.0},
-            "airframe": {"tilt_max_deg": 0.0, "mount_deg": 90.0},
-            "nodes": [{"position_m": place, "power_w": 1.0} for place in ring_m],
-        }
-    )
-    result = solve(scenario, gap=0.1, threads=1)
+    monkeypatch.setattr(PROOF, "_THINNEST", 0.1)
+    result = solve(load("examples/paper.toml"), gap=1e-3, threads=1)
     assert (result.status, result.rigour) == ("certified", "floating-point")
     with pytest.raises(UsageError, match="halves boxes more than 50 times"):
         certificate_of(result)

@@ -70,7 +70,7 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         is_node = kind == "node"
         line: Look = {"linewidth": 0.8} if is_node else {"linewidth": 1.2, "linestyle": (0, (3, 1.5))}
         axes.plot([x, place[0]], [y, place[1]], color=colour, zorder=1.5, label=kind, **line)
-        axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.0, label=kind, **rim)
+        axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.8, label=kind, **rim)
         if np.all((low <= place) & (place <= high)):
             name = stage.key.get((False, point.name), point.name)
             number = "" if stage.key else stage.numbers.get(point.name, "")
