@@ -125,6 +125,19 @@ def test_a_key_has_every_name_in_a_crowded_column(seed: int) -> None:
     assert {"A", "B", *map(str, range(1, 11))} <= signs
 
 
+@pytest.mark.parametrize("name", ["array", "no-fly"])
+def test_a_key_leaves_out_what_is_not_drawn(name: str) -> None:
+    """An array has no dot for the drone, and a zone that reaches far away is in no figure."""
+    scene = load(EXAMPLES / f"{name}.toml").to_dict()
+    scene["nodes"] = [node | {"name": f"pumping station {node['name']}"} for node in scene["nodes"]]
+    far = {"name": "firing range", "polygon_m": [[900.0, 0.0], [9e3, 0.0], [9e3, 9e3]]}
+    scene["airspace"]["no_fly"] = [*scene["airspace"].get("no_fly", []), far]
+    figure = draw_result(solve(Scenario.from_dict(scene), certify=False), "column")
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert any("pumping station S1" in each for each in words)
+    assert not any("firing range" in each for each in words)
+
+
 @given(seed=st.integers(0, 10_000), nodes=st.integers(1, 14), zones=st.integers(0, 6))
 @settings(max_examples=12, deadline=None)
 def test_names_keep_apart_in_crowds(seed: int, nodes: int, zones: int) -> None:

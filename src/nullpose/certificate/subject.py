@@ -104,9 +104,8 @@ def _places(certificate: Certificate) -> str:
     inside = " and ".join(words for words, holds in areas.items() if holds)
     ranges = {"with x": airspace.x_m, "with y": airspace.y_m, "at an altitude": airspace.altitude_m}
     words = [f"{name} from {ends[0]!r} to {ends[1]!r} m" for name, ends in ranges.items() if ends]
-    words += [f"{inside} with a margin of {airspace.margin_m!r} m" if airspace.margin_m else inside] * bool(
-        inside
-    )
+    if inside:
+        words.append(f"{inside} with a margin of {airspace.margin_m!r} m" if airspace.margin_m else inside)
     words.append(f"at least {airspace.keep_out_m!r} m from every node, jammer and eavesdropper")
     return f" {', '.join(words)},"
 

@@ -45,17 +45,17 @@ def required(whole: Objective, share: float) -> float:
     return math.inf if whole.upper_bound is None else min(share, _ALL) * whole.upper_bound
 
 
-def judged(stated: Objective, whole: Objective, share: float) -> Verdict:
+def judged(vehicle: Objective, whole: Objective, share: float) -> Verdict:
     """Decide whether a vehicle reaches a share of what any pose can, so far as the bounds prove it.
 
     Args:
-        stated: value and bound of the vehicle.
+        vehicle: its value and bound.
         whole: value and bound of the omnidirectional vehicle.
         share: above 0, at most 1.
     """
-    if whole.value > 0.0 and stated.value >= required(whole, share):
+    if whole.value > 0.0 and vehicle.value >= required(whole, share):
         return Verdict.SUFFICES
-    if stated.upper_bound is not None and stated.upper_bound < share * whole.value:
+    if vehicle.upper_bound is not None and vehicle.upper_bound < share * whole.value:
         return Verdict.FALLS_SHORT
     return Verdict.NOT_PROVED
 

@@ -117,7 +117,7 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
     columns = figure.get_figwidth() / _LEGEND_COLUMN_INCH
     look: Look = {"loc": "outside lower center", "title": stage.note.replace("\n", " ")}
     if stage.view.is_small:
-        del marks["drone"]  # it has its name in the plan
+        marks.pop("drone", None)  # it has its name in the plan, or below it in the key
         if stage.key:
             columns = 3.0
             look |= {"labelspacing": 0.25, "columnspacing": 0.8}

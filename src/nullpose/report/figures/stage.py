@@ -131,7 +131,7 @@ class Stage:
         """List the key: kind, name, and the words with what stands in the plan and the number."""
         nodes = [each for each in self.points if each[0] == "node"]
         others = [each for each in self.points if each[0] != "node"]
-        zones = [(_ZONE, zone) for zone in self.scenario.airspace.no_fly]
+        zones = [(_ZONE, zone) for zone, _ in self.zones if zone is not None]
         words = []
         for kind, each in (*nodes, *others, *zones):
             parts = self.key[kind == _ZONE, each.name], each.name, self.numbers.get(each.name, "")
