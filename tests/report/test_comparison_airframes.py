@@ -144,7 +144,7 @@ def test_figure_has_a_dot_for_each_vehicle(robust: ResultTable) -> None:
     assert set(legend) == guaranteed | {
         "value found",
         "upper bound (near enough)",
-        "omnidirectional (difference)",
+        "omnidirectional",
     }
     figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in axes.texts]

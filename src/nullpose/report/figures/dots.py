@@ -82,7 +82,7 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
         axes.plot([], [], ">", color=GREY, label="beyond the axis")
     if math.isfinite(whole):
         look = {"color": VEHICLES[OMNIDIRECTIONAL].colour, "linewidth": 0.9, "zorder": 1.5}
-        axes.axvline(whole, label=f"{OMNIDIRECTIONAL} (difference)", **look)
+        axes.axvline(whole, label=OMNIDIRECTIONAL, **look)
     axes.set_yticks(places, [row.label for row in found])
     beside = axes.secondary_yaxis("right")
     beside.set_yticks(places, [_difference_words(value, whole, quantity) for value in values.tolist()])
