@@ -81,6 +81,5 @@ clean: ## take away .venv, out and docs/_build
 
 .venv/.with-%: .venv/.with-core
 	@echo "Installing the $* tools into .venv"
-	@$(BIN)/python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['optional-dependencies']['$*'], sep='\n')" > .venv/$*.txt
-	@$(PIP) -r .venv/$*.txt
+	@$(PIP) -e '.[$*]'
 	@touch $@

@@ -3,8 +3,13 @@
 import ast
 import re
 import subprocess
+import sys
 import tomllib
+from collections.abc import Iterable
+from importlib.metadata import packages_distributions
 from pathlib import Path
+
+import pytest
 
 from nullpose import __version__
 
@@ -114,6 +119,51 @@ def test_tests_mirror_the_source() -> None:
             if not any(subject == module or subject.startswith(f"{module}_") for module in modules):
                 offenders.append(str(test.relative_to(ROOT)))
     assert offenders == []
+
+
+def _imported(files: Iterable[Path]) -> set[str]:
+    """Return the packages that files import, but for those of Python and of the repository."""
+    nodes = [node for path in files for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    modules = {name.name for node in nodes if isinstance(node, ast.Import) for name in node.names}
+    modules |= {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+    folders = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["pytest"]["ini_options"][
+        "pythonpath"
+    ]
+    ours = {"nullpose", *(path.stem for folder in folders for path in (ROOT / folder).iterdir())}
+    return {module.split(".")[0] for module in modules} - set(sys.stdlib_module_names) - ours
+
+
+def _required(*extras: str) -> set[str]:
+    """Return the distributions that are named as required, by all or by extras and those that they name."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lines, found = list(project["dependencies"]), set()
+    lines += [f"nullpose[{extra}]" for extra in extras]
+    while lines:
+        name, nested, _ = re.match(r"([\w.-]+)(?:\[([\w,]+)\])?(.*)", lines.pop()).groups()
+        found.add(name.lower().replace("_", "-"))
+        for extra in (nested or "").split(",") if nested else ():
+            lines += project["optional-dependencies"][extra]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("files", "extras"),
+    [
+        ("src/**/*.py", ["all"]),
+        ("tests/**/test_*.py", ["test"]),
+        ("tests/studio/browser/*.py", ["studiotest"]),
+    ],
+)
+def test_imported_packages_are_required(files: str, extras: list[str]) -> None:
+    """What the source imports is named in an extra, and what tests import in that of their target."""
+    distributions = packages_distributions()
+    required = _required(*extras)
+    missing = {
+        name
+        for name in _imported(ROOT.glob(files))
+        if not required & {each.lower().replace("_", "-") for each in distributions.get(name, [name])}
+    }
+    assert missing == set()
 
 
 def test_nothing_is_left_unfinished() -> None:

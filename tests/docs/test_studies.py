@@ -46,7 +46,6 @@ def test_keys_of_a_distribution() -> None:
 
 def test_columns_of_a_row() -> None:
     """Each has a row in the table of columns."""
-    pytest.importorskip("pyarrow")
     columns = _first_cells(_section("## The folder"))[1]
     always = set(schema_of(load_spec(ROOT / "examples" / "study.toml")).names) - {"jammers.M.power_w"}
     assert columns == always | {"least_tilt_deg", "too_little_deg"}
@@ -54,7 +53,6 @@ def test_columns_of_a_row() -> None:
 
 def test_the_study_among_buildings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Run as the page says, the program prints what the page shows."""
-    pytest.importorskip("pyarrow")
     monkeypatch.chdir(tmp_path)
     run_study(load_spec(ROOT / "examples" / "study-city.toml"), "out/city", workers=0)
     section = PAGE.split("## A study among random buildings")[1]

@@ -5,6 +5,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import viser
+from websockets.datastructures import Headers
 
 from nullpose.studio.guard import PREFERS_DARK, Guard, framed, look_html
 from nullpose.studio.opening import LOOPBACK
@@ -13,9 +15,8 @@ from nullpose.studio.opening import LOOPBACK
 @pytest.mark.parametrize(("query", "dark"), [("dark=1&more=1", True), ("dark=yes", False), ("", False)])
 def test_a_websocket_says_whether_it_prefers_dark(query: str, dark: bool) -> None:
     """Beside the token; what is not understood counts as no."""
-    datastructures = pytest.importorskip("websockets.datastructures")
     guard = Guard(LOOPBACK, LOOPBACK)
-    headers = datastructures.Headers(Host=LOOPBACK, Upgrade="websocket")
+    headers = Headers(Host=LOOPBACK, Upgrade="websocket")
     request = SimpleNamespace(path=f"{guard.address(80).partition(':80')[2]}&{query}", headers=headers)
     connection = SimpleNamespace(local_address=(LOOPBACK, 80))
     assert guard._answer(lambda *_: None, connection, request) is None
@@ -42,7 +43,6 @@ def test_it_loads_nothing_from_elsewhere() -> None:
 
 def test_viser_has_the_page_that_it_is_added_to() -> None:
     """The installed one has one head."""
-    viser = pytest.importorskip("viser")
     page = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_bytes()
     assert page.count(b"<head>") == 1
     assert framed(page).count(b"<title>nullpose studio</title>") == 1

@@ -7,10 +7,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import nbclient
 import numpy as np
 import pytest
 from benchmarks.chromium import pixels
 from matplotlib.image import imread
+from nbformat import v4
 from playwright.sync_api import Browser
 from tests.studio.browser.hand import EXAMPLES, PAPER
 
@@ -57,7 +59,6 @@ def test_elsewhere_it_opens_in_the_browser(
 
 def test_in_a_notebook_it_is_below_the_cell(browser: Browser, tmp_path: Path) -> None:
     """As one output that is saved with the notebook, and draws the scene by itself."""
-    nbclient, v4 = pytest.importorskip("nbclient"), pytest.importorskip("nbformat").v4
     code = f"import nullpose\nnullpose.show(nullpose.load({str(EXAMPLES / 'paper.toml')!r}), height=300)"
     notebook: Any = v4.new_notebook(cells=[v4.new_code_cell(code)])
     nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
