@@ -129,7 +129,10 @@ def _imported(files: Iterable[Path]) -> set[str]:
     folders = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["pytest"]["ini_options"][
         "pythonpath"
     ]
-    ours = {"nullpose", *(path.stem for folder in folders for path in (ROOT / folder).iterdir())}
+    ours = {
+        "nullpose",
+        *(path.stem for folder in [*folders, "docs/figures"] for path in (ROOT / folder).iterdir()),
+    }
     return {module.split(".")[0] for module in modules} - set(sys.stdlib_module_names) - ours
 
 
