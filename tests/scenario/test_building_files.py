@@ -76,11 +76,14 @@ BOTH = 'roof_property = "roof"\nground_property = "ground"'
         ({"height": 72}, FEET, 21.9456),
         ({"height": "72'"}, FEET, 21.9456),
         ({"height": "72'6\""}, FEET, 22.098),
+        ({"height": "72'"}, 'height_unit = "m"', 21.9456),
         ({"height": "22 m"}, FEET, 22.0),
         ({"height": 22, "building:levels": 3}, LEVELS, 22.0),
         ({"building:levels": "3"}, LEVELS, 9.0),
         ({"building:levels": 2.5}, LEVELS, 7.5),
         ({"levels": 15.8}, LEVELS, 47.4),
+        ({"num_floors": 4}, LEVELS, 12.0),
+        ({"height": -1.0, "num_floors": 4}, LEVELS, 12.0),
         ({"building:levels": 3}, "missing_height_m = 9", 9.0),
         ({}, "missing_height_m = [4, 12]", (4.0, 12.0)),
         ({"building:levels": 3}, f"{LEVELS}\nmissing_height_m = [4, 12]", 9.0),
@@ -100,20 +103,26 @@ def test_heights_as_people_have_them(
 @pytest.mark.parametrize(
     ("properties", "rules", "place", "words"),
     [
-        ({"height": "72 ft"}, "", ".height", 'in feet, must be in metres; write height_unit = "ft"'),
-        ({"height": "72'"}, 'height_unit = "m"', ".height", "in feet, must be in metres"),
+        (
+            {"height": "72 ft"},
+            "",
+            ".height",
+            'what its heights without a unit are in, height_unit = "m" or "ft"',
+        ),
         ({"height": "tall"}, "", ".height", 'got the text "tall", must be a number of metres'),
         ({"height": "8;9"}, "", ".height", "must be a number of metres"),
         ({"height": True}, "", ".height", "got the truth value true"),
         ({"height": -4}, "", "", "its roof is -4 m above the ground (by height)"),
-        ({"height": 0}, "", "", "must be above 0"),
+        ({"height": 0}, "", "", "must be above its base, 0 m"),
         ({"height": 8848}, "", "", "at most 1000"),
-        ({"height": 9, "min_height": 12}, "", "", "no lower than its min_height, 12 m"),
+        ({"height": 9, "min_height": 12}, "", "", "must be above its base, 12 m"),
         ({"height": 9, "min_height": "low"}, "", ".min_height", "must be a number of metres"),
         ({"roof": 230, "ground": 231}, BOTH, "", "-1 m above the ground (by roof less ground)"),
         ({"levels": "3-4"}, LEVELS, ".levels", "must be a number of levels"),
         ({"levels": 3}, "", "", "it states no height"),
         ({"est_height": 3}, LEVELS, "", "missing_height_m = 9"),
+        ({"height": 9, "building:min_level": 2}, "", ".building:min_level", "add storey_height_m = 3"),
+        ({"height": -1}, "", "", "write missing_height_m = 9 or [4, 12]"),
     ],
 )
 def test_heights_that_are_refused(
@@ -122,6 +131,107 @@ def test_heights_that_are_refused(
     """Feet without their unit in the scenario, what is no number, and what is not above the ground."""
     write = lambda: town(tmp_path, [(box(0), properties)], rules)  # noqa: E731
     require_fault(write, f"buildings[0].buildings_from: town.geojson: features[0]{place}", words)
+
+
+@pytest.mark.parametrize("height", [-1, -1.0, 0, "0", "", "5;7", "~12", "12,5", "tall", True, 9999, "40'"])
+def test_what_states_no_height_counts_as_missing(height: object, tmp_path: Path) -> None:
+    """A city is not refused for it where it is said what to assume; it is counted, and the first is named."""
+    features = [(box(0), {"height": 8.4}), (box(1), {"height": height})]
+    scenario, notes = town(tmp_path, features, "missing_height_m = [4, 12]")
+    assert [each.heights_m for each in scenario.buildings] == [(8.4, 8.4), (4.0, 12.0)]
+    (note,) = notes
+    assert "2: 1 by height, 1 assumed; not readable: 1, the first features[1]" in note
+
+
+@pytest.mark.parametrize(
+    ("properties", "base_m", "ends_m"),
+    [
+        ({"height": 9, "min_height": 4}, 4.0, (9.0, 9.0)),
+        ({"height": 9, "building:min_level": "1"}, 3.0, (9.0, 9.0)),
+        ({"num_floors": 5, "min_floor": 2}, 6.0, (15.0, 15.0)),
+        ({"min_height": 2}, 2.0, (4.0, 14.0)),
+        ({"min_height": 30}, 30.0, (30.0, 42.0)),
+        ({"height": 9, "min_height": 12}, 12.0, (12.0, 24.0)),
+        ({"height": 9, "min_height": "low"}, 0.0, (0.0, 9.0)),
+        ({"height": 9, "min_height": -2}, 0.0, (9.0, 9.0)),
+    ],
+)
+def test_what_does_not_stand_on_the_ground(
+    properties: dict[str, Any], base_m: float, ends_m: tuple[float, float], tmp_path: Path
+) -> None:
+    """Where the base or the roof is not sure, the low end hides what is sure, the high end all."""
+    (building,) = town(tmp_path, [(box(0), properties)], f"{LEVELS}\nmissing_height_m = [4, 12]")[0].buildings
+    assert (building.base_m, building.heights_m) == (base_m, ends_m)
+
+
+@pytest.mark.parametrize(
+    "properties",
+    [
+        {"building": "parking", "location": "underground"},
+        {"building": "yes", "layer": "-1"},
+        {"building": "yes", "level": "-2;-1"},
+        {"is_underground": True},
+        {"is_undergr": 1},
+        {"building": "demolished"},
+        {"building": "proposed"},
+        {"building": "yes", "demolished": "yes"},
+        {"demolished:building": "yes"},
+        {"razed:building": "house"},
+        {"status": "Proposed"},
+    ],
+)
+def test_buildings_that_are_not_there_are_left_out(properties: dict[str, Any], tmp_path: Path) -> None:
+    """They hide neither nodes nor jammers, even with a height or without, and are counted."""
+    features = [(box(0), {"building": "yes", "height": 8}), (box(1), properties | {"height": 30})]
+    both, notes = town(tmp_path, features)
+    assert [each.heights_m for each in both.buildings] == [(8.0, 8.0)]
+    assert ("left out: 1 " in notes[0]) == ("building" in str(properties)), notes
+    alone, notes = town(tmp_path, [(box(1), properties)])
+    assert alone.prisms is None
+    assert notes[0].startswith("town.geojson: buildings: 0; left out: 1 ")
+
+
+@pytest.mark.parametrize(
+    ("properties", "low_m"),
+    [
+        ({"building": "roof"}, 0.0),
+        ({"building": "carport"}, 0.0),
+        ({"class": "canopy"}, 0.0),
+        ({"building": "construction"}, 0.0),
+        ({"ruins:building": "yes"}, 0.0),
+        ({"has_parts": True}, 0.0),
+        ({"building": "roof", "min_height": 4}, 6.0),
+        ({"abandoned:building": "yes"}, 6.0),
+        ({"building": "house", "proposed:building": "flats", "level": "-1;0;1"}, 6.0),
+        ({"building": "house", "disused": "yes", "layer": 1, "construction": "no"}, 6.0),
+    ],
+)
+def test_what_may_be_open_hides_nodes_and_no_jammer(
+    properties: dict[str, Any], low_m: float, tmp_path: Path
+) -> None:
+    """A canopy stands on posts, a shell may be low: the high end blocks nodes, the low end no jammer."""
+    scenario, notes = town(tmp_path, [(box(0), properties | {"height": 6})])
+    assert scenario.buildings[0].heights_m == (low_m, 6.0)
+    assert ("hiding nodes and no jammer: 1 " in notes[0]) == (low_m == 0.0)
+
+
+def test_an_outline_with_parts_hides_jammers_only_where_its_parts_do(tmp_path: Path) -> None:
+    """The outline has the height of its highest part, which the rest of it may not reach."""
+    tower = shapely.affinity.scale(box(0), 0.2, 0.2)
+    features: list[Feature] = [
+        (box(0), {"building": "office", "height": 90}),
+        (tower, {"building:part": "yes", "height": 90}),
+        (box(1), {"building": "yes", "height": 7}),
+    ]
+    scenario, notes = town(tmp_path, features)
+    assert [each.heights_m for each in scenario.buildings] == [(0.0, 90.0), (90.0, 90.0), (7.0, 7.0)]
+    assert "hiding nodes and no jammer: 1 parts" in notes[0]
+
+
+def test_states_that_are_not_understood_are_named(tmp_path: Path) -> None:
+    """Such as the year in which a building was torn down."""
+    features = [(box(0), {"building": "yes", "height": 9, "end_date": "1998", "STATUS": "vacated"})]
+    assert town(tmp_path, features)[1][1] == "town.geojson: not read: end_date (of 1), STATUS (of 1)"
 
 
 def test_what_becomes_of_features(tmp_path: Path) -> None:

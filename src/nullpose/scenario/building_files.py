@@ -6,17 +6,18 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
+import shapely
+
 from nullpose.errors import Fault
 from nullpose.files import PlainTable
 from nullpose.scenario.area_files import reach_deg
 from nullpose.scenario.areas import Area, account, area_of, unique
 from nullpose.scenario.building_heights import BuildingHeight, height_of
+from nullpose.scenario.building_states import GONE, MARK, state_of
 from nullpose.scenario.buildings import MOST_BUILDINGS, Building
 from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.shapes import corners_of
-
-_MARKS = ("building", "building:part")  # of OpenStreetMap
 
 
 def buildings_of(
@@ -24,7 +25,9 @@ def buildings_of(
 ) -> tuple[list[PlainTable], list[str], dict[str, str]]:
     """Make raw buildings of features: one of each polygon, open where it has a hole.
 
-    Where some features are marked as buildings, as those of OpenStreetMap are, the others are left out.
+    Where some features are marked as buildings, as those of OpenStreetMap are, the others are left out. So
+    are buildings that are not there. One that may be open, and one that has parts of its own, hides nodes and
+    no jammer.
 
     Args:
         features: of the file.
@@ -43,14 +46,22 @@ def buildings_of(
     marked = [
         feature
         for feature in features
-        if any(feature.properties.get(mark, "no") not in ("no", False) for mark in _MARKS)
+        if any(
+            MARK.fullmatch(key) and value not in ("no", False) for key, value in feature.properties.items()
+        )
     ] or features
     counts, reach = Counter({"other feature": len(features) - len(marked)}), reach_deg(origin)
+    parts = [each.geometry for each in marked if "building:part" in each.properties and each.geometry]
+    within, gone = shapely.STRtree(shapely.point_on_surface(parts)), Counter[str]()
 
     def areas_with_height(feature: Feature) -> list[tuple[Area, BuildingHeight]]:
         areas = area_of(feature, reach, counts, is_fence=True)
         counts["point"] += sum(len(area.cylinders) for area in areas)
-        return [(area, height_of(feature, rules)) for area in areas if area.polygons]
+        areas, state = [area for area in areas if area.polygons], state_of(feature)
+        if not state and "building:part" not in feature.properties and areas:
+            state = "parts" if len(within.query(feature.geometry, "contains")) else ""
+        gone.update([state] * len(areas) if state in GONE else [])
+        return [(area, height_of(feature, rules, state)) for area in areas if state not in GONE]
 
     each, faults = call_each(areas_with_height, marked)
     found: list[tuple[Area, BuildingHeight]] = list(chain.from_iterable(each))
@@ -66,7 +77,7 @@ def buildings_of(
     tables = [table for area, height in found for table in _tables(area, height, rules, names)]
     in_file = [area.place for area, _ in found for _ in area.polygons]
     places = {f"buildings[{index}]": place for index, place in enumerate(in_file, first)}
-    return tables, list(_notes(found, counts)), places
+    return tables, list(_notes(found, counts, gone)), places
 
 
 def _without_height(areas: Sequence[Area]) -> Iterator[Fault]:
@@ -96,13 +107,22 @@ def _tables(area: Area, height: BuildingHeight, rules: Building, names: set[str]
         }
 
 
-def _notes(found: Sequence[tuple[Area, BuildingHeight]], counts: Counter[str]) -> Iterator[str]:
+def _notes(
+    found: Sequence[tuple[Area, BuildingHeight]], counts: Counter[str], gone: Counter[str]
+) -> Iterator[str]:
     """Yield how the heights of all buildings are stated and what is passed over, then what is not read."""
     sources = Counter(height.by for area, height in found for _ in area.polygons)
     shares = ", ".join(f"{number} {source}" for source, number in sources.most_common())
+    wrong = [height.faults[0].path for _, height in found if height.faults]
+    open_ = Counter(height.state for _, height in found if height.state)
+    left_out, hiding = (", ".join(f"{n} {word}" for word, n in each.items()) for each in (gone, open_))
+    away = counts["area"] - len(found) - gone.total()
     parts = {
-        EXCHANGED: counts["area"] and not found,
-        f"out of reach: {counts['area'] - len(found)}": counts["area"] > len(found),
+        f"not readable: {len(wrong)}, the first {''.join(wrong[:1])}": wrong,
+        f"left out: {left_out}": gone,
+        f"hiding nodes and no jammer: {hiding}": open_,
+        EXCHANGED: away and not found,
+        f"out of reach: {away}": away,
     }
     yield account(f"buildings: {sources.total()}{f': {shares}' if shares else ''}", counts, parts)
     unread = Counter(key for _, height in found for key in height.unread)

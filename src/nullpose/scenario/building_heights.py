@@ -4,29 +4,40 @@ from __future__ import annotations
 
 import math
 import re
-from typing import NamedTuple
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
 
+from nullpose.errors import Fault
 from nullpose.scenario.altitude_limits import FOOT_M
+from nullpose.scenario.building_states import ON_POSTS
 from nullpose.scenario.buildings import HIGHEST_M, Building
-from nullpose.scenario.faults import require
+from nullpose.scenario.faults import call_each, raise_all, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.wording import described
 
 BY_ROOF, BY_HEIGHT, BY_LEVELS, ASSUMED = "by roof less ground", "by height", "by levels", "assumed"
 """How a height may be stated, the first first."""
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _LENGTH = re.compile(
-    rf"({_NUMBER})\s*(m|metres?|meters?|ft|feet|foot|')?\s*(?:(\d+\.?\d*)\s*(?:\"|''|in))?", re.I
+    r"([-+]?(?:\d+\.?\d*|\.\d+))\s*(m|metres?|meters?|ft|feet|foot|')?\s*(?:(\d+\.?\d*)\s*(?:\"|''|in))?",
+    re.I,
 )
 _FEET = ("ft", "feet", "foot", "'")
-_LEVELS = ("building:levels", "levels")
-_LIKE_HEIGHTS = re.compile(r"height|level|floor|store?y|stories|elev|h(?:oe|ö)he|(?:\b|_)alt(?:\b|_|i)", re.I)
-_LIKE_BASES = re.compile(r"(?:\b|_)min(?:\b|_)", re.I)
+_LEVELS = ("building:levels", "levels", "num_floors")  # of OpenStreetMap and Overture
+_BASES = ("min_height", "building:min_level", "min_level", "min_floor")
+_LIKE_STATES = r"status|demoli|lifecycle|end_date|\bruin"
+_LIKE_HEIGHTS = re.compile(
+    rf"height|level|floor|store?y|stories|elev|h(?:oe|ö)he|(?:\b|_)alt(?:\b|_|i)|{_LIKE_STATES}", re.I
+)
+_LIKE_BASES = re.compile(rf"(?:\b|_)min(?:\b|_)|{_LIKE_STATES}", re.I)
 _OF_CORNERS = "altitudes of corners"
 _BELOW_GROUND = "underground"
+_REMEDY = (
+    "correct it in the file, or write missing_height_m = 9 or [4, 12] beside buildings_from, which counts "
+    "for all that cannot be read"
+)
 
 
 class BuildingHeight(NamedTuple):
@@ -34,30 +45,73 @@ class BuildingHeight(NamedTuple):
 
     Args:
         base_m: height above the ground below which it is open [m].
-        ends_m: the lowest and the highest that its roof may be [m].
+        ends_m: the lowest and the highest that its roof may be [m]; the base is the lowest where it is not
+            sure that it hides anything.
         by: how it is stated, in words; empty if it is not.
         unread: properties that look like a height and were not read.
+        state: why it hides no jammer; empty if it does.
+        faults: of what is stated and unreadable, in place of which something else counts.
     """
 
     base_m: float
     ends_m: tuple[float, float]
     by: str
     unread: tuple[str, ...]
+    state: str
+    faults: tuple[Fault, ...]
 
 
-def height_of(feature: Feature, rules: Building) -> BuildingHeight:
+def height_of(feature: Feature, rules: Building, state: str = "") -> BuildingHeight:
     """Read a feature's height: roof less ground where both are named, ``height``, levels, or what is assumed.
+
+    What cannot be read, or is no height that a building has, counts as not stated. If that is its base, it
+    hides nodes down to the ground and no jammer.
 
     Args:
         feature: of a file.
         rules: the table that names the file.
+        state: why it may be open from the ground up, a word of ``OPEN``; empty if it is closed.
 
     Raises:
-        ScenarioError: it cannot be read.
+        ScenarioError: something cannot be read, and nothing else counts in its place.
     """
-    by, ends_m = _roof(feature, rules)
-    base_m = _length_m(feature, "min_height", rules) if "min_height" in feature.properties else 0.0
-    read = {"min_height", "height", rules.roof_property, rules.ground_property}
+    properties, missing_m = feature.properties, rules.missing_height_m
+    length_m = partial(_length_m, feature, rules)
+    bases_m, wrong = call_each(length_m, [key for key in _BASES if key in properties][:1])
+    base_m = max([0.0, *bases_m])
+
+    def roof_m(by: str, *keys: str) -> tuple[str, tuple[float, float]]:
+        high_m, *ground_m = map(length_m, keys)
+        end_m = high_m - sum(ground_m)
+        require(
+            base_m < end_m <= HIGHEST_M,
+            feature.place,
+            f"its roof is {end_m:g} m above the ground ({by}), must be above its base, {base_m:g} m, and at "
+            f"most {HIGHEST_M:g}; {_REMEDY}",
+        )
+        return by, (end_m, end_m)
+
+    levels = _LEVELS if rules.storey_height_m else ()
+    ways: list[tuple[Any, ...]] = [
+        (BY_ROOF, rules.roof_property, rules.ground_property),
+        (BY_HEIGHT, "height"),
+    ]
+    ways += [(BY_LEVELS, key) for key in levels]
+    found, faults = call_each(lambda way: roof_m(*way), [w for w in ways if properties.keys() >= {*w[1:]}])
+    if missing_m is not None:
+        low_m, high_m = missing_m if isinstance(missing_m, tuple) else (missing_m, missing_m)
+        found.append((ASSUMED, (max(low_m, base_m), base_m + high_m)))
+    else:
+        raise_all(wrong if found else wrong + faults)
+    by, (low_m, high_m) = found[0] if found else ("", (0.0, 0.0))
+    state = "" if state in ON_POSTS and base_m > 0.0 else state
+    ends_m = (base_m if wrong or state else low_m, high_m)
+    return BuildingHeight(base_m, ends_m, by, _unread(feature, rules, by), state, (*wrong, *faults))
+
+
+def _unread(feature: Feature, rules: Building, by: str) -> tuple[str, ...]:
+    """List properties that look like a height or a state and were not read."""
+    read = {*_BASES, "height", rules.roof_property, rules.ground_property}
     read |= {*_LEVELS} if by == BY_LEVELS else set()
     unread = tuple(
         key
@@ -68,66 +122,35 @@ def height_of(feature: Feature, rules: Building) -> BuildingHeight:
         and (by in (BY_LEVELS, ASSUMED) or _LIKE_BASES.search(key))
     )
     corners = shapely.get_coordinates(feature.geometry, include_z=True)
-    if by in (BY_LEVELS, ASSUMED) and np.nan_to_num(corners[:, 2]).any():
-        unread += (_OF_CORNERS,)
-    if by:
-        require(
-            0.0 <= base_m <= ends_m[0] and 0.0 < ends_m[1] <= HIGHEST_M,
-            feature.place,
-            f"its roof is {ends_m[1]:g} m above the ground ({by}), must be above 0, at most {HIGHEST_M:g}, "
-            f"and no lower than its min_height, {base_m:g} m, itself 0 or more; correct it in the file",
-        )
-    return BuildingHeight(base_m, ends_m, by, unread)
+    is_high = by in (BY_LEVELS, ASSUMED) and bool(np.nan_to_num(corners[:, 2]).any())
+    return (*unread, *[_OF_CORNERS] * is_high)
 
 
-def _roof(feature: Feature, rules: Building) -> tuple[str, tuple[float, float]]:
-    """Read the words for how the roof is stated, and both ends of its height above the ground [m]."""
-    properties = feature.properties
-    if rules.roof_property in properties and rules.ground_property in properties:
-        roof_m, ground_m = (
-            _length_m(feature, str(key), rules) for key in (rules.roof_property, rules.ground_property)
-        )
-        return BY_ROOF, (roof_m - ground_m,) * 2
-    if "height" in properties:
-        return BY_HEIGHT, (_length_m(feature, "height", rules),) * 2
-    key = next((key for key in _LEVELS if key in properties), None)
-    if key is not None and rules.storey_height_m is not None:
-        return BY_LEVELS, (_number(feature, key) * rules.storey_height_m,) * 2
-    if rules.missing_height_m is not None:
-        missing_m = rules.missing_height_m
-        return ASSUMED, missing_m if isinstance(missing_m, tuple) else (missing_m, missing_m)
-    return "", (0.0, 0.0)
-
-
-def _length_m(feature: Feature, key: str, rules: Building) -> float:
-    """Read a length, a number or a text such as ``22 m`` or ``72'6"`` [m]."""
-    value, place = feature.properties[key], f"{feature.place}.{key}"
-    found = _LENGTH.fullmatch(str(value).strip()) if _is_plain(value) else None
-    number, unit, inches = found.groups() if found else ("nan", None, None)
-    is_feet = (unit or rules.height_unit or "m").lower() in _FEET
-    require(
-        math.isfinite(float(number)) and (is_feet or inches is None),
-        place,
-        f'got {described(value)}, must be a number of metres, alone or as in "22 m"; correct it in the file',
-    )
-    require(
-        not is_feet or rules.height_unit == "ft",
-        place,
-        f'got {described(value)}, in feet, must be in metres; write height_unit = "ft" beside buildings_from '
-        "if its heights without a unit are in feet too",
-    )
-    return (float(number) + float(inches or 0.0) / 12.0) * FOOT_M if is_feet else float(number)
-
-
-def _number(feature: Feature, key: str) -> float:
-    value = feature.properties[key]
-    require(
-        _is_plain(value) and re.fullmatch(_NUMBER, str(value).strip()),
+def _length_m(feature: Feature, rules: Building, key: str) -> float:
+    """Read a length, a number or a text such as ``22 m`` or ``72'6"``, or a number of levels [m]."""
+    value, place, is_plain = (
+        feature.properties[key],
         f"{feature.place}.{key}",
-        f"got {described(value)}, must be a number of levels; correct it in the file",
+        key not in _LEVELS + _BASES[1:],
     )
-    return float(value)
-
-
-def _is_plain(value: object) -> bool:
-    return isinstance(value, int | float | str) and not isinstance(value, bool)
+    text = "" if isinstance(value, bool | list | dict) else str(value).strip()
+    number, unit, inches = match.groups() if (match := _LENGTH.fullmatch(text)) else ("nan", None, None)
+    is_feet = (unit or rules.height_unit or "m").lower() in _FEET
+    number = float(number)
+    require(
+        math.isfinite(number) and (is_feet if inches else is_plain or not unit),
+        place,
+        f"got {described(value)}, must be a number of "
+        + ('metres, alone or as in "22 m"' if is_plain else "levels")
+        + f"; {_REMEDY}",
+    )
+    if not is_plain:
+        require(rules.storey_height_m or not number, place, f"got {number:g} levels; add storey_height_m = 3")
+        return number * (rules.storey_height_m or 0.0)
+    require(
+        not is_feet or rules.height_unit is not None,
+        place,
+        f"got {described(value)}, in feet; write beside buildings_from what its heights without a unit are "
+        'in, height_unit = "m" or "ft"',
+    )
+    return (number + float(inches or 0.0) / 12.0) * FOOT_M if is_feet else number
