@@ -138,9 +138,12 @@ def _relative(rows: FloatArray, tangent: Interval) -> tuple[Interval, Interval, 
     p = Interval(np.maximum(p.low, 0.0), np.minimum(p.high, 1.0))
     in_db = average == DB_AVERAGE
     loss = log(Interval(n))
-    gain = where(in_db, exp(loss * (1.0 - p)), 1.0 - (1.0 - p) * (1.0 - Interval(n)))
-    spread = 0.25 - (p - 0.5).squared()
-    spread = Interval(np.maximum(spread.low, 0.0), spread.high)
+    hidden = 1.0 - p
+    gain = where(in_db, exp(loss * hidden), (1.0 - Interval(n)) * p + n)
+    # P (1 - P) = q (1 - q) grows with the lesser q of P and 1 - P, and keeps the digits of a small P
+    least, most = np.minimum(p.low, hidden.low), np.minimum(np.minimum(p.high, hidden.high), 0.5)
+    low, high = (Interval(q) * (1.0 - Interval(q)) for q in (least, most))
+    spread = Interval(np.maximum(low.low, 0.0), high.high)
     first = where(in_db, -loss, (1.0 - Interval(n)) / gain) * spread * k
     return gain, first, (1.0 - p * 2.0) * k
 

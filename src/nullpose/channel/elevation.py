@@ -44,13 +44,17 @@ def sight_probability(row: FloatArray, elevation_rad: FloatArray) -> FloatArray:
         row: the kind, ``ln a + a b``, b per radian.
         elevation_rad: of the drone, at the ground point.
     """
-    return np.asarray(1.0 / (1.0 + np.exp(row[1] - row[2] * elevation_rad)))
+    exponent = row[1] - row[2] * elevation_rad
+    small = np.exp(-np.abs(exponent))  # neither this nor its quotient overflows
+    return np.asarray(np.where(exponent > 0.0, small, 1.0) / (1.0 + small))
 
 
 def elevation_excess(
     row: FloatArray, distance_m: FloatArray, elevation_rad: FloatArray, azimuth_rad: FloatArray
 ) -> FloatArray:
-    """Evaluate the mean gain over that with line of sight: ``P + (1 - P) n``, or ``n^(1 - P)``.
+    """Evaluate the mean gain over that with line of sight: ``n + (1 - n) P``, or ``n^(1 - P)``.
+
+    So written nothing cancels, however small n and P are.
 
     Args:
         row: the kind, two numbers of the probability, n, and which average; n is the gain without line of
@@ -59,9 +63,8 @@ def elevation_excess(
         elevation_rad: of the drone, at the ground point.
         azimuth_rad: of no effect.
     """
-    hidden = 1.0 - sight_probability(row, elevation_rad)
-    gain = np.where(row[4] == DB_AVERAGE, row[3] ** hidden, 1.0 - (1.0 - row[3]) * hidden)
-    return np.asarray(gain)
+    p, n = sight_probability(row, elevation_rad), row[3]
+    return np.asarray(np.where(row[4] == DB_AVERAGE, n ** (1.0 - p), n + (1.0 - n) * p))
 
 
 def elevation_channel(

@@ -1,6 +1,6 @@
 """The excess gain of a point's channel at a position, and its derivatives (:mod:`nullpose.channel`).
 
-``g = (d / d0)^e`` by distance; ``1 - (1 - n) (1 - P)`` or ``n^(1 - P)`` by elevation, with the probability
+``g = (d / d0)^e`` by distance; ``n + (1 - n) P`` or ``n^(1 - P)`` by elevation, with the probability
 ``P = 1 / (1 + exp(c - k theta))`` of line of sight. Derivatives are relative, ``g' / g``. Where no point has
 a channel, the rows are None, and what channels need is not even compiled.
 """
@@ -21,7 +21,9 @@ _ZENITH = 1e-12  # of the distance: directly above a point the elevation has no 
 @inner_kernel
 def sight_probability(row, elevation_rad):
     """Return the probability of line of sight."""
-    return 1.0 / (1.0 + math.exp(row[1] - row[2] * elevation_rad))
+    exponent = row[1] - row[2] * elevation_rad
+    small = math.exp(-abs(exponent))
+    return (small if exponent > 0.0 else 1.0) / (1.0 + small)
 
 
 @inner_kernel
@@ -29,7 +31,7 @@ def elevation_gain(row, probability):
     """Return the excess gain at a probability of line of sight."""
     if row[4] == DB_AVERAGE:
         return row[3] ** (1.0 - probability)
-    return 1.0 - (1.0 - row[3]) * (1.0 - probability)
+    return row[3] + (1.0 - row[3]) * probability
 
 
 @inner_kernel
