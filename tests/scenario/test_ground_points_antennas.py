@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, doubts
 from scenes import require_fault
 
 
@@ -65,3 +65,60 @@ def test_a_gain_is_told_of_every_antenna(paper: Callable) -> None:
     assert Scenario.from_dict(gained.to_dict()) == gained
     assert stated(paper, gain_dbi=0.0) == paper()
     assert stated(paper, gain_dbi=3.0).nodes[0].isotropic.gain_dbi == 3.0
+
+
+@pytest.mark.parametrize(
+    ("keys", "most_dbi"),
+    [({"antenna": "dipole"}, 5.27), ({"antenna": "dipole", "null_depth_db": 10.0}, 5.06)],
+)
+def test_gains_that_no_dipole_has_are_refused(keys: dict, most_dbi: float, paper: Callable) -> None:
+    """Over the upper half of the sphere it would radiate half a decibel more than it is fed."""
+    stated(paper, gain_dbi=most_dbi - 0.01, **keys)
+    require_fault(
+        lambda: stated(paper, gain_dbi=8.5, **keys), "nodes[0].gain_dbi", f"must be at most {most_dbi:.2f}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys", "gain_dbi", "is_doubted"),
+    [
+        ("nodes", {"antenna": "dipole"}, 1.76, False),
+        ("nodes", {"antenna": "dipole", "null_depth_db": 15.0}, 2.15, False),
+        ("nodes", {"antenna": "dipole"}, 5.0, True),
+        ("nodes", {"antenna": "circular"}, 3.0, False),
+        ("nodes", {"antenna": "circular"}, 8.0, True),
+        ("nodes", {}, 8.5, True),
+        ("nodes", {"antenna": "dipole"}, -3.0, False),
+        ("jammers", {"antenna": "dipole"}, 5.0, True),
+        ("jammers", {}, 12.0, False),
+    ],
+)
+def test_gains_of_some_directions_only_are_doubted(
+    kind: str, keys: dict, gain_dbi: float, is_doubted: bool, paper: Callable
+) -> None:
+    """The gain counts in every direction: the worst case of a jammer, and too kind to a node."""
+    data = paper().to_dict()
+    data[kind][0] |= keys | {"gain_dbi": gain_dbi}
+    assert [each.path for each in doubts(Scenario.from_dict(data))] == [f"{kind}[0].gain_dbi"] * is_doubted
+
+
+@pytest.mark.parametrize(
+    ("antenna", "most_dbi"),
+    [
+        ({}, 2.26),
+        ({"null_depth_db": 10.0}, 2.05),
+        ({"kind": "half-wave"}, 2.65),
+        ({"kind": "profile", "normalise": "peak", "harmonics": [[0.25], [0.25, 0, 0]]}, 4.86),
+    ],
+)
+def test_gains_that_no_antenna_on_the_drone_has_are_refused(
+    antenna: dict, most_dbi: float, paper: Callable
+) -> None:
+    """Over the sphere it would radiate half a decibel more than it is fed."""
+    data = paper().to_dict()
+    Scenario.from_dict(data | {"antenna": antenna | {"gain_dbi": most_dbi - 0.01}})
+    require_fault(
+        lambda: Scenario.from_dict(data | {"antenna": antenna | {"gain_dbi": most_dbi + 0.01}}),
+        "antenna.gain_dbi",
+        f"must be at most {most_dbi:.2f}",
+    )

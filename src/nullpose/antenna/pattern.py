@@ -59,6 +59,11 @@ class PatternAntenna:
         """Whether opposite directions have the same gain, so that the axis has no sign."""
         return self.harmonics.is_even
 
+    @property
+    def mean(self) -> float:
+        """Mean gain over the sphere."""
+        return float(self.harmonics.cosine[0, 0])
+
     def gain(self, directions: ArrayLike) -> FloatArray:
         """Return the power gain in each direction, (...).
 

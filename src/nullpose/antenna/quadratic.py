@@ -32,6 +32,11 @@ class QuadraticAntenna:
     label: str
     leak: float
 
+    @property
+    def mean(self) -> float:
+        """Mean gain over the sphere."""
+        return (2.0 + self.leak) / 3.0
+
     def gain(self, sine_squared: FloatArray) -> FloatArray:
         """Evaluate the power gain at an angle from the axis, 1 broadside.
 

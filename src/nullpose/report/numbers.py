@@ -17,6 +17,7 @@ _UNITS = {"w": "W", "dbm": "dBm", "db": "dB", "hz": "Hz", "m": "m", "deg": "degr
 _KEY_WORDS = {
     "noise_w": "noise power",
     "noise_dbm": "noise power",
+    "noise_figure_db": "noise figure",
     "min_sinr_db": "required SINR",
     "keep_out_m": "keep-out radius",
     "tilt_max_deg": "largest tilt",

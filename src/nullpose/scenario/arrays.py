@@ -188,7 +188,7 @@ class PointArrays:
         return read_only([self._noise_w(node) + self._jamming_w(node) for node in self.nodes], (-1,))
 
     def _noise_w(self, point: Node | Eavesdropper) -> float:
-        return power_w(point.noise_w, point.noise_dbm) or self.receiver.noise_power_w
+        return point.noise_power_w or self.receiver.noise_power_w
 
     def _jamming_w(self, node: Node) -> float:
         jamming_w = power_w(node.jamming_w, node.jamming_dbm)

@@ -18,6 +18,7 @@ from nullpose.scenario.origin_faults import is_placed, origin_faults
 from nullpose.scenario.plausibility import too_small
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import table_of
+from nullpose.scenario.units import HALF_DB, MOST_OVER_FED_DB
 
 if TYPE_CHECKING:
     from nullpose.scenario.airspace import Airspace
@@ -65,6 +66,7 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     for place in [place for place, building in buildings.items() if building.buildings_from is not None]:
         yield (*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it"
     yield from _antenna_faults(scenario, points)
+    yield from _gain_faults(scenario, points)
     yield from _channel_faults(scenario, {(): scenario, **points})
     if not misplaced:
         yield from _shared_places(positioned)
@@ -102,6 +104,31 @@ def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> 
             (point.antenna == "dipole" and not antenna.has_polarisation, (*place, "antenna"), unlike),
         ]
     return [(place, message) for is_wrong, place, message in faults if is_wrong]
+
+
+def _gain_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
+    """Yield the gains that no such antenna has: over the sphere it would radiate more than it is fed."""
+    drone, drone_dbi = scenario.antenna_record, scenario.antenna_gain_dbi
+    drone_db = drone_dbi + 10.0 * np.log10(max(drone.mean, 1e-30))
+    whip = (
+        ", a quarter wave over a large ground plane. A collinear whip has more in a narrow beam alone: write "
+        'antenna = "profile" with its gain by elevation'
+    )
+    stated = {("antenna",): (drone.label, drone_dbi, drone_db, MOST_OVER_FED_DB, "")} | {
+        place: ("short dipole", point.gain_dbi, point.over_fed_db, MOST_OVER_FED_DB + HALF_DB, whip)
+        for place, point in points.items()
+        if point.antenna == "dipole"
+    }
+    yield from (
+        (
+            (*place, "gain_dbi"),
+            f"got {gain_dbi:g}, with which a {label} would radiate {excess_db:.1f} dB more than it is fed; "
+            f"must be at most {gain_dbi - excess_db + most_db:.2f} (1.76 for a short dipole, 2.15 for a "
+            f"half-wave dipole){advice}",
+        )
+        for place, (label, gain_dbi, excess_db, most_db, advice) in stated.items()
+        if excess_db > most_db
+    )
 
 
 def _channel_faults(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Annotated, ClassVar, Self
 
@@ -11,7 +12,7 @@ from nullpose.antenna import GROUND_ANTENNAS, short_dipole
 from nullpose.files import PlainTable
 from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.faults import Place
-from nullpose.scenario.radio import POWER, Powered
+from nullpose.scenario.radio import NOISE, POWER, Noisy, Powered
 from nullpose.scenario.rules import Choice, Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.uncertainty import Uncertain
@@ -151,12 +152,18 @@ class GroundPoint(Section):
         return short_dipole(self.null_depth_db).leak if self.antenna == "dipole" else 1.0
 
     @property
+    def over_fed_db(self) -> float:
+        """How much more than it is fed its antenna would radiate over the whole sphere by its gain [dB]."""
+        mean = short_dipole(self.null_depth_db).mean if self.antenna == "dipole" else 1.0
+        return (self.gain_dbi or 0.0) + 10.0 * math.log10(mean)
+
+    @property
     def isotropic(self) -> Self:
         """The point with an isotropic antenna of the same gain."""
         return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None, "null_depth_db": None})
 
 
-class Node(Powered, GroundPoint):
+class Node(Noisy, Powered, GroundPoint):
     """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
 
     Args beside those of a ground point:
@@ -164,8 +171,8 @@ class Node(Powered, GroundPoint):
         power_dbm: the same in dBm; both may be left out where the drone transmits.
         weight: the node's margin is its SINR over this; or else
         min_sinr_db: the SINR that the node requires [dB]; its margin is its SINR over this.
-        noise_w: noise of the node's own receiver [W], for the downlink; or else
-        noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
+        noise_w, noise_dbm, bandwidth_hz, noise_figure_db: noise of the node's own receiver, for the downlink;
+            that of [receiver] when left out.
         jamming_w: jamming power that the node's own receiver gets [W], for the downlink; or else
         jamming_dbm: the same in dBm; worked out from the jammers when both are left out.
     """
@@ -179,7 +186,7 @@ class Node(Powered, GroundPoint):
         ALTITUDE,
         at_most_one("power_w", "power_dbm"),
         at_most_one("weight", "min_sinr_db"),
-        at_most_one("noise_w", "noise_dbm"),
+        NOISE,
         at_most_one("jamming_w", "jamming_dbm"),
     )
 
@@ -192,15 +199,6 @@ class Node(Powered, GroundPoint):
         "The SINR that the node requires, in dB; what counts is how far it is exceeded. Either "
         "this or weight, or neither.",
         3.0,
-    )
-    noise_w: Watts | None = optional(
-        "Noise power of the node's own receiver, in watts; where the drone transmits. Either "
-        "this or noise_dbm. Left out: the noise of [receiver].",
-        1e-3,
-    )
-    noise_dbm: DecibelMilliwatts | None = optional(
-        "Noise power of the node's own receiver, in dBm; where the drone transmits. Either this or noise_w.",
-        -97.0,
     )
     jamming_w: Watts | None = optional(
         "Jamming power that the node's own receiver gets, in watts; where the drone transmits. "
@@ -230,23 +228,14 @@ class Jammer(Uncertain, Powered, GroundPoint):
     letter: ClassVar[str] = "M"
 
 
-class Eavesdropper(Uncertain, GroundPoint):
+class Eavesdropper(Noisy, Uncertain, GroundPoint):
     """A receiver that is not to hear what the drone sends; it may be uncertain.
 
     Args beside those of a ground point:
-        noise_w: its receiver's noise [W]; or else
-        noise_dbm: the same in dBm; the noise of [receiver] when both are left out.
+        noise_w, noise_dbm, bandwidth_hz, noise_figure_db: its receiver's noise; that of [receiver] when left
+            out.
     """
 
     header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
     letter: ClassVar[str] = "E"
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, at_most_one("noise_w", "noise_dbm"))
-
-    noise_w: Watts | None = optional(
-        "Noise power of the eavesdropper's receiver, in watts. Either this or noise_dbm. Left "
-        "out: the noise of [receiver].",
-        1e-3,
-    )
-    noise_dbm: DecibelMilliwatts | None = optional(
-        "Noise power of the eavesdropper's receiver, in dBm. Either this or noise_w.", -97.0
-    )
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, NOISE)

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from nullpose.errors import Fault
 from nullpose.scenario.faults import Place
 from nullpose.scenario.origin import POINT_LISTS, Origin
-from nullpose.scenario.radio import Powered
-from nullpose.scenario.units import EARTHLY_CORNERS, watts_from_dbm
+from nullpose.scenario.radio import Noisy, Powered
+from nullpose.scenario.units import EARTHLY_CORNERS, HALF_DB, MOST_OVER_FED_DB, watts_from_dbm
 
 if TYPE_CHECKING:
     from nullpose.scenario.ground_points import GroundPoint
@@ -27,6 +27,8 @@ _LEAST_OF_KEEP_OUT = 1e-2  # likewise a geofence, as a share of keep_out_m
 _NEAR_DEG = 0.1  # metres that are so close to the origin's latitude and longitude are likely degrees
 _DBM = (10.0, 60.0)  # powers in W that are likely to be dBm
 _OFF_M = 15.0  # points that all lie so far off the origin's altitude are unlikely
+_FAINTEST_DBM = -145.0  # noise below it is unlikely: that of 1 kHz at 290 K is -144 dBm
+_LOWEST_HZ = 1e6  # carriers below it are unlikely
 
 
 def too_small(
@@ -82,9 +84,10 @@ def close_to_degrees(origin: Origin | None, positions_m: Sequence[ArrayLike], re
 def doubts(scenario: Scenario) -> tuple[Fault, ...]:
     """Find what looks like a mistake in a sound scenario, each with its place.
 
-    Powers in W that would be likely in dBm, where the file states other transmit powers in dBm; points in
-    metres that are close to the origin's latitude and longitude; points that all lie as far off the origin's
-    altitude as the sea, the ellipsoid and the ground may be apart.
+    Powers in W that would be likely in dBm, where the file states other transmit powers in dBm; noise less
+    than that of 1 kHz; a carrier below 1 MHz; nodes' gains that an antenna has in some directions only;
+    points in metres that are close to the origin's latitude and longitude; points that all lie as far off the
+    origin's altitude as the sea, the ellipsoid and the ground may be apart.
 
     Args:
         scenario: any.
@@ -103,6 +106,8 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
     degrees = close_to_degrees(scenario.origin, metric_m, "lat_deg, lon_deg and an altitude")
     return (
         *_powers(scenario, points),
+        *_noises(scenario, points),
+        *_gains(points),
         *(Fault("position_m", message) for message in degrees),
         *_altitudes(points),
     )
@@ -124,6 +129,45 @@ def _powers(scenario: Scenario, points: Mapping[str, GroundPoint]) -> Iterator[F
                 "stated in dBm; "
                 f"if {power:g} dBm ({watts_from_dbm(power):.3g} W) is meant, write power_dbm = {power:g}",
             )
+
+
+def _noises(scenario: Scenario, points: Mapping[str, GroundPoint]) -> Iterator[Fault]:
+    receivers = {"receiver": scenario.receiver, **points}
+    noises_w = {place: each.noise_power_w for place, each in receivers.items() if isinstance(each, Noisy)}
+    yield from (
+        Fault(
+            place,
+            f"its noise is {10.0 * math.log10(noise_w) + 30.0:.1f} dBm, less than the thermal noise of 1 kHz "
+            "(-144 dBm), as if it were a density in dBm/Hz, or a bandwidth in kHz or MHz; if it is, add "
+            "10 log10(bandwidth in Hz) to noise_dbm, or state bandwidth_hz and noise_figure_db",
+        )
+        for place, noise_w in noises_w.items()
+        if 0.0 < noise_w < watts_from_dbm(_FAINTEST_DBM)
+    )
+    hz = scenario.receiver.frequency_hz or math.inf
+    if hz < _LOWEST_HZ:
+        words = f"{hz:g} Hz is below 1 MHz, as if it were in kHz or MHz; {hz:g} MHz is written {1e6 * hz:g}"
+        yield Fault("receiver.frequency_hz", words)
+
+
+def _gains(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:
+    """Yield the gains that some antennas have in some directions only.
+
+    They count in every direction, which is the worst case of who is unwanted.
+    """
+    whips = {place: point for place, point in points.items() if point.antenna == "dipole"}
+    others = {place: point for place, point in points.items() if not (point.is_interferer or place in whips)}
+    ground, turned = "above a large ground plane", "of an antenna that is turned to the drone"
+    yield from (
+        Fault(
+            f"{place}.gain_dbi",
+            f'{point.gain_dbi:g} dBi with antenna = "{point.antenna}" is true only {only}: all round '
+            f"it is {point.over_fed_db:.1f} dB more than the antenna is fed",
+        )
+        for only, most_db, some in ((ground, 0.0, whips), (turned, HALF_DB, others))
+        for place, point in some.items()
+        if point.over_fed_db > MOST_OVER_FED_DB + most_db
+    )
 
 
 def _altitudes(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:

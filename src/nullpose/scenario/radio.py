@@ -21,13 +21,54 @@ from nullpose.scenario.units import (
 )
 from nullpose.scenario.ways import Ways, exactly_one
 
+_NOISE = (("noise_w",), ("noise_dbm",), ("bandwidth_hz", "noise_figure_db"))
+NOISE = Ways(_NOISE, fewest=0)
+"""The ways to state the noise of a receiver that may have that of [receiver]."""
+_BOLTZMANN_J_PER_K = 1.380649e-23  # exact by definition of the kelvin
+_STANDARD_K = 290.0  # the temperature of noise figures (IEEE)
 
-class Receiver(Section):
-    """The receiver's noise power, the path gain at 1 m, and how well the vehicle holds a pose.
+
+class Noisy(Section):
+    """What receives.
 
     Args:
         noise_w: noise power in the receiver's bandwidth [W]; or else
-        noise_dbm: the same in dBm.
+        noise_dbm: the same in dBm; or else
+        bandwidth_hz: the receiver's bandwidth [Hz], and
+        noise_figure_db: its noise figure [dB].
+    """
+
+    noise_w: Watts | None = optional(
+        "Noise power in the receiver's bandwidth, in watts. Either this, or noise_dbm, or bandwidth_hz with "
+        "noise_figure_db. A node or an eavesdropper that states none has the noise of [receiver].",
+        1e-3,
+    )
+    noise_dbm: DecibelMilliwatts | None = optional("The same in dBm, in place of noise_w.", -97.0)
+    bandwidth_hz: (
+        Annotated[float, Quantity("a bandwidth in Hz", 1.0, 1e13, "20 MHz is written 20e6")] | None
+    ) = optional(
+        "Bandwidth of the receiver in Hz, that of one node's channel: with noise_figure_db in place of "
+        "noise_dbm. The noise is k T B F at 290 K: -174 dBm/Hz + 10 log10(bandwidth) + noise figure.",
+        20e6,
+    )
+    noise_figure_db: (
+        Annotated[float, Quantity("a noise figure in dB", 0.0, 100.0, "3 to 10 is usual; it is not negative")]
+        | None
+    ) = optional("Noise figure of the receiver in dB, with bandwidth_hz.", 6.0)
+
+    @property
+    def noise_power_w(self) -> float:
+        """Noise power, however it was stated [W]: ``k T B F`` of a bandwidth; 0 where none is."""
+        if self.bandwidth_hz is None:
+            return power_w(self.noise_w, self.noise_dbm)
+        thermal_w = _BOLTZMANN_J_PER_K * _STANDARD_K * self.bandwidth_hz
+        return thermal_w * ratio_from_db(self.noise_figure_db or 0.0)
+
+
+class Receiver(Noisy):
+    """The receiver's noise, the path gain at 1 m, and how well the vehicle holds a pose.
+
+    Args beside those of the noise:
         reference_gain_db: path gain between isotropic antennas 1 m apart [dB]; or else
         frequency_hz: carrier frequency [Hz], from which the free-space gain at 1 m follows.
         attitude_error_deg: largest angle between the true antenna axis and the commanded one [deg].
@@ -35,17 +76,11 @@ class Receiver(Section):
     """
 
     ways: ClassVar[tuple[Ways, ...]] = (
-        exactly_one("noise_w", "noise_dbm"),
+        Ways(_NOISE),
         exactly_one("reference_gain_db", "frequency_hz"),
     )
     unstated: ClassVar[frozenset[str]] = frozenset({"attitude_error_deg", "position_error_m"})
 
-    noise_w: Watts | None = optional(
-        "Noise power in the receiver's bandwidth, in watts. Either this or noise_dbm.", 1e-3
-    )
-    noise_dbm: DecibelMilliwatts | None = optional(
-        "Noise power in the receiver's bandwidth, in dBm. Either this or noise_w.", -97.0
-    )
     reference_gain_db: Decibels | None = optional(
         "Path gain at a distance of 1 m, in dB. Either this or frequency_hz.", 0.0
     )
@@ -68,11 +103,6 @@ class Receiver(Section):
         "Used by robust solving.",
         examples=[0.5],
     )
-
-    @property
-    def noise_power_w(self) -> float:
-        """Noise power, however it was stated [W]."""
-        return power_w(self.noise_w, self.noise_dbm)
 
     @property
     def reference_gain(self) -> float:

@@ -34,6 +34,11 @@ EARTHLY = {
 }
 """The keys that state something on the Earth, and those in metres that follow from the origin."""
 
+MOST_OVER_FED_DB = 0.5
+"""How far a stated gain's mean over the sphere may be above 1; 2.15 dBi of a short dipole are 0.4 dB."""
+HALF_DB = 3.01
+"""What an antenna gains by radiating into half the sphere."""
+
 SPEED_OF_LIGHT_M_PER_S = 299_792_458.0
 """Speed of light in vacuum, exact by definition of the metre [m/s]."""
 

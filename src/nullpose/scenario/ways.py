@@ -58,9 +58,9 @@ class Ways:
         return [key, *(twin for twin, replaced in self.twins if replaced == key)]
 
     def others(self, key: str) -> Iterator[str]:
-        """Yield the keys that a key takes the place of: the other ways, where it is a whole one."""
+        """Yield the keys that a key takes the place of: those of the other ways."""
         taken = self.taken([key])
-        if taken and (len(self.groups) == 2 or len(taken[0]) == 1):
+        if taken:
             yield from chain.from_iterable(self._all(group) for group in self.groups if group not in taken)
 
     def schema(self) -> PlainTable:

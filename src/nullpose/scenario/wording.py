@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 from datetime import date, time
 from difflib import SequenceMatcher
@@ -11,6 +12,25 @@ import numpy as np
 _LONGEST_QUOTE = 40  # characters of a given text that a message repeats
 _LONGEST_WORD = 100  # characters of a word that is repeated, or compared with others
 _LIKE_ENOUGH = 0.5  # similarity from which a known word is worth suggesting
+# how a number is converted from the unit of an unknown key, by what such a key has in it
+_CONVERSIONS = {
+    r"dbm_?(per_?)?hz|densit": "to a density in dBm/Hz add 10 log10(bandwidth in Hz), or state "
+    "bandwidth_hz and noise_figure_db",
+    r"eirp": "an EIRP is a power_dbm or power_w without gain_dbi",
+    r"erp(_|$)": "an ERP is a power_dbm without gain_dbi, 2.15 dB more",
+    r"dbw$": "0 dBW is 30 dBm",
+    r"dbd$": "0 dBd is 2.15 dBi",
+    r"_(ft|feet)$": "1 ft is 0.3048 m",
+    r"_km$": "1 km is 1000 m",
+    r"_(nm|nmi)$": "1 nautical mile is 1852 m",
+    r"_mi(les?)?$": "1 mile is 1609.344 m",
+    r"_mw$": "1 mW is 1e-3 W, or 0 dBm",
+    r"_kw$": "1 kW is 1e3 W, or 60 dBm",
+    r"_khz$": "1 kHz is 1e3 Hz",
+    r"_mhz$": "1 MHz is 1e6 Hz",
+    r"_ghz$": "1 GHz is 1e9 Hz",
+    r"_rad$": "1 rad is 57.29578 degrees",
+}
 
 
 def plain(value: object) -> object:
@@ -72,7 +92,7 @@ def suggestion(word: object, words: Collection[str]) -> str:
 
 
 def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str] = ()) -> str:
-    """Word the fault of an unknown word, with the one that may be meant.
+    """Word the fault of an unknown word, with the one that may be meant, and how its unit is converted.
 
     Args:
         noun: what the word is, such as a key.
@@ -81,4 +101,6 @@ def unknown(noun: str, word: str, words: Collection[str], likely: Collection[str
         likely: those of them that are the likelier meaning.
     """
     question = suggestion(word, likely) or suggestion(word, words) or ";"
-    return f"unknown {noun}{question} the {noun}s here are {', '.join(words)}"
+    found = (why for sign, why in _CONVERSIONS.items() if re.search(sign, word[:_LONGEST_WORD].lower()))
+    conversion = next((f" {why};" for why in found), "")
+    return f"unknown {noun}{question}{conversion} the {noun}s here are {', '.join(words)}"

@@ -49,6 +49,8 @@ _ALIKE = (
     "gain_dbi",
     "noise_w",
     "noise_dbm",
+    "bandwidth_hz",
+    "noise_figure_db",
 )
 _ANY = "any"  # typed for a tilt without a limit
 _FREE = Override("airframe.preset", "omnidirectional")
