@@ -140,7 +140,7 @@ def test_the_sea_is_below_the_ellipsoid_by_what_the_origin_says(tmp_path: Path) 
     ("features", "path", "words"),
     [
         ([], "features", "must be a list of one feature or more"),
-        ([area(FENCE), area(ZONE)], "", "it has 2 areas, must be one polygon, the fence"),
+        ([area(FENCE), area(ZONE)], "", "it has 2 areas, must be one polygon or circle, the fence"),
         ([(None, {})], "", "it has 0 areas"),
         ([area([corner[::-1] for corner in FENCE])], "features[0]", "are latitude and longitude exchanged?"),
         ([area([[lat, 91.0] for lat, _ in FENCE])], "", "it has 0 areas"),

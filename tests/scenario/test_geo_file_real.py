@@ -112,9 +112,7 @@ def test_the_edge_at_which_a_zone_is_cut_crosses_no_other(tmp_path: Path) -> Non
 
 
 SQUARE = shapely.Point(HERE).buffer(0.01, quad_segs=1)
-POINT = shapely.Point(HERE)
 WALLS = [(shapely.LineString([HERE] * 4), {}), (shapely.Polygon([HERE] * 4), {})]
-NONE, NOT_READ = "zones: 0", "of points Bufferzone is not read; a radius is radius_m"
 HOLED = shapely.Polygon(SQUARE.exterior, [[HERE] * 4])  # a hole of one place takes nothing away
 
 
@@ -124,22 +122,20 @@ HOLED = shapely.Polygon(SQUARE.exterior, [[HERE] * 4])  # a hole of one place ta
         (
             [(shapely.Point(0, 0).buffer(0.1), {})],
             0,
-            [f"{NONE} of 1 in reach; are latitude and longitude exchanged?"],
+            ["zones: 0 of 1 in reach; are latitude and longitude exchanged?"],
         ),
-        ([(POINT, {})], 0, [f"{NONE} of 0 in reach; passed over: 1 point"]),
-        ([(POINT, {"Bufferzone": 150})], 0, [f"{NONE} of 0 in reach; passed over: 1 point", NOT_READ]),
         (
             [*WALLS, (HOLED, {})],
             in_metres(SQUARE).area,
             ["zones: 1 of 1 in reach (1 polygon); passed over: 2 walls"],
         ),
     ],
-    ids=["far", "point", "radius", "walls"],
+    ids=["far", "walls"],
 )
 def test_the_account_says_what_became_of_each(
     features: list[Feature], area: float, notes: list[str], tmp_path: Path
 ) -> None:
-    """No zone in reach is no fault; a point may be a zone under another key; what has no area is a wall."""
+    """No zone in reach is no fault; what has no area is a wall."""
     scenario, found = zones(tmp_path, features)
     assert found == [f"z.geojson: {note}" for note in notes]
     assert kept_out(scenario).area == pytest.approx(area, rel=1e-6)

@@ -110,7 +110,7 @@ GEOJSON_CASES = [
     ('{"features": [0, {"id": 1, "id": 2}]}', ": line 1, column 35", 'the key "id" is given twice'),
     ("[" * 100_000, "", "nested too deeply"),
     (f'{{"a": {"9" * 5000}}}', "", "too many digits"),
-    ('{"type": "Topology"}', ": type", 'got the text "Topology", must be "FeatureCollection"'),
+    ('{"type": "Sketch"}', ": type", 'got the text "Sketch", must be "FeatureCollection"'),
     (collection(), ": features", "got an empty list, must be a list of one feature or more"),
     (collection(feature(), crs={"name": "EPSG::3857"}), ": crs", "must be WGS 84"),
     (collection(feature() | {"geometry": None}), "", "it has no point, .* it has 1 feature without a place"),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import TypeAlias
 
 import numpy as np
 import shapely
@@ -12,6 +12,7 @@ import shapely
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.geo_file import Feature
+from nullpose.scenario.shapes import is_solid
 from nullpose.scenario.units import EARTHLY_RANGES
 
 RANGES = ("altitude_m", *EARTHLY_RANGES)
@@ -20,52 +21,106 @@ _FAR_M = 1e6  # an end that is not limited
 FOOT_M = 0.3048
 _WEATHER_M = 600.0  # a flight level is no further from 100 ft times it over the sea, at 950 to 1080 hPa
 _FLAT_M = 0.1  # a roof alone has less between its lowest and highest corner
-_UNITS_M = {"M": 1.0, "METER": 1.0, "METRE": 1.0, "0": 1.0, "FT": FOOT_M, "F": FOOT_M, "1": FOOT_M}
+_UNITS_M = {
+    **dict.fromkeys(("M", "MTR", "METER", "METERS", "METRE", "METRES", "0"), 1.0),
+    **dict.fromkeys(("FT", "F", "FOOT", "FEET", "1"), FOOT_M),
+}
 _FLIGHT_LEVELS = ("FL", "6")  # openAIP writes units and datums as words or as numbers
 _DATUMS = {"GND": "altitude_m", "AGL": "altitude_m", "SFC": "altitude_m", "0": "altitude_m"} | {
     **dict.fromkeys(("MSL", "AMSL", "STD", "1", "2"), "altitude_msl_m"),
     **dict.fromkeys(("WGS84", "W84", "HAE"), "altitude_ellipsoid_m"),
 }
+_WEATHER = (
+    f"is narrowed, being a fence, by {_WEATHER_M:g} m for the weather; state altitude_m or altitude_msl_m"
+)
+_ON_THE_GROUND = ("clampToGround", "clampToSeaFloor")
 _OF_KML = {"absolute": "altitude_msl_m", "relativeToGround": "altitude_m"}
-_LIKE_LIMITS = re.compile(r"upper|lower|floor|ceiling|limit|(?:\b|_)alt(?:\b|_|i)", re.IGNORECASE)
-_LIKE_TIMES = re.compile(r"applicab|schedule|hours|timestamp|^(?:begin|end)$|activ", re.IGNORECASE)
+_LIKE_LIMITS = re.compile(
+    r"upper|lower|floor|ceil|altit|elev|height|roof|hoehe|höhe|vertical|agl|msl|flight_?level"
+    r"|(?<![a-z])(?:(?:min|max|rel|abs)_?)?(?:alt|alts|top|bottom|base|limits?|z(?:_?min|_?max)?|fl|hgt)(?![a-z])"
+)
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_NO_LIMITS = {"altitudeMode", "alt_name", "alt_text", "speed_limit"}
+_SAYS_LIMITS = re.compile(r"\b(?:A?MSL|AGL|GND|SFC|UNL|FL ?\d+)\b|altitude|ceiling", re.IGNORECASE)
+_LIKE_TIMES = re.compile(
+    r"applicab|schedul|hours|timestamp|^(?:begin|start|end|until|when|status)$|activ|valid|expir|effectiv"
+    r"|(?:start|end)_?(?:date|time)",
+    re.IGNORECASE,
+)
 
 Ground = Mapping[str, float | None]
 """The origin's ground by the keys of a zone's altitudes, metres; None where the origin does not state it."""
 
 
-def altitude_limits(feature: Feature, ground_m: Ground) -> tuple[PlainTable, list[str]]:
+def altitude_limits(
+    feature: Feature, ground_m: Ground, *, is_fence: bool = False
+) -> tuple[PlainTable, list[str]]:
     """Read a feature's altitudes by the key of a zone, with remarks on what is not read.
 
-    Keys of a zone come first, then ED-318's layer, openAIP's ceilings, and KML's heights. Flight levels are
-    widened by 600 m for the weather.
+    Keys of a zone come first, then ED-318's layer, openAIP's ceilings, and KML's heights. Where the weather
+    moves flight levels, by 600 m, a zone is widened and a fence is narrowed.
 
     Args:
         feature: of any file.
         ground_m: of the scenario.
+        is_fence: whether it is safe to read less than it allows; otherwise, less than it forbids.
 
     Raises:
-        ScenarioError: the limits cannot be read, or need what the origin does not state.
+        ScenarioError: the limits cannot be read, or need what the origin does not state; or a fence states
+            some that are not read.
     """
-    properties, limits = feature.properties, _limits(feature)
-    found, unread = {key: properties[key] for key in RANGES if key in properties}, list[str]()
-    if not found and limits:
+    properties = feature.properties
+    found, read = {key: properties[key] for key in RANGES if key in properties}, {*RANGES}
+    is_ours, is_narrowed, likely = bool(found), False, dict(_likely(properties))
+    if not is_ours and (limits := _limits(feature)):
         low, high = (_end(*limit) for limit in limits)
-        found = _joined(feature, low, high, ground_m)
-    elif not found:
-        found, has_height = _of_kml(feature)
-        likely = [key for key in properties if _LIKE_LIMITS.search(key) and key != "altitudeMode"]
-        unread = [] if found else likely + ["height"] * has_height
+        found = _joined(feature, low, high, ground_m, -1.0 if is_fence else 1.0)
+        read = {place.removeprefix(f"{feature.place}.") for place, *_ in limits}
+        read |= {f"{path}Reference" for path in read}
+        is_narrowed = is_fence and any(end[2] for end in (low, high) if end)
+    elif not is_ours:
+        found, unread_heights = _of_corners(feature, ground_m)
+        likely |= unread_heights
+    unread = [path for path in likely if path not in read]
+    stated = [
+        path
+        for path in unread
+        if any(letter.isdigit() for letter in str(likely[path])) and (_is_limit(path) or not found)
+    ]
+    require(
+        not (is_fence and stated and not is_ours),
+        feature.place,
+        f"it is a fence and may bound the altitude by what is not read: {', '.join(stated)}; write "
+        "altitude_m = [low, high] beside it (or altitude_msl_m), which then counts alone, or remove it",
+    )
     times = [key for key in properties if _LIKE_TIMES.search(key)]
-    remarks = [f"counts at all altitudes; not read: {', '.join(unread)}"] if unread else []
-    return found, [*remarks, *([f"counts at all times; not read: {', '.join(times)}"] if times else [])]
+    counts = f"counts at {' and '.join(found) or 'all altitudes'}"
+    remarks: dict[str, object] = {f"{counts}; not read: {', '.join(unread)}": unread}
+    remarks |= {_WEATHER: is_narrowed, f"counts at all times; not read: {', '.join(times)}": times}
+    return found, [remark for remark, is_so in remarks.items() if is_so]
+
+
+def _likely(properties: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+    """Yield what looks like a limit of altitudes: its keys, joined by points, and its value."""
+    for key, value in properties.items():
+        if _is_limit(key) or (isinstance(value, str) and _SAYS_LIMITS.search(value)):
+            yield key, value
+        else:
+            inner = value if isinstance(value, list) else [value]
+            tables = (dict(_likely(each)) for each in inner if isinstance(each, dict))
+            yield from ((f"{key}.{path}", each) for table in tables for path, each in table.items())
+
+
+def _is_limit(key: str) -> bool:
+    """Tell whether a key looks like that of an altitude."""
+    return key not in _NO_LIMITS and bool(_LIKE_LIMITS.search(_CAMEL.sub("_", key).lower()))
 
 
 def _limits(feature: Feature) -> list[tuple[str, object, object, object]]:
     """Return place, value, unit and datum of the lower and the upper limit; nothing where none is stated."""
     properties, place = feature.properties, feature.place
     layer = properties.get("layer")
-    if isinstance(layer, dict):  # of ED-318
+    if isinstance(layer, dict) and {"lower", "upper"} & layer.keys():  # of ED-318
         return [
             (
                 f"{place}.layer.{word}",
@@ -83,12 +138,8 @@ def _limits(feature: Feature) -> list[tuple[str, object, object, object]]:
     return []
 
 
-class _End(NamedTuple):
-    """A lower or an upper limit: its height, the key that says over what, and how far it may be off."""
-
-    height_m: float
-    over: str
-    off_m: float = 0.0
+_End: TypeAlias = tuple[float, str, float]
+"""A lower or an upper limit: its height [m], the key that says over what, and how far it may be off [m]."""
 
 
 def _end(place: str, value: object, unit: object, datum: object) -> _End | None:
@@ -97,26 +148,30 @@ def _end(place: str, value: object, unit: object, datum: object) -> _End | None:
     unit, datum = str(unit).upper(), str(datum).upper()
     if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _FAR_M:
         if unit in _FLIGHT_LEVELS:
-            return _End(100.0 * FOOT_M * value, "altitude_msl_m", _WEATHER_M)
+            return 100.0 * FOOT_M * value, "altitude_msl_m", _WEATHER_M
         if unit in _UNITS_M and datum in _DATUMS:
-            off_m = _WEATHER_M if datum in ("STD", "2") else 0.0
-            return _End(value * _UNITS_M[unit], _DATUMS[datum], off_m)
+            return value * _UNITS_M[unit], _DATUMS[datum], _WEATHER_M if datum in ("STD", "2") else 0.0
     raise refusal(
         place, f"got {value!r} in {unit} over {datum}, must be a number in M, FT or FL over GND, MSL or WGS84"
     )
 
 
-def _joined(feature: Feature, low: _End | None, high: _End | None, ground_m: Ground) -> PlainTable:
+def _joined(
+    feature: Feature, low: _End | None, high: _End | None, ground_m: Ground, outwards: float
+) -> PlainTable:
     """Return both ends over one thing; the ground is a lower end for every upper one."""
     if low and low[:2] == (0.0, "altitude_m"):
         low = None
     if not (low or high):
         return {}
-    key, ends_m = (high or low or _End(0.0, "altitude_m")).over, [-_FAR_M, _FAR_M]
+    key, ends_m = (high or low or ("", "altitude_m"))[1], [-_FAR_M, _FAR_M]
     for side, end in enumerate((low, high)):
         if end:
-            shifted_m = end.height_m + shift_m(feature.place, end.over, key, ground_m)
-            ends_m[side] = shifted_m + (end.off_m if side else -end.off_m)
+            height_m, over, off_m = end
+            ends_m[side] = height_m + shift_m(feature.place, over, key, ground_m)
+            ends_m[side] += outwards * (off_m if side else -off_m)
+    is_left = ends_m[0] <= ends_m[1] or outwards > 0.0
+    require(is_left, feature.place, f"no altitude is left of it: it {_WEATHER}")
     return {key: ends_m}
 
 
@@ -144,19 +199,24 @@ def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
     return (ground_m[key] or 0.0) - (ground_m[over] or 0.0)
 
 
-def _of_kml(feature: Feature) -> tuple[PlainTable, bool]:
-    """Read the altitudes between roof and floor, or from the ground up to what is extruded.
+def _of_corners(feature: Feature, ground_m: Ground) -> tuple[PlainTable, PlainTable]:
+    """Read the altitudes between roof and floor, or from the ground up to what is extruded, in KML.
+
+    Corners on the ground are no roof; nor is a face by itself, which may follow the terrain.
 
     Returns:
-        The altitudes, and whether the corners have heights whose altitudeMode gives them a meaning.
+        The altitudes, and what of the heights of the corners is not read.
     """
-    mode = feature.properties.get("altitudeMode")
-    if mode not in _OF_KML or feature.geometry is None:
-        return {}, False
+    mode, is_extruded = (
+        feature.properties.get("altitudeMode", ""),
+        feature.properties.get("extrude") in (1, True),
+    )
     heights_m = shapely.get_coordinates(feature.geometry, include_z=True)[:, 2]
     heights_m = heights_m[np.isfinite(heights_m)]
-    low_m, high_m = heights_m.min(initial=np.inf), heights_m.max(initial=-np.inf)
-    is_extruded = feature.properties.get("extrude") in (1, True)
-    if not len(heights_m) or (high_m - low_m < _FLAT_M and not is_extruded):
-        return {}, bool(np.any(heights_m))
-    return {_OF_KML[mode]: [-_FAR_M if is_extruded else float(low_m), float(high_m)]}, True
+    if mode in _ON_THE_GROUND or not np.any(heights_m):
+        return {}, {}
+    low_m, high_m = float(heights_m.min()), float(heights_m.max())
+    is_above = mode in _OF_KML and high_m > (ground_m[_OF_KML[mode]] or 0.0)
+    if is_above and (is_extruded or (high_m - low_m >= _FLAT_M and is_solid(feature.geometry))):
+        return {_OF_KML[mode]: [-_FAR_M if is_extruded else low_m, high_m]}, {}
+    return {}, {f"heights of its corners{f' ({mode})' if mode else ''}": high_m}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import TypeAlias, TypeVar
 
@@ -14,6 +14,7 @@ from shapely import Polygon
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
+from nullpose.scenario.area_roles import STAY_OUT
 from nullpose.scenario.areas import Area, areas_of, notes_on, polygons_of
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import refusal, require
@@ -22,14 +23,17 @@ from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu, wrap
 from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.polygon import MOST_CORNERS
-from nullpose.scenario.shapes import corners_of
+from nullpose.scenario.shapes import DISC_SIDES, corners_of, disc
 from nullpose.scenario.units import EARTHLY_RANGES
+from nullpose.scenario.wording import described
 
 REACH_M = 6e4
 """How far east, west, north and south of the origin zones of files count; in degrees this square lies within
 the 100 km that a frame holds."""
 _HALVES_M = (REACH_M, 3e4, 1.5e4, 8e3, 4e3, 2e3)  # of squares about the origin
 _BOUNDS = {"x_m", "y_m", "geofence_m", "geofence_lat_lon_deg", *RANGES}
+FENCES = {"geofence_m", "geofence_lat_lon_deg"}
+"""The keys of an airspace that state a fence, by metres or by degrees."""
 _POLE_DEG = 85.0  # longitudes say little beyond
 
 
@@ -54,7 +58,9 @@ def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     """
     listed, place = list(airspace.get("no_fly", ())), _place(origin)
     names = {str(zone.get("name")) for zone in listed if isinstance(zone, Mapping)}
-    areas, counts, remarks = areas_of(features, reach_deg(origin), _ground_m(origin), names)
+    has_fence = not FENCES.isdisjoint(airspace)
+    areas, counts, remarks = areas_of(features, reach_deg(origin), _ground_m(origin), names, fence=has_fence)
+    require(counts["area"], "", f"nothing in it is a zone: {'; '.join(notes_on(areas, counts, remarks))}")
     bounds: PlainTable = {}
     words = ""
     for half_m in _HALVES_M:
@@ -68,7 +74,7 @@ def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
         words = " and ".join(f"{key} = {ends}" for key, ends in bounds.items()) or "the airspace of the file"
     if words:
         remarks.append(f"they are cut to {words}, since all have too many corners")
-    zones = [(zone, area.place) for area in areas for zone in area.zones()]
+    zones = [(zone, area.place) for area in areas for zone in area.zones() if zone not in listed]
     places = {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(zones, len(listed))}
     filled = {**airspace, **bounds, "no_fly": [*listed, *(zone for zone, _ in zones)]}
     return filled, list(notes_on(areas, counts, remarks)), places
@@ -99,38 +105,62 @@ def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     """
     place, ground_m = _place(origin), _ground_m(origin)
     reach = _everywhere(0.0 if place is None else float(place[1]))
-    areas, counts, remarks = areas_of(features, reach, ground_m, is_fence=True)
-    is_fence = len(areas) == len(polygons_of(areas)) == 1 and not areas[0].cylinders
-    require(is_fence, "", f"it has {counts['area']} areas, must be one polygon, the fence")
-    (polygon,) = areas[0].polygons
+    names = {str(zone.get("name")) for zone in airspace.get("no_fly", ()) if isinstance(zone, Mapping)}
+    areas, counts, remarks = areas_of(features, reach, ground_m, names)
+    fences = [area for area in areas if area.role != STAY_OUT]
+    outlines = [part for area in fences for part in (*area.polygons, *area.cylinders)]
+    beside = [(zone, area.place) for area in areas if area not in fences for zone in area.zones()]
+    require(
+        len(outlines) == 1,
+        "",
+        f"it has {len(outlines)} areas{f' beside {len(beside)} to stay out of' * bool(beside)}, must be one "
+        "polygon or circle, the fence",
+    )
+    polygon, radius_words = _outline(fences[0], ground_m)
     holes = [
         {"name": f"hole {index} of the fence", "polygon_lat_lon_deg": corners_of(ring)}
         for index, ring in enumerate(polygon.interiors, 1)
     ]
     fenced = {**airspace, "geofence_lat_lon_deg": corners_of(polygon.exterior)}
-    fenced |= {"no_fly": [*holes, *airspace.get("no_fly", ())]} if holes else {}
-    fenced |= dict(_altitudes(airspace, areas[0], ground_m))
-    places = {"airspace.geofence_lat_lon_deg": areas[0].place}
-    return fenced, list(notes_on(areas, counts, remarks, is_fence=True)), places
+    zones = [*holes, *(zone for zone, _ in beside), *airspace.get("no_fly", ())]
+    fenced |= {"no_fly": zones} if holes or beside else {}
+    fenced |= _altitudes(airspace, fences[0], ground_m)
+    places = {"airspace.geofence_lat_lon_deg": fences[0].place}
+    places |= {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(beside, len(holes))}
+    remarks += [f"zones beside it: {len(beside)}"] * bool(beside)
+    return fenced, list(notes_on(fences, counts, [*radius_words, *remarks], is_fence=True)), places
 
 
-def _altitudes(airspace: PlainTable, fence: Area, ground_m: Ground) -> Iterator[tuple[str, list[float]]]:
-    """Yield the airspace's ranges of altitudes within those of its fence."""
+def _outline(fence: Area, ground_m: Ground) -> tuple[Polygon, list[str]]:
+    """Return the polygon of a fence, or one in its circle, and what is said of the circle."""
+    alt_m = ground_m["altitude_ellipsoid_m"] or ground_m["altitude_msl_m"] or 0.0  # of the local frame
+    for lon_deg, lat_deg, stated_m in fence.cylinders:
+        radius_m = NoFlyZone._sound_part({"radius_m": stated_m}).radius_m
+        if radius_m is None:
+            raise refusal(f"{fence.place}.radius_m", f"got {described(stated_m)}, must be a radius in m")
+        less_m = radius_m * (1.0 - np.cos(np.pi / DISC_SIDES))
+        sides = f"a polygon of {DISC_SIDES} sides in it, up to {less_m:.2g} m smaller"
+        return disc(lon_deg, lat_deg, radius_m, alt_m), [f"its circle of {radius_m:g} m counts as {sides}"]
+    return fence.polygons[0], []
+
+
+def _altitudes(airspace: PlainTable, fence: Area, ground_m: Ground) -> dict[str, list[float]]:
+    """Return the airspace's ranges of altitudes within those of its fence."""
     bounds, limits = _bounds(airspace), NoFlyZone._sound_part(fence.limits)
-    for key, over in product(RANGES, fence.limits):
-        ends_m, limits_m = getattr(bounds, key), getattr(limits, over)
+    found = {key: list(ends_m) for key in RANGES if (ends_m := getattr(bounds, key)) is not None}
+    for key, over in product(list(found), fence.limits):
+        limits_m = getattr(limits, over)
         if limits_m is None:
             raise refusal(f"{fence.place}.{over}", f"got {fence.limits[over]!r}, must be [low, high] in m")
-        if ends_m is not None:
-            over_m = shift_m(fence.place, over, key, ground_m)
-            low_m, high_m = max(ends_m[0], limits_m[0] + over_m), min(ends_m[1], limits_m[1] + over_m)
-            require(
-                low_m <= high_m,
-                fence.place,
-                f"its {over} = {fence.limits[over]} has no altitude in common with the airspace's {key} = "
-                f"{airspace[key]}; change either",
-            )
-            yield key, [low_m, high_m]
+        over_m = shift_m(fence.place, over, key, ground_m)
+        found[key] = [max(found[key][0], limits_m[0] + over_m), min(found[key][1], limits_m[1] + over_m)]
+        require(
+            found[key][0] <= found[key][1],
+            fence.place,
+            f"its {over} = {fence.limits[over]} has no altitude in common with the airspace's {key} = "
+            f"{airspace[key]}{'; '.join(['', *fence.remarks])}; change either",
+        )
+    return found if fence.limits else {}
 
 
 def _ground_m(origin: PlainTable) -> Ground:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, count
 
 import shapely
@@ -13,14 +13,24 @@ from shapely import Polygon
 
 from nullpose.files import PlainTable
 from nullpose.scenario.altitude_limits import Ground, altitude_limits
-from nullpose.scenario.faults import EXCHANGED, call_each, raise_all
+from nullpose.scenario.area_roles import FREE, STAY_OUT, UNSTATED, role_of
+from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, require
 from nullpose.scenario.geo_file import NAMES, Feature
 from nullpose.scenario.geodesy import wrapped
-from nullpose.scenario.shapes import box_about, corners_of, cut, near, parts_of, sound
+from nullpose.scenario.shapes import box_about, connected, corners_of, cut, near, parts_of, sound
 
-_LONGEST_NAME = 80
-_LIKE_RADII = re.compile("radi|buffer|diameter", re.IGNORECASE)
-_PASSED_OVER = ("point", "line", "polygon", "wall", "feature without a place", "other feature")
+_LONGEST_NAME, _MOST_WORDS = 80, 6
+_LIKE_RADII = re.compile("radi|buffer|diameter|width", re.IGNORECASE)
+_PASSED_OVER = (
+    "fence",
+    "permission",
+    "point",
+    "line",
+    "polygon",
+    "wall",
+    "feature without a place",
+    "other feature",
+)
 
 
 @dataclass(slots=True)
@@ -34,6 +44,8 @@ class Area:
         cylinders: longitude, latitude and radius in metres, each.
         limits: altitudes by the key of a zone.
         remarks: on what of it is not read.
+        role: whether flying is allowed in it.
+        unknown: words that may say so, and are not known.
     """
 
     place: str
@@ -42,6 +54,8 @@ class Area:
     cylinders: list[tuple[float, float, object]]
     limits: PlainTable = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
+    role: str = UNSTATED
+    unknown: list[str] = field(default_factory=list)
 
     def zones(self) -> Iterator[PlainTable]:
         """Yield raw no-fly zones, holes filled."""
@@ -88,11 +102,14 @@ def notes_on(
     shapes = counted({"polygon": len(polygons), "cylinder": sum(len(area.cylinders) for area in areas)})
     holes = sum(len(polygon.interiors) for polygon in polygons)
     limits = areas[0].limits if is_fence else {}
-    head = "fence: 1 polygon" if is_fence else f"zones: {len(areas)} of {counts['area']} in reach"
+    head = f"fence: {shapes}" if is_fence else f"zones: {len(areas)} of {counts['area']} in reach"
     head += f" ({shapes})" if areas and not is_fence else ""
+    unknown = list(dict.fromkeys(word for area in areas for word in area.unknown))
     parts = {
         EXCHANGED: counts["area"] and not areas,
         f"holes {'that are zones' if is_fence else 'filled'}: {holes}": holes,
+        f"not known to allow or to forbid: {', '.join(unknown[:_MOST_WORDS])}"
+        f"{' ...' * (len(unknown) > _MOST_WORDS)}": unknown,
         f"borders that cross, all inside counts: {counts['crossing']}": counts["crossing"],
         ", ".join(f"{key} = {ends}" for key, ends in limits.items()): limits,
     }
@@ -123,19 +140,20 @@ def areas_of(
     ground_m: Ground,
     names: set[str] | None = None,
     *,
-    is_fence: bool = False,
+    fence: bool | None = None,
 ) -> tuple[list[Area], Counter[str], list[str]]:
     """Find the areas of features: polygons, closed lines, and points with a radius.
 
     The parts of a feature are united; walls, which cover no ground, are left out. An area out of reach is
-    counted and left out.
+    counted and left out, and so is one of a file of zones in which flying is allowed.
 
     Args:
         features: of a file.
         reach: the box of degrees in which areas count.
         ground_m: the origin's ground.
         names: that are taken.
-        is_fence: whether every crossing of a border is a fault; a zone may have small ones.
+        fence: of zones, whether the airspace has a fence, without which none may be among them; None of the
+            file of a fence, in which every crossing of a border is a fault. A zone may have small ones.
 
     Returns:
         The areas within reach, counts of features by what became of them, and remarks on all of them.
@@ -146,18 +164,34 @@ def areas_of(
     counts, taken = Counter[str](), set(names or ())
 
     def whole_area(feature: Feature) -> list[Area]:
-        found = area_of(feature, reach, counts, is_fence)
+        role, words, unknown = role_of(feature)
+        is_kept = fence is None or role in (STAY_OUT, UNSTATED)
+        require(
+            is_kept or fence or role == FREE,
+            feature.place,
+            f"it is {role} ({words}), not out of; name its file in geofence_from, too or instead",
+        )
+        counts["permission" if role == FREE else "fence"] += not is_kept
+        found = area_of(feature, reach, counts, fence is None) if is_kept else []
         for area in found:
-            area.limits, area.remarks = altitude_limits(feature, ground_m)
+            area.role, area.unknown = role, unknown
+            is_fence = fence is None and role != STAY_OUT
+            area.limits, area.remarks = altitude_limits(feature, ground_m, is_fence=is_fence)
             area.name = unique(area.name, taken)
         return found
 
-    areas, faults = call_each(whole_area, features)
+    areas, faults = call_each(whole_area, chain.from_iterable(map(_pieces, features)))
     raise_all(faults)
-    points = [each for each in features if getattr(each.geometry, "geom_type", "") in ("Point", "MultiPoint")]
-    keys = {key for point in points for key in point.properties if _LIKE_RADII.search(key)} - {"radius_m"}
-    unread = f"of points {', '.join(sorted(keys))} is not read; a radius is radius_m"
+    keys = {key for each in features for key in each.properties if _LIKE_RADII.search(key)} - {"radius_m"}
+    unread = f"{', '.join(sorted(keys))} is not read; a radius is radius_m, of a point"
     return list(chain.from_iterable(areas)), counts, [unread] if keys else []
+
+
+def _pieces(feature: Feature) -> list[Feature]:
+    """Return a feature of KML once for each solid that it may hold, with its own heights."""
+    if feature.geometry is None or "altitudeMode" not in feature.properties:
+        return [feature]
+    return [replace(feature, geometry=piece) for piece in connected(feature.geometry)] or [feature]
 
 
 def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> list[Area]:

@@ -1,14 +1,14 @@
-"""Features of geographic files: GeoJSON, KML, KMZ, GeoPackage, shapefile and GPX.
+"""Features of geographic files: GeoJSON, KML, KMZ, plans of QGroundControl, GeoPackage, shapefile and GPX.
 
-GeoJSON is read here, since GDAL drops what ED-318 states inside a geometry; GDAL (pyogrio) reads the rest.
+GeoJSON and KML are read here, since GDAL drops what a geometry states beside its coordinates; GDAL (pyogrio)
+reads the last three.
 """
 
 from __future__ import annotations
 
 import json
-import re
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -21,9 +21,11 @@ import shapely.geometry
 from shapely.errors import ShapelyError
 from shapely.geometry.base import BaseGeometry
 
-from nullpose.files import PlainTable, parse_json
+from nullpose.files import PlainTable
 from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, refusal, require
-from nullpose.scenario.kml import kml_of_kmz, require_whole, root_of
+from nullpose.scenario.geo_json import members_of, require_wgs84, value_of
+from nullpose.scenario.kml import kml_of_kmz, placemarks_of, root_of
+from nullpose.scenario.shapefile import require_whole
 from nullpose.scenario.toml_file import decoded
 from nullpose.scenario.wording import described
 
@@ -33,12 +35,10 @@ MOST_BYTES = 60_000_000
 NAMES = ("name", "Name", "NAME", "title", "identifier", "designator")
 """The properties that may name a feature, the first first."""
 _SIGNS = {".kmz": b"PK", ".gpkg": b"SQLite format 3\0", ".shp": b"\0\0\x27\x0a", ".kml": b"", ".gpx": b""}
-_GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
-_WGS84 = ("CRS84", "CRS84h", "4326", "4979", "4258")  # as the names of reference systems end
 # Of GDAL's warnings: rings are closed here; age, style and measures along lines change no place.
-_NO_MATTER = ("Non closed ring", "bad application_id", "parsing kml Style", "Measured (M) geometry types")
+_NO_MATTER = ("Non closed ring", "bad application_id", "Measured (M) geometry types")
+_OF_GEOJSON = ("type", "coordinates", "geometries", "geometry", "properties", "id", "bbox")
 _POINTS_OF_LINES = {"route_points", "track_points"}  # of GPX, which are in its lines too
-_OF_DRAWING = {"id", "tessellate", "visibility", "drawOrder", "icon", "snippet"}  # GDAL's columns of KML
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,62 +69,39 @@ def features_of(content: bytes, path: Path) -> list[Feature]:
         ScenarioError: it cannot be read as a whole, or is not in latitude and longitude.
     """
     ending = path.suffix.lower()
-    if ending in (".geojson", ".json"):
-        return _features_of_json(decoded(content))
+    if ending in (".geojson", ".json", ".plan"):
+        of_members, faults = call_each(_features_of_member, members_of(decoded(content)).items())
+        raise_all(faults)
+        return list(chain.from_iterable(of_members))
     require(
         content.startswith(_SIGNS[ending]),
         "",
         f"it does not begin as a {ending} file does; is it of another kind?",
     )
-    is_kml = ending in (".kml", ".kmz")
-    if ending == ".kmz":
-        content = kml_of_kmz(content, MOST_BYTES)
-    document = root_of(content, "kml" if is_kml else "gpx") if is_kml or ending == ".gpx" else None
-    # GDAL knows an old GeoPackage by its ending, and reads the journal beside it
-    features = list(_features_of_gdal(path if document is None else content, is_kml))
-    if is_kml and document is not None:
-        corners = shapely.get_num_coordinates([feature.geometry for feature in features]).sum()
-        require_whole(document, len(features), corners)
+    if ending in (".kml", ".kmz"):
+        content = kml_of_kmz(content, MOST_BYTES) if ending == ".kmz" else content
+        features = [
+            _feature(place, shape, _cells(texts.items()), place)
+            for place, shape, texts in placemarks_of(root_of(content, "kml"))
+        ]
+    else:
+        if ending == ".gpx":
+            root_of(content, "gpx")
+        elif ending == ".shp":
+            require_whole(content, path, MOST_BYTES)
+        # GDAL knows an old GeoPackage by its ending, and reads the journal beside it
+        features = list(_features_of_gdal(content if ending == ".gpx" else path))
     require(features, "", "there is no feature in it, must be one or more")
     return features
 
 
-def _features_of_json(text: str) -> list[Feature]:
-    data = parse_json(text)
-    require(isinstance(data, dict), "", f"got {described(data)}, must be a FeatureCollection")
-    kind, members = data.get("type"), data.get("features")
-    is_ed_269 = isinstance(members, list) and any(isinstance(_of(each, "geometry"), list) for each in members)
-    require(not is_ed_269, "", "this is ED-269 JSON, which is not read; convert it to ED-318, a GeoJSON")
-    if kind in (*_GEOMETRIES, "GeometryCollection", "Feature"):
-        kind, members = (
-            "FeatureCollection",
-            [data if kind == "Feature" else {"type": "Feature", "geometry": data}],
-        )
+def _features_of_member(placed: tuple[str, Any]) -> list[Feature]:
+    place, member = placed
+    geometry, properties = value_of(member, "geometry"), value_of(member, "properties")
     require(
-        kind == "FeatureCollection",
-        "type",
-        f'got {described(kind)}, must be "FeatureCollection", "Feature" or a geometry',
-    )
-    require(
-        isinstance(members, list) and members,
-        "features",
-        f"got {described(members)}, must be a list of one feature or more",
-    )
-    if "crs" in data:
-        _require_wgs84(json.dumps(data["crs"]).rstrip('}"]'))
-    features, faults = call_each(_features_of_member, enumerate(members))
-    raise_all(faults)
-    return list(chain.from_iterable(features))
-
-
-def _features_of_member(numbered: tuple[int, Any]) -> list[Feature]:
-    index, member = numbered
-    place = f"features[{index}]"
-    geometry, properties = _of(member, "geometry"), _of(member, "properties")
-    require(
-        _of(member, "type") == "Feature",
+        value_of(member, "type") == "Feature",
         place,
-        f'got {described(_of(member, "type"))}, must be an object with "type": "Feature"',
+        f'got {described(value_of(member, "type"))}, must be an object with "type": "Feature"',
     )
     require("geometry" in member, f"{place}.geometry", "missing; a feature without a place states null")
     require(
@@ -132,24 +109,26 @@ def _features_of_member(numbered: tuple[int, Any]) -> list[Feature]:
         f"{place}.properties",
         f"got {described(properties)}, must be an object",
     )
-    parts = _of(geometry, "geometries")
+    parts = value_of(geometry, "geometries")
     if isinstance(parts, list) and any({"layer", "extent"} & set(each) for each in parts if each):
         shapes = {f"{place}.geometry.geometries[{index}]": each for index, each in enumerate(parts)}
     else:
         shapes = {f"{place}.geometry": geometry}
-    features = []
-    for where, shape in shapes.items():
-        geometric = ("type", "coordinates", "geometries")
-        beside = {key: shape[key] for key in shape if key not in geometric} if isinstance(shape, dict) else {}
-        found = {key: value for key, value in {**(properties or {}), **beside}.items() if value is not None}
-        features.append(
-            Feature(where.removesuffix(".geometry"), _shape(shapely.geometry.shape, shape, where), found)
-        )
-    return features
+    whole = _beside(member) | (properties or {})
+    return [
+        _feature(where.removesuffix(".geometry"), shape, whole | _beside(shape), where)
+        for where, shape in shapes.items()
+    ]
 
 
-def _of(value: object, key: str) -> Any:
-    return value.get(key) if isinstance(value, dict) else None
+def _beside(table: object) -> PlainTable:
+    """Return what a feature or a geometry of GeoJSON states beside what the standard names."""
+    return {key: table[key] for key in table if key not in _OF_GEOJSON} if isinstance(table, dict) else {}
+
+
+def _feature(place: str, shape: object, properties: PlainTable, where: str) -> Feature:
+    stated = {key: value for key, value in properties.items() if value is not None}
+    return Feature(place, _shape(shapely.geometry.shape, shape, where), stated)
 
 
 def _shape(read: Callable[[Any], BaseGeometry], geometry: object, place: str) -> BaseGeometry | None:
@@ -175,7 +154,7 @@ def _layers_of_gdal(source: Path | bytes) -> list[tuple[str, Any]]:
     try:
         import pyogrio
     except ImportError:
-        raise refusal("", "all but GeoJSON and CSV needs pyogrio; pip install 'nullpose[gis]'") from None
+        raise refusal("", "this kind of file needs pyogrio; in a clone: pip install -e '.[gis]'") from None
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         try:
@@ -193,24 +172,25 @@ def _layers_of_gdal(source: Path | bytes) -> list[tuple[str, Any]]:
     return layers
 
 
-def _features_of_gdal(source: Path | bytes, is_kml: bool) -> Iterator[Feature]:
-    numbers, left_out = count(), _OF_DRAWING if is_kml else set()
+def _features_of_gdal(source: Path | bytes) -> Iterator[Feature]:
+    numbers = count()
     read_wkb = partial(shapely.from_wkb, on_invalid="fix")
     for layer, (meta, _, shapes, columns) in _layers_of_gdal(source):
         if shapes is None:  # a table, such as of styles
             shapes = [None] * len(columns[0]) if columns else []
         else:
-            _require_wgs84(str(meta["crs"]))
+            require_wgs84(str(meta["crs"]))
         for index, shape in enumerate(shapes):
-            found = {
-                key: value
-                for key, column in zip(meta["fields"], columns, strict=True)
-                if key not in left_out and (value := _cell(column[index], key in NAMES)) not in (None, "")
-            }
+            found = _cells(zip(meta["fields"], (column[index] for column in columns), strict=True))
             name, number = found.get("Name", found.get("name")), next(numbers)
-            label = f"[{number}]" if name is None else f' "{name}"'
-            place = f"{'Placemark' if is_kml else layer}{label}"
+            place = f"{layer}[{number}]" if name is None else f'{layer} "{name}"'
             yield Feature(place, _shape(read_wkb, shape, place), found)
+
+
+def _cells(texts: Iterable[tuple[str, object]]) -> PlainTable:
+    """Return the values of a table's row that are not empty, by the names of their columns."""
+    cells = ((key, _cell(value, key in NAMES)) for key, value in texts)
+    return {key: value for key, value in cells if value not in (None, "")}
 
 
 def _cell(value: object, is_name: bool) -> object:
@@ -223,10 +203,3 @@ def _cell(value: object, is_name: bool) -> object:
         with suppress(ValueError, RecursionError):
             return json.loads(value)
     return None if value is None or value != value else value
-
-
-def _require_wgs84(system: str) -> None:
-    if not system.endswith(_WGS84):
-        name = re.search(r'"([^"]+)"', system)
-        got = f"got {name[1] if name else system[:60]}" if system != "None" else "there is none"
-        raise refusal("crs", f"{got}, must be WGS 84 (EPSG:4326) or EPSG:4258; convert the file")

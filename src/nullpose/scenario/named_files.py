@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path, PurePath
 from typing import TypeVar
@@ -14,11 +14,12 @@ import numpy as np
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable
 from nullpose.scenario.antenna import with_harmonics
-from nullpose.scenario.area_files import REACH_M, Filled, with_fence, with_zones
+from nullpose.scenario.area_files import FENCES, REACH_M, Filled, with_fence, with_zones
 from nullpose.scenario.building_files import buildings_of
 from nullpose.scenario.buildings import Building
 from nullpose.scenario.faults import raise_all, refusal, require
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
+from nullpose.scenario.geo_json import HOME
 from nullpose.scenario.node_files import nodes_of_csv, nodes_of_features
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_content, file_text, inside
@@ -27,8 +28,7 @@ from nullpose.scenario.wording import described
 _NODES_KEY, _FENCE_KEY, _ZONES_KEY = "nodes_from", "geofence_from", "no_fly_from"
 _BUILDINGS_KEY = "buildings_from"
 _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
-_AREA_FILE = FileKind("a file of areas", "zones.geojson", ENDINGS)
-_FENCES = {"geofence_m", "geofence_lat_lon_deg"}
+_AREA_FILE = FileKind("a file of areas", "zones.geojson", (*ENDINGS, ".plan"))
 _STEP = re.compile(r"(?=[.\[])")
 _MEMBER = re.compile(r"[\w.]+\[\d+\]")
 _Found = TypeVar("_Found")
@@ -54,6 +54,8 @@ class NamedFiles:
             tables |= {"antenna": self._antenna(tables["antenna"])}
         airspace = tables.get("airspace")
         if isinstance(airspace, dict) and isinstance(airspace.get("no_fly", []), list):
+            if "origin" not in tables and (origin := self._home(airspace)):
+                tables |= {"origin": origin}
             tables |= {"airspace": self._airspace(airspace, origin)}
         if isinstance(buildings := tables.get("buildings"), list):
             tables |= {"buildings": self._buildings(buildings, origin)}
@@ -137,10 +139,23 @@ class NamedFiles:
         for note in notes:
             self._on_note(f"{file}: {note}")
 
+    def _home(self, airspace: PlainTable) -> PlainTable:
+        """Return the home of a plan that holds the areas, as an origin; nothing without one."""
+        plans = [
+            name for key in (_FENCE_KEY, _ZONES_KEY) if (name := str(airspace.get(key))).endswith(".plan")
+        ]
+        for plan in plans[:1]:
+            with suppress(ScenarioError):  # which is told where the areas are read
+                features = self._features(self._path(plan, _AREA_FILE), _AREA_FILE)
+                homes = [each.properties["origin"] for each in features if each.place == HOME]
+                self._note(plan, [f"its home is the origin: {home}" for home in homes])
+                return dict(*homes)
+        return {}
+
     def _airspace(self, airspace: PlainTable, origin: PlainTable) -> PlainTable:
         """Fill in the fence and the zones of other files."""
         for key, fill in ((_FENCE_KEY, with_fence), (_ZONES_KEY, with_zones)):
-            if key in airspace and not (key == _FENCE_KEY and _FENCES & airspace.keys()):
+            if key in airspace and not (key == _FENCE_KEY and FENCES & airspace.keys()):
                 rest = {other: value for other, value in airspace.items() if other != key}
                 whole = partial(fill, airspace=rest, origin=origin)
                 self._keys += [f"airspace.{key}"] * (key == _ZONES_KEY)

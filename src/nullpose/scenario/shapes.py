@@ -12,11 +12,13 @@ from shapely.geometry.base import BaseGeometry
 
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import require
-from nullpose.scenario.geodesy import wrapped
+from nullpose.scenario.geodesy import geodetic_from_enu, wrapped
 
 _SAME_CORNER_DEG = 9e-8  # a centimetre
 _STRAIGHT_DEG = 0.02  # an edge of this length, straight in degrees, is within 0.2 m of straight in metres
 _CUT_DEG = 0.05  # the same within a metre, for edges that bound nothing
+DISC_SIDES = 180
+"""How many sides the polygon has that stands for a round fence."""
 _LOOPS = 0.01  # of the area inside a ring: larger loops may mean that its corners are out of order
 
 
@@ -73,6 +75,32 @@ def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:
 
 def _valid(polygon: Polygon) -> BaseGeometry:
     return shapely.make_valid(polygon, method="structure", keep_collapsed=False)
+
+
+def is_solid(faces: BaseGeometry | None) -> bool:
+    """Check if polygons have a wall among them, or lie one above the other, as a roof and a floor do."""
+    polygons = [shapely.make_valid(part) for part in parts_of(shapely.force_2d(faces))]
+    areas = shapely.area(polygons)
+    has_walls = bool(np.any(areas <= _SAME_CORNER_DEG * shapely.length(polygons)))
+    return has_walls or areas.sum() > (2.0 - _LOOPS) * shapely.union_all(polygons).area
+
+
+def connected(geometry: BaseGeometry) -> Iterator[BaseGeometry]:
+    """Yield the parts of a geometry together that touch each other, seen from above."""
+    parts = list(parts_of(geometry))
+    seen = [shapely.buffer(shapely.make_valid(shapely.force_2d(part)), _SAME_CORNER_DEG) for part in parts]
+    for region in parts_of(shapely.union_all(seen)):
+        yield shapely.GeometryCollection(
+            [part for part, each in zip(parts, seen, strict=True) if each.intersects(region)]
+        )
+
+
+def disc(lon_deg: float, lat_deg: float, radius_m: float, alt_m: float) -> Polygon:
+    """Return a polygon with its corners on a circle [m]; its sides are up to 0.015 % of the radius inside."""
+    angles = np.linspace(0.0, 2.0 * np.pi, DISC_SIDES, endpoint=False)
+    places_m = radius_m * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
+    places = geodetic_from_enu(places_m, [lat_deg, lon_deg, alt_m])
+    return shapely.Polygon(places[:, 1::-1])
 
 
 def near(polygon: Polygon, middle_deg: float) -> Polygon:

@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from earth import local_m
 from export_scene import AIRSPACE, ORIGIN, POSITION_M
 from scipy.spatial.transform import Rotation
 
+import nullpose
 from nullpose import Pose, Result, Scenario, min_sinr
 from nullpose.report.export.plan import loss_words, plan_file
 
@@ -95,6 +97,33 @@ def test_where_to_take_off_is_said(placed: Placed) -> None:
     """An altitude over home is right only from the origin's; one over the sea is right from anywhere."""
     assert "take off at the origin's altitude" in loss_words(placed("alt_m"))
     assert "take off" not in loss_words(placed("alt_msl_m"))
+
+
+def test_home_is_over_what_the_waypoint_is_over(placed: Placed) -> None:
+    """QGroundControl's home is over the sea; over what it is where the origin knows no sea is said."""
+    for stated, height_m in (("alt_m", ORIGIN[2]), ("alt_msl_m", 185.0)):
+        result = placed(stated)
+        assert plan_of(result)["mission"]["plannedHomePosition"] == pytest.approx([*ORIGIN[:2], height_m])
+        assert ("home's is over the ellipsoid" in loss_words(result)) == (stated == "alt_m")
+    mission = plan_of(result)["mission"]
+    over_home_m = mission["items"][0]["Altitude"] - mission["plannedHomePosition"][2]
+    assert over_home_m == pytest.approx(result.pose.position_m[2], abs=1e-3)
+
+
+def test_a_plan_is_read_back(placed: Placed, tmp_path: Path) -> None:
+    """Its fence, its zones beside the pose and its home are those of the scene that it was written from."""
+    result = placed("alt_msl_m")
+    (tmp_path / "p.plan").write_bytes(plan_file(result))
+    text = "nodes = [{ position_m = [0, 0, 1], power_w = 1 }]\n"
+    text += "receiver = { noise_w = 1e-3, reference_gain_db = 0 }\n"
+    airspace = 'airspace = { altitude_m = [10, 90], geofence_from = "p.plan" }\n'
+    (tmp_path / "s.toml").write_text(text + airspace, encoding="utf-8")
+    read, written = nullpose.load(tmp_path / "s.toml"), result.scenario
+    assert read.origin.place([0.0, 0.0, 0.0]) == pytest.approx(written.origin.place([0.0, 0.0, 0.0]))
+    fences = [shapely.Polygon(each.airspace.geofence_m) for each in (read, written)]
+    assert fences[0].symmetric_difference(fences[1]).area < 1e-2
+    kept = [zone for zone in written.airspace.no_fly if zone.name != "barn"]
+    assert len(read.airspace.no_fly) == len(kept)
 
 
 def test_a_scene_without_a_fence(paper: Scenario, placed: Placed) -> None:

@@ -50,7 +50,7 @@ def plan_file(result: Result) -> bytes:
         "groundStation": "QGroundControl",
         "mission": {
             "items": [waypoint],
-            "plannedHomePosition": origin.geodetic.tolist(),
+            "plannedHomePosition": [*origin.geodetic.tolist()[:2], _home_m(origin)],
             "firmwareType": _PX4,
             "vehicleType": _MULTIROTOR,
             "cruiseSpeed": 5,
@@ -79,10 +79,18 @@ def loss_words(result: Result) -> str:
         f"from north, the {quantity.smallest} is {left}; with the pose's attitude it is {whole}"
     ]
     if require_origin(scenario).alt_msl_m is None:
-        sentences.append("the altitude counts from home: take off at the origin's altitude")
+        sentences.append(
+            "the altitude counts from home: take off at the origin's altitude; home's is over the "
+            "ellipsoid, since the origin does not state it over the sea"
+        )
     if zones := [zone.name for zone in scenario.airspace.no_fly if _is_over_or_under(zone, pose)]:
         sentences.append(f"left out, being above or below the pose: {', '.join(zones)}")
     return "; ".join(sentences)
+
+
+def _home_m(origin: Origin) -> float:
+    """Return the altitude of home [m]: over the sea, as a plan has it, or else over the ellipsoid."""
+    return float(origin.geodetic[2]) if origin.alt_msl_m is None else origin.alt_msl_m
 
 
 def _heading_deg(result: Result) -> float:
