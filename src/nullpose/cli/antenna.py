@@ -90,6 +90,6 @@ def compare(
     from nullpose.report.comparison import antennas_view
     from nullpose.study import compare_antennas
 
-    with compiling_announced(), Ticker("comparing antennas") as ticker:
+    with compiling_announced(proof.time_limit), Ticker("comparing antennas") as ticker:
         found = compare_antennas(scenario, on_progress=ticker, **proof.keywords(fast))
     tell(found, antennas_view, json_output, answer=antennas_answer(found))

@@ -39,7 +39,10 @@ def compare(
     from nullpose.study.vehicles import compare_airframes, compare_schemes, verdicts
 
     solver: Callable[..., ResultTable] = compare_airframes if airframes else compare_schemes
-    with compiling_announced(), Ticker("comparing vehicles" if airframes else "solving") as ticker:
+    with (
+        compiling_announced(proof.time_limit),
+        Ticker("comparing vehicles" if airframes else "solving") as ticker,
+    ):
         found = solver(scenario, on_progress=ticker, **proof.keywords(fast))
     if figure:
         from nullpose.report.figures.dots import draw_comparison

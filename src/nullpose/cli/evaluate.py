@@ -98,7 +98,7 @@ def evaluate(
     for warning in close_to_degrees(scenario.origin, [each.position_m for each in candidates], remedy):
         say(f"warning: {'--pose' if poses is None else poses}: {warning}", err=True)
     options, sizes = proof.keywords(), error_sizes(off)
-    with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
+    with compiling_announced(proof.time_limit), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         best = solve(scenario, on_progress=bar, **options)
     evaluation = evaluate_against(replace(best, error_sizes=sizes), candidates)
     found = evaluation.results[0] if poses is None else evaluation

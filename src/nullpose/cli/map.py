@@ -50,7 +50,7 @@ def best_map(
     require_map(scenario, altitude, cells)
     scene.check_outputs((f"--out ({name})", out / name) for name in ("map.csv", "map.png", "map.pdf"))
     options = proof.keywords(fast)
-    with compiling_announced(), GapBar(SolveOptions(**options).of(scenario).target) as bar:
+    with compiling_announced(proof.time_limit), GapBar(SolveOptions(**options).of(scenario).target) as bar:
         result = solve(scenario, scheme.value, on_progress=bar, **options)
         field = value_map(result, altitude_m=altitude, cells=cells)
     files = write_map(result, field, prepare_folder(out), width)

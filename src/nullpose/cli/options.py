@@ -53,7 +53,13 @@ Overrides = Annotated[
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the random starts.")]
 
 TimeLimit = Annotated[
-    float, typer.Option("--time-limit", metavar="S", help="Stop each proof after S seconds.")
+    float | None,
+    typer.Option(
+        "--time-limit",
+        metavar="S",
+        help="Stop each proof after S seconds.",
+        show_default="60, and the time in which kernels are compiled",
+    ),
 ]
 
 Fast = Annotated[bool, typer.Option("--fast", help="No proof, only a search from more starts.")]
@@ -136,6 +142,11 @@ class SceneOptions:
         check_outputs(files_of(self.file, self.overrides or ()), outputs)
 
 
+def limit_keyword(time_limit: float | None) -> SolveKeywords:
+    """Name a time limit as the solver takes it; nothing if none is stated."""
+    return {} if time_limit is None else {"time_limit_s": time_limit}
+
+
 @dataclass(frozen=True, kw_only=True)
 class ProofOptions:
     """The options of every verb that proves."""
@@ -149,7 +160,7 @@ class ProofOptions:
             show_default="1e-6 for 1 to 3 nodes, 1e-4 for 4 to 20, 1e-3 for more",
         ),
     ] = None
-    time_limit: TimeLimit = 60.0
+    time_limit: TimeLimit = None
     node_limit: Annotated[
         int, typer.Option("--node-limit", metavar="N", help="Stop each proof after N branch-and-bound boxes.")
     ] = 10**9
@@ -158,8 +169,8 @@ class ProofOptions:
     def keywords(self, fast: bool = False) -> SolveKeywords:
         """Name the options as the solver takes them."""
         return {
+            **limit_keyword(self.time_limit),
             "gap": self.gap,
-            "time_limit_s": self.time_limit,
             "node_limit": self.node_limit,
             "certify": not fast,
             "seed": self.seed,

@@ -28,7 +28,7 @@ class Plain(Protocol):
 
 
 Found = TypeVar("Found", bound=Plain)
-_COMPILING = "Compiling kernels for this machine (once for each kind of scene, about 20 s) ..."
+_COMPILING = "Compiling kernels, once for this machine ..."
 
 
 def tell(
@@ -91,13 +91,18 @@ def show_json(value: object) -> None:
 
 
 @contextmanager
-def compiling_announced() -> Iterator[None]:
-    """Let Python run kernels until other processes have compiled them; say so where that is waited for."""
+def compiling_announced(time_limit: float | None = None) -> Iterator[None]:
+    """Let Python run kernels until other processes have compiled them; say so where that is waited for.
+
+    Args:
+        time_limit: what the command line states, which counts the time of compiling; None for nothing.
+    """
     from nullpose.solver.background_compiler import BackgroundCompiler
     from nullpose.solver.compiling import announce_compiling
 
     announce = cache(partial(say, _COMPILING, err=True))
-    with BackgroundCompiler(announce).in_use(), announce_compiling(announce):
+    compiler = BackgroundCompiler(announce, counts=time_limit is not None)
+    with compiler.in_use(), announce_compiling(announce):
         yield
 
 

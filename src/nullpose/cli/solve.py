@@ -131,7 +131,7 @@ def solve(
     note = _ASSUMED if robust and not scenario.is_uncertain else ""
     scenario = _with_errors(scenario, sizes) if note else scenario
     target = SolveOptions(**options).of(scenario, ROBUST_GAP if robust else None).target
-    with compiling_announced(), GapBar(target) as bar:
+    with compiling_announced(proof.time_limit), GapBar(target) as bar:
         found = solve_scenario(
             scenario, scheme, null_jammer=null_jammer, robust=robust, on_progress=bar, **options
         )

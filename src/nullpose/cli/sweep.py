@@ -108,7 +108,7 @@ def sweep(
     files = [f"sweep.{end}" for end in ("csv", "png", "svg", "pdf")]
     scene.check_outputs((f"--out ({name})", out / name) for name in files)
     schemes = [name.value for name in scheme] if scheme else None
-    with compiling_announced(), Ticker(f"sweep of {varied[0]}") as ticker:
+    with compiling_announced(proof.time_limit), Ticker(f"sweep of {varied[0]}") as ticker:
         found = sweep_scenario(
             scenario,
             varied[0],

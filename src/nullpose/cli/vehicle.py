@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,10 +17,14 @@ from nullpose.cli.options import (
     TimeLimit,
     Width,
     expanded,
+    limit_keyword,
     mounts_of,
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import Ticker
+
+if TYPE_CHECKING:
+    from nullpose.solver import SolveKeywords
 
 
 @expanded
@@ -53,7 +57,7 @@ def vehicle(
     ] = MOUNTS,
     figure: FigureFiles = None,
     width: Width = None,
-    time_limit: TimeLimit = 60.0,
+    time_limit: TimeLimit = None,
     seed: Seed = 0,
     json_output: JsonOutput = False,
 ) -> None:
@@ -68,21 +72,15 @@ def vehicle(
     share, mounts_deg = _share(reach, loss_db), mounts_of(mount)
     scenario = scene.read()
     prepare_outputs(scene, figure=figure or [], width=width)
-    with compiling_announced(), Ticker("least tilt") as ticker:
-        found = least_tilt(
-            scenario,
-            share=share,
-            mounts_deg=mounts_deg,
-            on_progress=ticker,
-            time_limit_s=time_limit,
-            seed=seed,
-        )
+    options: SolveKeywords = {**limit_keyword(time_limit), "seed": seed}
+    with compiling_announced(time_limit), Ticker("least tilt") as ticker:
+        found = least_tilt(scenario, share=share, mounts_deg=mounts_deg, on_progress=ticker, **options)
     if figure:
         from nullpose.report.figures.style import write_figure
         from nullpose.report.figures.vehicle import draw_least_tilt
 
-        with compiling_announced(), Ticker("values by axis angle") as ticker:
-            values = values_by_angle(found, on_progress=ticker, time_limit_s=time_limit, seed=seed)
+        with compiling_announced(time_limit), Ticker("values by axis angle") as ticker:
+            values = values_by_angle(found, on_progress=ticker, **options)
         write_figure(draw_least_tilt(found, values, width), *figure)
     tell(found, vehicle_view, json_output, files=figure or [])
 

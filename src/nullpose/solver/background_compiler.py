@@ -18,12 +18,12 @@ from typing import Any
 from nullpose.solver.kernels.compiler import interpreted
 from nullpose.solver.kernels.compiler.notices import UNCACHED, warn_once
 
-_LOOK_S = 0.1  # between two looks at the processes
+LOOK_S = 0.1  # between two looks at the processes
 _QUIET_S = 3.0  # nobody is told of what takes no longer
 _LONGEST_S = 300.0  # then they are no longer waited for, and this process compiles
 _LONGEST_WITHOUT_S = 5.0  # likewise where no folder keeps kernels, so that no process can help
 _SPACE = 2_000_000  # bytes that must be free on the disk
-_MOST = 2  # processes once this one has little to do: search and proof are the two long parts
+_MOST = 2  # processes at a time: search and proof are the two long parts
 _STARTED: list[subprocess.Popen[bytes]] = []
 """All processes: one that is still running may not be forgotten."""
 _PROGRAM = "from nullpose.solver.background_compiler import compile_requested as c; c()"
@@ -37,15 +37,15 @@ class BackgroundCompiler:
 
     Args:
         announce: called now and then while a user has to wait.
+        counts: whether the time of compiling counts towards time limits.
     """
 
-    def __init__(self, announce: Callable[[], object] = lambda: None) -> None:
-        self._announce = announce
+    def __init__(self, announce: Callable[[], object] = lambda: None, counts: bool = False) -> None:
+        self._announce, self.counts = announce, counts
         self._asking = threading.Lock()
         # module and name of a kernel, types of its arguments
         self._requests: list[tuple[str, str, object]] = []
         self._sent = 0  # requests that a process was started for
-        self._most = 1  # processes at a time: there may be two processors, and this process has one
         self._processes: list[subprocess.Popen[bytes]] = []
         self._folder: str | None = None
         self._lock = -1  # of the folder, a file's number
@@ -62,50 +62,56 @@ class BackgroundCompiler:
             self.end()
             raise
         finally:
-            interpreted.compiler, self._most = None, _MOST
+            interpreted.compiler = None
             with self._asking:
                 self._start()
                 self._unlock()
 
     def takes(self, kernel: Any, signature: object) -> bool:
-        """Request a kernel; true if Python is to run it while it is compiled elsewhere.
+        """Request a kernel unless it was; true while Python is to run it, since it is compiled elsewhere.
 
         Args:
-            kernel: one that no folder holds.
+            kernel: the kernel.
             signature: types of its arguments.
         """
         request = kernel.py_func.__module__, kernel.py_func.__qualname__, signature
         with self._asking:
             if request not in self._requests:  # otherwise it was compiled in vain, unless it still is
                 if not self._is_busy():
-                    self._began, self._looked = time.monotonic(), time.monotonic() - _LOOK_S
+                    self._began, self._looked = time.monotonic(), time.monotonic() - LOOK_S
                 if not self._requests:  # all commands begin with the same kernels, and meet at this folder
                     self._folder = kernel.stats.cache_path
                 self._requests.append(request)
-        return self.is_busy()
+        return self.is_busy() and not kernel.has_code(signature)
 
     def is_busy(self) -> bool:
         """Test if anything is left to compile."""
         with self._asking:
             now = time.monotonic()
-            if now >= self._looked + _LOOK_S:
-                self._busy_s, self._looked = self._busy_until(now), now
+            if now >= self._looked + LOOK_S:
                 self._start()
+                self._busy_s += now - self._looked if self._is_busy() else 0.0
+                self._looked = now
                 if self._is_busy() and now > self._began + _QUIET_S:
-                    self._most = _MOST  # a large scene: what Python does meanwhile counts for little
                     self._announce()
             return self._is_busy()
 
     def busy_s(self) -> float:
-        """Sum up the time in which there was, seconds."""
-        with self._asking:
-            return self._busy_until(time.monotonic())
+        """Sum up the time in which there was, as far as a look has shown, seconds."""
+        self.is_busy()
+        return self._busy_s
 
-    def wait(self) -> bool:
-        """Wait until there is not; return False if it has been ended."""
-        self._most = _MOST
-        while self.is_busy() and not self._is_ended:
-            time.sleep(_LOOK_S)
+    def wait(self, kernel: Any, signature: object, look: Callable[[], object] = lambda: None) -> bool:
+        """Wait until a kernel is compiled; return False if that has been ended.
+
+        Args:
+            kernel: the kernel.
+            signature: types of its arguments.
+            look: called now and then; what it raises ends the wait.
+        """
+        while self.takes(kernel, signature) and not self._is_ended:
+            look()
+            time.sleep(LOOK_S)
         return not self._is_ended
 
     def end(self) -> None:
@@ -119,13 +125,10 @@ class BackgroundCompiler:
         is_left = self._sent < len(self._requests) or bool(self._processes)
         return self._is_ended or (is_left and time.monotonic() < self._began + longest_s)
 
-    def _busy_until(self, now: float) -> float:
-        return self._busy_s + (now - self._looked if self._is_busy() else 0.0)
-
     def _start(self) -> None:
         """Start a process for the requests that none was started for, unless those of another command run."""
         self._processes = [each for each in self._processes if each.poll() is None]
-        if self._is_ended or self._sent == len(self._requests) or len(self._processes) >= self._most:
+        if self._is_ended or self._sent == len(self._requests) or len(self._processes) >= _MOST:
             return
         if not self._has_lock():
             return

@@ -8,6 +8,7 @@ from contextlib import nullcontext
 
 from nullpose.objectives import FloatArray
 from nullpose.solver.compiling import limit_clock
+from nullpose.solver.kernels.compiler.interpreted import ended_when
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.worker_pool import Kernel, WorkerPool, processors
 
@@ -74,12 +75,19 @@ class BranchAndBound(ABC):
             deadline: on ``limit_clock``.
             threads: how many work at once.
         """
-        until = self.nodes + most
+        with ended_when(lambda: limit_clock() > deadline):
+            return self._work_off(workers, gap, self.nodes + most, deadline, threads)
+        return self._time_is_up()
+
+    def _time_is_up(self) -> str:
+        return f"the time limit of {self.limits.time_limit_s:g} s"
+
+    def _work_off(self, workers: WorkerPool, gap: float, until: int, deadline: float, threads: int) -> str:
         workers.grow(threads)
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while not workers.done:
                 if limit_clock() > deadline:
-                    return f"the time limit of {self.limits.time_limit_s:g} s"
+                    return self._time_is_up()
                 if self.nodes >= until:
                     return f"the node limit of {self.limits.node_limit}"
                 if workers.stuck:

@@ -15,7 +15,7 @@ import numpy as np
 from nullpose.channel.model import WIDTH
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
-from nullpose.solver.background_compiler import BackgroundCompiler
+from nullpose.solver.background_compiler import LOOK_S, BackgroundCompiler
 from nullpose.solver.kernels.compiler import interpreted
 
 _ONE_AT_A_TIME = threading.Lock()  # threads that come first together start one process, not one each
@@ -47,7 +47,7 @@ def announce_compiling(announce: Callable[[], None]) -> Iterator[None]:
 
 
 def working_clock() -> float:
-    """Read a clock, in seconds, that stands still while kernels are compiled.
+    """Read a clock, in seconds, of work alone: not of compiling, nor of what Python began in vain meanwhile.
 
     Only differences between two calls mean something.
 
@@ -56,17 +56,22 @@ def working_clock() -> float:
         >>> working_clock() - began < 1.0
         True
     """
-    compiling = _compiling()
-    return time.perf_counter() - (float(compiling.duration) if compiling.done else 0.0)
+    return _clock() - interpreted.vain_s
 
 
 def limit_clock() -> float:
-    """Read the clock of time limits, in seconds, which stands still until all kernels are compiled.
+    """Read the clock of time limits, in seconds, which stands still while this process compiles kernels.
 
-    While other processes compile them and Python runs them here, a proof gets on a hundred times slower.
+    While others compile them it stands still, too, unless a command was given the limit: Python gets on with
+    a proof a hundred times slower.
     """
     compiler = interpreted.compiler
-    return working_clock() - (0.0 if compiler is None else compiler.busy_s())
+    return _clock() - (0.0 if compiler is None or compiler.counts else compiler.busy_s())
+
+
+def _clock() -> float:
+    compiling = _compiling()
+    return time.perf_counter() - (float(compiling.duration) if compiling.done else 0.0)
 
 
 @cache
@@ -100,7 +105,8 @@ def precompile(variant: tuple[bool, bool]) -> None:
             with elsewhere.in_use():
                 compile_proof(variant)
                 compile_search(variant)
-                elsewhere.wait()
+                while elsewhere.is_busy():
+                    time.sleep(LOOK_S)
         compile_proof(variant)
         compile_search(variant)
 

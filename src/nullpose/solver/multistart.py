@@ -15,6 +15,8 @@ from nullpose.objectives import FloatArray
 from nullpose.problem.airspace import loosened
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
+from nullpose.solver.compiling import limit_clock
+from nullpose.solver.kernels.compiler.interpreted import ended_when
 
 BORDER_M = 4e-10
 """How far borders are moved where what is allowed is of no width [m]: less than what counts as on them."""
@@ -132,22 +134,34 @@ def _shift_of(seed: int) -> FloatArray:
 
 
 def multistart(
-    family: Family, axis_field: AxisField, *, seed: int, settings: SearchSettings | None = None
+    family: Family,
+    axis_field: AxisField,
+    *,
+    seed: int,
+    settings: SearchSettings | None = None,
+    deadline: float = math.inf,
 ) -> Incumbent:
     """Return the best pose that a multistart finds: coarse positions, the promising ones polished.
 
-    Deterministic for a given seed. Not a proof: see :class:`nullpose.solver.Status`.
+    Deterministic for a given seed, unless Python runs it at the deadline: then the quickest search is made.
+    Not a proof: see :class:`nullpose.solver.Status`.
 
     Args:
         family: the ratios and their domain.
         axis_field: which axes are allowed.
         seed: start of the low-discrepancy sequence.
         settings: how hard to try.
+        deadline: on ``limit_clock``.
 
     Raises:
         SolveError: no position of the domain gave every ratio a positive value.
     """
-    settings = settings or SearchSettings()
+    with ended_when(lambda: limit_clock() > deadline):
+        return _multistart(family, axis_field, seed, settings or SearchSettings())
+    return _multistart(family, axis_field, seed, _LIGHT)
+
+
+def _multistart(family: Family, axis_field: AxisField, seed: int, settings: SearchSettings) -> Incumbent:
     places = landmarks(family)
     found = _run(family, axis_field, places, seed, settings)
     if not math.isfinite(found.log_value):  # what is allowed may be of no width: a point, a line or a wall

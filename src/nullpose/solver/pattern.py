@@ -17,6 +17,7 @@ from nullpose.problem.records import Reach
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INSIDE, INTERRUPT, MOST_LEAVES, BranchAndBound
 from nullpose.solver.compiling import limit_clock
+from nullpose.solver.kernels.compiler.interpreted import ended_when
 from nullpose.solver.multistart import NO_POSITION, Incumbent
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.pattern_search import PatternSearch
@@ -93,7 +94,11 @@ class PatternRun(BranchAndBound):
         self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
         began = limit_clock()
         self.deadline = began + self.limits.time_limit_s
-        self.thorough = not self.search.search(light=self.limits.certify)
+        self.thorough = False
+        with ended_when(lambda: limit_clock() > self.deadline):
+            self.thorough = not self.search.search(light=self.limits.certify)
+        if self.search.best == -math.inf:
+            self.search.search(light=True)
         if not math.isfinite(self.search.best):
             raise SolveError(NO_POSITION)
         reason = self._proved(began) if self.limits.certify else ""
@@ -170,8 +175,9 @@ class PatternRun(BranchAndBound):
         if not self.thorough:
             self.thorough = True
             alone = PatternSearch(self.family, self.antenna, self.reach, self.limits.seed)  # as --fast draws
-            alone.search(light=False)
-            self.search.take(alone.state)
+            with ended_when(lambda: limit_clock() > self.deadline):
+                alone.search(light=False)
+                self.search.take(alone.state)
             self.search.starts += alone.starts
             self.search.evaluations += alone.evaluations
 

@@ -18,6 +18,7 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.branch_and_bound import INSIDE, INTERRUPT, MOST_LEAVES, BranchAndBound
 from nullpose.solver.compiling import limit_clock
+from nullpose.solver.kernels.compiler.interpreted import ended_when
 from nullpose.solver.multistart import Incumbent, climb
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.rigour import bound_above
@@ -218,7 +219,8 @@ class _Run(BranchAndBound):
     def search_thoroughly(self) -> None:
         search, self.search = self.search, None
         if search is not None:
-            self._take(search())
+            with ended_when(lambda: limit_clock() > self.deadline):
+                self._take(search())
 
     def _has_certificate(self, side_m: FloatArray) -> bool:
         """Check that a certificate can hold the leaves, by their number and their sides."""

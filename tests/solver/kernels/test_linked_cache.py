@@ -147,14 +147,54 @@ HANDED_OVER = """
 import time
 import numpy as np
 from nullpose.solver.background_compiler import BackgroundCompiler
-from nullpose.solver.compiling import limit_clock
+from nullpose.solver.compiling import working_clock
+from nullpose.solver.kernels.compiler import interpreted
 from slow import count
 
 total = np.zeros(1)
-wall_s, limit_s = time.perf_counter(), limit_clock()
 with BackgroundCompiler().in_use():
+    worked_s, wall_s = working_clock(), time.perf_counter()
     found = count(total, 20_000_000)
-    print(found, total[0], limit_clock() - limit_s < 0.5 * (time.perf_counter() - wall_s))
+    vain_s = time.perf_counter() - wall_s - (working_clock() - worked_s)
+    print(found, total[0], vain_s > 0.5 * interpreted.vain_s > 0.0)
+"""
+
+AFTER_THE_LAST = """
+import time
+import numpy as np
+from nullpose.solver.background_compiler import BackgroundCompiler
+from nullpose.solver.compiling import limit_clock
+from slow import count
+
+compiler = BackgroundCompiler()
+with compiler.in_use():
+    count(np.zeros(1), 1)
+    began = limit_clock()
+    time.sleep(0.3)
+    print(limit_clock() - began < 0.2)
+    for process in compiler._processes:
+        process.wait()
+    limit_clock()
+    time.sleep(0.3)
+    began = limit_clock()
+    time.sleep(0.3)
+    print(limit_clock() - began > 0.2)
+"""
+
+AT_A_LIMIT = """
+import time
+import numpy as np
+from nullpose.solver.background_compiler import BackgroundCompiler
+from nullpose.solver.compiling import limit_clock
+from nullpose.solver.kernels.compiler.interpreted import ended_when
+from slow import count
+
+total = np.zeros(1)
+deadline = limit_clock() + 0.2
+with BackgroundCompiler(counts=True).in_use():
+    with ended_when(lambda: limit_clock() > deadline):
+        count(total, 10**15)
+    print(total[0])
 """
 
 
@@ -163,6 +203,18 @@ def test_machine_code_takes_over(tmp_path: Path) -> None:
     (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
     done = run(HANDED_OVER, tmp_path)
     assert (done.stdout, done.stderr) == ("20000000.0 20000000.0 True\n", "")
+
+
+def test_a_limit_begins_with_the_last_kernel(tmp_path: Path) -> None:
+    """The clock stands still while kernels are compiled, and not after that, whoever looks or does not."""
+    (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
+    assert run(AFTER_THE_LAST, tmp_path).stdout == "True\nTrue\n"
+
+
+def test_a_limit_ends_what_python_runs(tmp_path: Path) -> None:
+    """A limit that counts compiling ends a call of years before its kernel is there; nothing of it counts."""
+    (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
+    assert run(AT_A_LIMIT, tmp_path).stdout == "0.0\n"
 
 
 def test_an_interrupt_leaves_arrays_as_they_were() -> None:

@@ -63,12 +63,12 @@ def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
     """
     field, search = AxisField.within(*scenario.axis_band), replace(limits, certify=False)
     inner = Inner(worst_polarised(require_dipole(scenario)))
-    incumbent = solve_and_prove(build_family(scenario, any_channel=True), [field], search).incumbent
-    nominal = Pose.of_airframe(scenario, incumbent.position_m, incumbent.axis)
-    exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     if limits.certify:
         precompile(inner.family.arrays.variant)  # compiling must not count against the time limit
     began, again = limit_clock(), True
+    incumbent = solve_and_prove(build_family(scenario, any_channel=True), [field], search).incumbent
+    nominal = Pose.of_airframe(scenario, incumbent.position_m, incumbent.axis)
+    exchange = Exchange(inner, field, limits, nominal.position_m, nominal.antenna_axis)
     robust = None
     try:
         while again:
@@ -203,7 +203,7 @@ class Exchange:
         light, thorough = (search_settings(follows, self.axis_field) for follows in (True, False))
         settings = light
         for _ in range(_MOST_ROUNDS):
-            found = self._search_once(settings)
+            found = self._search_once(settings, deadline)
             self.incumbent, promised = found, math.exp(found.log_value)
             new = self.visit(found.position_m, found.axis, promised)
             close = promised <= self.level(self.best.worst, _SHARE)
@@ -214,11 +214,11 @@ class Exchange:
             elif not self.add(new):
                 return
 
-    def _search_once(self, settings: SearchSettings) -> Incumbent:
+    def _search_once(self, settings: SearchSettings, deadline: float) -> Incumbent:
         """Search the finite family by a multistart, and by a climb from the best pose so far."""
         family, field = self.family, self.axis_field
         with np.errstate(invalid="ignore"):  # copies of one jammer have no line between them
-            anywhere = multistart(family, field, seed=self.limits.seed, settings=settings)
+            anywhere = multistart(family, field, seed=self.limits.seed, settings=settings, deadline=deadline)
         near = climb(family, field, self.best.position_m, self.best.axis, mu=_CLIMB, steps=_CLIMB_STEPS)
         self.starts += anywhere.starts + 1
         self.evaluations += anywhere.evaluations + near.evaluations

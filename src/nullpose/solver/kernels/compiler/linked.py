@@ -181,11 +181,12 @@ class LinkedDispatcher(CPUDispatcher):
     def compile(self, sig):
         """Return machine code for arguments of given types, or Python while that is not there."""
         compiler = interpreted.compiler
-        if compiler is None or self._has_code(sig) or not compiler.takes(self, sig):
+        if compiler is None or self.has_code(sig) or not compiler.takes(self, sig):
             return super().compile(sig)
         return partial(interpreted.interpret, self, sig)
 
-    def _has_code(self, sig) -> bool:
+    def has_code(self, sig) -> bool:
+        """Check for machine code for arguments of given types, in this process or on disk."""
         is_kept = isinstance(self._cache, _Cache) and self._cache.holds(sig, self.targetctx)
         return is_kept or tuple(sig) in self.overloads
 
