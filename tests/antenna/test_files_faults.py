@@ -107,6 +107,8 @@ FAULTS: dict[str, tuple[str, Change, dict[str, object], str]] = {
         {},
         "without a pattern; add an RP card to the input, such as RP 0 37 73 1000",
     ),
+    "no pattern in mininec": ("mininec", swap("PATTERN DATA", "CURRENT DATA"), {}, "MININEC without a pattern"),  # noqa: E501
+    "fields in mininec": ("mininec", line(11, "0 0 1 2 3 4"), {}, "line 11: .* three gains in dBi: not fields"),  # noqa: E501
     "gain and field": ("nec", line(40, "155 0 1 1 9 1 1 .1 0 .1 0"), {}, "line 40: .* contradict each other"),
     "unit": ("cst", swap("Abs(Dir.)[dBi", "Abs(Gain)[dBm"), {}, "line 1: got a gain in .dbm., must be in"),
     "no directivity": (GAINS, named("dB(DirTotal)", 2.0), {}, "its directivity averages to 2.0 dB"),
@@ -277,3 +279,88 @@ def test_faults_of_profiles(tmp_path: Path, text: str, message: str) -> None:
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ScenarioError, match=message):
         read_profile(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("##File Type: Far Field\n#Frequency: 2.4E9\n", "a far field of FEKO"),
+        (
+            "EZNEC Pro/2 ver. 6.0\n\nDeg      V dB     H dB   Tot dB\n  0   -3.0 -99.99 -3.0\n",
+            "a table of EZNEC",
+        ),
+        ("REVNUM:,NSMA WG16.99.050\nREVDAT:,19990520\n", "two cuts as of NSMA"),
+        ("Field data in cuts\n 0.0 5.0 37 0.0 3 1 2\n", "cuts of GRASP"),
+        (
+            "Az. [deg.]  El. [deg.]  Abs(Gain)[dBi ]\n---\n0 0 1\n",
+            "a table of CST over other angles; export Theta and Phi",
+        ),
+        ("elevation_deg,azimuth_deg,gain_dbi\n0,0,1\n", "a table over elevations: theta is 90 less"),
+    ],
+)
+def test_formats_that_are_not_read_are_named(tmp_path: Path, text: str, message: str) -> None:
+    """Each by its name, with the way out."""
+    (path := tmp_path / "pattern.txt").write_text(text, encoding="utf-8")
+    with pytest.raises(ScenarioError, match=f"no known format: it looks like {message}.*export the pattern"):
+        read_pattern(path)
+
+
+def test_elevations_are_no_polar_angles(tmp_path: Path) -> None:
+    """A whole sphere of elevations, under the name theta, is told apart from one that is cut short."""
+    text = csv(lambda t, p: 1.76 + 20.0 * np.log10(max(np.sin(np.radians(t)), 1e-3)))
+    rows = [line.split(",") for line in text.split("\n")[1:-1]]
+    table = "\n".join(["theta_deg,phi_deg,gain_dbi", *(f"{90 - int(t)},{p},{g}" for t, p, g in rows)])
+    (path := tmp_path / "elevation.csv").write_text(table, encoding="utf-8")
+    with pytest.raises(ScenarioError, match=r"theta goes from -90 to 90 degrees.* write 90 less each"):
+        read_pattern(path)
+
+
+def test_steps_that_are_too_coarse_are_said_to_be(tmp_path: Path) -> None:
+    """Where the rows of a pole agree and fit no other row, no row is written wrong."""
+    path = tmp_path / "helix.csv"
+    helix = lambda t: -1.0 - 8.0 * (t / 180.0) ** 2 - 3.0 * np.cos(np.radians(3.5 * t))  # noqa: E731
+    path.write_text(csv(lambda t, p: helix(t), 20), encoding="utf-8")
+    with pytest.raises(ScenarioError, match="steps of 20 degrees are too coarse"):
+        read_pattern(path)
+
+
+def collinear(tilt_deg: float) -> np.ndarray:
+    """Returns the vertical cut of a whip whose beam is tilted down on all sides."""
+    at = np.arange(360.0)
+    below = np.where((at < 90.0) | (at > 270.0), (at + 180.0) % 360.0 - 180.0, 180.0 - at)
+    return np.minimum(12.0 * ((below - tilt_deg) / 14.0) ** 2, 30.0)
+
+
+@pytest.mark.parametrize(
+    ("head", "down_db", "message"),
+    [
+        (
+            "ELECTRICAL_TILT 6",
+            collinear(0.0),
+            "line 5: ELECTRICAL_TILT is 6 degrees, .* 2.2 dB below its peak",
+        ),
+        ("TILT 3", collinear(-3.0), "TILT is 3 degrees, .* growing downwards"),
+        ("TILT 0", collinear(0.0) + 3.0, "no direction has a loss below 3 dB"),
+    ],
+)
+def test_cuts_that_contradict_their_heading(
+    tmp_path: Path, head: str, down_db: np.ndarray, message: str
+) -> None:
+    """The tilt that is stated is in the vertical cut, and the gain in some direction."""
+    text = write_msi(np.full(360, down_db[0]), down_db, "5 dBi").replace("TILT 0", head)
+    (path := tmp_path / "whip.msi").write_text(text, encoding="utf-8")
+    with pytest.raises(ScenarioError, match=message):
+        read_pattern(path)
+
+
+def test_what_a_file_has_besides_is_named(tmp_path: Path) -> None:
+    """Columns of a table and numbers of a heading that are not read are in a note."""
+    whip = write_msi(np.full(360, 0.0), collinear(0.0), "5 dBi").replace("TILT 0", "TILT 0\nFRONT_TO_BACK 25")
+    table = csv(lambda t, p: -1.0).replace("gain_dbi", "efficiency_db,gain_dbi")
+    table = re.sub(r"(\n\d+,\d+),", r"\1,-3,", table)
+    for text, note in (
+        (whip, "Not read: FRONT_TO_BACK."),
+        (table, "Columns that are not read: efficiency_db."),
+    ):
+        (path := tmp_path / "pattern").write_text(text, encoding="utf-8")
+        assert note in read_pattern(path).notes

@@ -217,6 +217,22 @@ def write_cst_gains(field: Field = field_of, step_deg: float = 5.0) -> str:
     return "\n".join(lines) + "\n"
 
 
+def write_mininec(field: Field = field_of, step_deg: float = 5.0) -> str:
+    """Returns what MININEC writes: zenith angles in the inner loop, gains in dBi without phases."""
+    lines = []
+    for theta, phi, a, b, power in _rows(_sphere(step_deg), field, theta_inner=True):
+        gains = "".join(f"{max(db(each), -999.0):<15.5f}" for each in (abs(a) ** 2, abs(b) ** 2, power))
+        lines.append(f" {theta:<14g}{phi:<14g}{gains}")
+    table = "\n".join(lines)
+    return (
+        f"{'*' * 40}\n MINI-NUMERICAL ELECTROMAGNETICS CODE\n MININEC\n\nFREQUENCY (MHZ): 2400\n\n"
+        f"{'*' * 20}    PATTERN DATA    {'*' * 20}\n"
+        "ZENITH        AZIMUTH       VERTICAL      HORIZONTAL    TOTAL\n"
+        " ANGLE         ANGLE        PATTERN (DB)  PATTERN (DB)  PATTERN (DB)\n"
+        f"{table}\n"
+    )
+
+
 def write_omni_msi(field: Field = omni_field, step_deg: float = 1.0) -> str:
     """Returns two cuts of an antenna that is the same all round."""
     at_deg = np.arange(360.0)
@@ -249,6 +265,7 @@ WRITERS: dict[str, tuple[str, Callable[..., str]]] = {
     "old-ffd": ("ffd", write_old_ffd),
     "hfss-csv": ("csv", write_hfss_csv),
     "hfss-linear": ("csv", write_hfss_linear),
+    "mininec": ("mininec", write_mininec),
     "cst-gains": ("cst", write_cst_gains),
 }
 

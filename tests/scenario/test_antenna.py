@@ -7,7 +7,7 @@ import pytest
 
 from nullpose import Scenario, ScenarioError
 from nullpose.antenna import SHORT_DIPOLE
-from nullpose.scenario import apply_overrides, load
+from nullpose.scenario import apply_overrides, doubts, load
 from scenes import faults_of, require_fault
 
 PAPER = load("examples/paper.toml")
@@ -109,6 +109,38 @@ def test_two_cuts_of_an_omni_are_a_profile(tmp_path: Path) -> None:
     assert scenario.name == PAPER.name
     with pytest.raises(ScenarioError, match="two_cuts has no meaning: the file tells the whole pattern"):
         scenario_of_cuts(tmp_path, 1.4, 'two_cuts = "sum-of-losses"')
+
+
+def test_how_a_file_is_read_is_told(tmp_path: Path) -> None:
+    """The notes on a pattern are those of the scenario that names it."""
+    scenario_of_cuts(tmp_path, 1.4)
+    notes: list[str] = []
+    load(tmp_path / "scenario.toml", on_note=notes.append)
+    assert "cuts.msi: Its gain is read as dBi." in notes
+
+
+@pytest.mark.parametrize(
+    ("receiver", "gain", "paths"),
+    [
+        ("frequency_hz = 2.3e9", "3 dBi", []),
+        ("frequency_hz = 9e8", "3 dBi", ["antenna.frequency_hz"]),
+        ("frequency_hz = 2.4e9", "-7 dBi", ["antenna.file"]),
+        ("reference_gain_db = 0.0", "3 dBi", []),
+    ],
+)
+def test_a_pattern_of_another_carrier_or_below_its_feed_is_doubted(
+    tmp_path: Path, receiver: str, gain: str, paths: list[str]
+) -> None:
+    """A file may be at another frequency, or relative to its peak."""
+    scenario_of_cuts(tmp_path, 1.4)
+    for name, old, new in (
+        ("cuts.msi", "GAIN 3 dBi", f"GAIN {gain}"),
+        ("scenario.toml", "reference_gain_db = 0.0", receiver),
+    ):
+        text = (tmp_path / name).read_text()
+        assert old in text
+        (tmp_path / name).write_text(text.replace(old, new))
+    assert [doubt.path for doubt in doubts(load(tmp_path / "scenario.toml"))] == paths
 
 
 def test_a_gain_that_a_file_has_is_not_counted_twice() -> None:

@@ -51,13 +51,13 @@ def pattern_antenna(
     return PatternAntenna(kind, label, normalised(found) if normalise == "peak" else found)
 
 
-def _read_profile(path: Path, _: PlainTable) -> PlainTable:
+def _read_profile(path: Path, _: PlainTable) -> tuple[PlainTable, tuple[str, ...]]:
     from nullpose.antenna.files import read_profile
 
-    return {"harmonics": profile_harmonics(*read_profile(path)).rows()}
+    return {"harmonics": profile_harmonics(*read_profile(path)).rows()}, ()
 
 
-def _read_pattern(path: Path, table: PlainTable) -> PlainTable:
+def _read_pattern(path: Path, table: PlainTable) -> tuple[PlainTable, tuple[str, ...]]:
     from nullpose.antenna.files import read_pattern
     from nullpose.antenna.files.block import refuse
 
@@ -66,7 +66,7 @@ def _read_pattern(path: Path, table: PlainTable) -> PlainTable:
     if is_estimate and not pattern.caveat:
         refuse("two_cuts has no meaning: the file tells the whole pattern; remove the key")
     frequency = {} if pattern.frequency_hz is None else {"frequency_hz": pattern.frequency_hz}
-    return {**frequency, "harmonics": table_harmonics(pattern).rows()}
+    return {**frequency, "harmonics": table_harmonics(pattern).rows()}, pattern.notes
 
 
 PROFILE = AntennaKind(

@@ -21,11 +21,11 @@ class AntennaKind(NamedTuple):
         summary: what it is, for the schema of scenario files.
         make: from the values of ``keys``, by name, to the antenna.
         keys: of the table ``[antenna]`` that have a meaning for it, beside ``kind`` and ``gain_dbi``.
-        read: from the path of its file and the table to the keys that the file fills in; None where the kind
-            has no file.
+        read: from the path of its file and the table to the keys that the file fills in, and notes on how it
+            is read; None where the kind has no file.
     """
 
     summary: str
     make: Callable[..., Antenna]
     keys: tuple[str, ...] = ()
-    read: Callable[[Path, PlainTable], PlainTable] | None = None
+    read: Callable[[Path, PlainTable], tuple[PlainTable, tuple[str, ...]]] | None = None

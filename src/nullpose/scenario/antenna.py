@@ -62,7 +62,7 @@ class Antenna(Section):
         "hexarotor.out",
     )
     format: str | None = optional(
-        'The format of a pattern\'s file: "nec", "ffd", "ffs", "cst", "msi" or "csv". '
+        'The format of a pattern\'s file: "nec", "ffd", "ffs", "cst", "msi", "mininec" or "csv". '
         "Left out: the file tells it.",
         "nec",
     )
@@ -122,8 +122,8 @@ class Antenna(Section):
         return kind.make(**{key: getattr(self, key) for key in kind.keys})
 
 
-def with_harmonics(table: PlainTable, path: Path) -> PlainTable:
-    """Fill in a raw table what its file holds; leave it as it is where another of its keys is at fault.
+def with_harmonics(table: PlainTable, path: Path) -> tuple[PlainTable, tuple[str, ...]]:
+    """Fill in a raw table what its file holds, with notes; leave it where another of its keys is at fault.
 
     Args:
         table: of a kind that has a file, or of any other.
@@ -135,13 +135,14 @@ def with_harmonics(table: PlainTable, path: Path) -> PlainTable:
     name = table.get("kind")
     kind = ANTENNAS.get(name) if isinstance(name, str) else None
     if kind is None or kind.read is None:
-        return dict(table)
+        return dict(table), ()
     unread = {**table, "harmonics": [[1.0]]}
     try:
         Antenna.from_dict(unread)
     except ScenarioError:
-        return unread  # its faults are told with the rest of the scenario's
-    return {**table, **kind.read(path, table)}
+        return unread, ()  # its faults are told with the rest of the scenario's
+    found, notes = kind.read(path, table)
+    return {**table, **found}, notes
 
 
 _DIGITAL = "digital combining, which nullpose solves with a bound (analogue combining has none)"

@@ -115,7 +115,9 @@ class NamedFiles:
         ):
             return antenna
         with self._reading(f"antenna.file: {file}"):
-            return with_harmonics(antenna, inside(self._folder, file, self._allow_outside))
+            filled, notes = with_harmonics(antenna, inside(self._folder, file, self._allow_outside))
+            self._note(file, notes)
+            return filled
         return antenna | {"harmonics": [[1.0]]}
 
     def _filled(

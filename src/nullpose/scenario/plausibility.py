@@ -28,6 +28,8 @@ _NEAR_DEG = 0.1  # metres that are so close to the origin's latitude and longitu
 _DBM = (10.0, 60.0)  # powers in W that are likely to be dBm
 _OFF_M = 15.0  # points that all lie so far off the origin's altitude are unlikely
 _FAINTEST_DBM = -145.0  # noise below it is unlikely: that of 1 kHz at 290 K is -144 dBm
+_SAME_BAND = 0.2  # of the frequency: how far a pattern's may be from the carrier's
+_LEAST_MEAN_DB = -6.0  # below it, a pattern is likely relative to its peak
 _LOWEST_HZ = 1e6  # carriers below it are unlikely
 
 
@@ -108,6 +110,7 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
         *_powers(scenario, points),
         *_noises(scenario, points),
         *_gains(points),
+        *_patterns(scenario),
         *(Fault("position_m", message) for message in degrees),
         *_altitudes(points),
     )
@@ -168,6 +171,24 @@ def _gains(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:
         for place, point in some.items()
         if point.over_fed_db > MOST_OVER_FED_DB + most_db
     )
+
+
+def _patterns(scenario: Scenario) -> Iterator[Fault]:
+    """Yield that a file's pattern is of another frequency, or likely relative to its peak."""
+    antenna, carrier_hz = scenario.antenna, scenario.receiver.frequency_hz
+    if antenna is None or antenna.file is None:
+        return
+    pattern_hz = antenna.frequency_hz or carrier_hz or 0.0
+    if abs(pattern_hz - (carrier_hz or pattern_hz)) > _SAME_BAND * pattern_hz:
+        words = f"the pattern is at {pattern_hz:g} Hz, and receiver.frequency_hz = {carrier_hz:g}"
+        yield Fault("antenna.frequency_hz", f"{words}; give the pattern at the carrier's frequency")
+    mean_db = 10.0 * math.log10(max(antenna.record.mean, 1e-30))
+    if antenna.normalise == "none" and mean_db < _LEAST_MEAN_DB:
+        yield Fault(
+            "antenna.file",
+            f"the gain averages to {mean_db:.1f} dB over the sphere, as if it were relative to its peak; if "
+            'it is, write normalise = "peak" and the gain there as gain_dbi',
+        )
 
 
 def _altitudes(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:

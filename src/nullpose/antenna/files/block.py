@@ -144,6 +144,11 @@ def gridded(block: Block, source: str) -> PatternTable:
         np.ptp(phi), f"it has one cut, at phi = {phi[0]:g} degrees; export the whole sphere, all azimuths"
     )
     back = theta < 0.0  # the same direction seen the other way round, where both unit vectors turn over
+    require(
+        (np.min(theta), np.max(theta)) != (-90.0, 90.0),
+        "theta goes from -90 to 90 degrees, as elevations do; must go from 0 to 180, 0 being straight up: if "
+        "they are elevations, write 90 less each",
+    )
     thetas, rows = np.unique(np.abs(theta), return_inverse=True)
     phis, columns = np.unique(np.round(phi + 180.0 * back, 3) % 360.0, return_inverse=True)
     _require_even("polar angles", thetas, 180.0)

@@ -77,11 +77,16 @@ def _require_rows(table: PatternTable, found: Harmonics) -> None:
     high = gain > _HIGH * _beside(gain)
     high[[0, -1]] = False  # a beam along the axis is one direction wide
     if np.any(bad := alone | high):
+        where = np.arange(bad.size).reshape(bad.shape) if table.lines is None else table.lines
+        step_deg, several = 180.0 / (len(gain) - 1), len(np.unique(where[bad])) > 1
+        why = "is it written right?"
+        if several:
+            why = f"nor do others: steps of {step_deg:g} degrees are too coarse, or these are written wrong"
         row, column = np.unravel_index(np.argmax(np.where(bad, apart_db, 0.0)), bad.shape)
         refuse(
             f"theta = {table.theta_deg[row]:g}, phi = {table.phi_deg[column]:g} degrees has a gain of "
             f"{10.0 * np.log10(table.gain[row, column] + 1e-30):.2f} dBi, which does not fit those around "
-            "it; is it written right?",
+            f"it; {why}",
             0 if table.lines is None else int(table.lines[row, column]),
         )
 

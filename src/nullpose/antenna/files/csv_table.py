@@ -44,6 +44,7 @@ def read_csv(lines: Lines) -> Iterator[Block]:
         f"got the header {lines[0][1].strip()[:60]!r}, must have {_ALLOWED}, each once",
         lines[0][0],
     )
+    unread = [name for name in columns if name not in needed and not name.startswith("freq[")]
     each_hz = [_UNITS[unit] * columns[f"freq[{unit}]"] for unit in _UNITS if f"freq[{unit}]" in columns]
     of_hz = each_hz[0] if each_hz else np.zeros(len(values))
     for frequency_hz in np.unique(of_hz):
@@ -60,6 +61,7 @@ def read_csv(lines: Lines) -> Iterator[Block]:
             lines=np.array([lines[1 + row][0] for row in rows.tolist()]),
             frequency_hz=float(frequency_hz),
             quantity=_GAINS.get(total, "gain"),
+            notes=(f"Columns that are not read: {', '.join(unread)}.",) if unread else (),
         )
 
 

@@ -27,6 +27,7 @@ _WEAK_DB = 20.0  # below the peak; what is weaker may differ
 _LIKE_ZENITH_DEG = 30.0  # a beam is taken for one measured from the zenith so near to straight down
 _WIDEST_DEG = 10.0  # between two rows of a cut
 _NEGATIVE_DB = 0.05
+_STATED = re.compile(r"(?!GAIN|FREQ|HORIZ|VERT|MECH)[A-Z].* ([-+]?\d+\.?\d*)", re.IGNORECASE)  # a number
 _CLOCKWISE = "The file's azimuths grow clockwise seen from above; they are turned the other way round."
 _CAVEAT = (
     "it is an estimate by the sum of losses: its horizontal cut changes by {:.1f} dB, and two cuts do not "
@@ -59,6 +60,22 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         require(name in keys, f"the cut {name} is missing; both must be there. Is the file cut short?")
     across, down = (_loss_db(lines, keys, name) for name in _CUTS)
     _require_crossing(across, down)
+    least_db = min(np.min(across), np.min(down))
+    require(
+        least_db <= _CROSSING_DB,
+        f"no direction has a loss below {least_db:g} dB; GAIN is that of the direction with a loss of 0",
+    )
+    more = {key: found[1] for key, (_, text) in keys.items() if (found := _STATED.fullmatch(f"{key} {text}"))}
+    tilts_deg = {key: round(float(number)) for key, number in more.items() if "TILT" in key}
+    for key, tilt_deg in tilts_deg.items():
+        below_db = float(down[tilt_deg % 360] - np.min(down))
+        require(
+            tilt_deg == 0 or below_db <= _CROSSING_DB,
+            f"{key} is {tilt_deg} degrees, where the vertical cut is {below_db:.1f} dB below its peak, at "
+            f"{np.argmin(down)}; ask for the cuts at that tilt, with the angle growing downwards",
+            lines[keys[key][0]][0],
+        )
+    unread = ", ".join(key for key in more if key not in tilts_deg)
     at, text = keys.get("GAIN", (0, ""))
     amount = [(lines[at][0], re.sub(r"dB[id]?\s*$", "", text.strip(), flags=re.IGNORECASE))]
     gain_dbi = numbers(amount, 1, "GAIN, in dBd unless dBi is stated")[0, 0]
@@ -73,7 +90,12 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         phi_deg=phi.ravel().astype(float),
         gain=(gain * from_db(gain_dbi + more_db)).ravel(),
         frequency_hz=frequency_hz,
-        notes=(f"Its gain is read as {unit}.", note, of_frequency),
+        notes=(
+            f"Its gain is read as {unit}.",
+            note,
+            of_frequency,
+            *([f"Not read: {unread}."] if unread else []),
+        ),
         caveat="" if is_profile else _CAVEAT.format(ripple_db),
     )
 

@@ -18,7 +18,7 @@ from nullpose.antenna.files.cst import read_cst, read_ffs
 from nullpose.antenna.files.csv_table import profile_of, read_csv
 from nullpose.antenna.files.hfss import read_ffd
 from nullpose.antenna.files.msi import read_msi
-from nullpose.antenna.files.nec import read_nec
+from nullpose.antenna.files.nec import read_mininec, read_nec
 from nullpose.antenna.table import PatternTable, mean_gain
 from nullpose.errors import ScenarioError
 from nullpose.files import read_bytes
@@ -31,17 +31,31 @@ _NO_POWER = "The file has no power: its fields are scaled to an average of 1, wh
 _OTHERS = "Other tables at this frequency do not cover the sphere; they are not read."
 _TWO_CUTS = 'write two_cuts = "sum-of-losses" in [antenna] to solve with the estimate'
 
+_FLAGS = re.MULTILINE | re.IGNORECASE
 _THREE = r"[ \t]*(?:[-+\d.eE]+[ \t]+){2}[-+\d.eE]+[ \t]*"  # numbers, on a line
 
 FORMATS: dict[str, tuple[str, Callable[[Lines], Iterable[Block]]]] = {
-    "nec": (r"RADIATION PATTERNS|NUMERICAL ELECTROMAGNETICS CODE|STRUCTURE SPECIFICATION", read_nec),
+    "nec": (
+        r"RADIATION PATTERNS|(?<!MINI-)NUMERICAL ELECTROMAGNETICS CODE|STRUCTURE SPECIFICATION",
+        read_nec,
+    ),
     "ffs": (r"^//.*Re\(E_Theta\)", read_ffs),
     "cst": (r"\A\s*Theta\s*\[.*Abs\(", read_cst),
     "ffd": (rf"\A{_THREE}\n{_THREE}$", read_ffd),
     "csv": (r"\A[^\n]*theta[^\n]*[,;\t]|\A[^\n]*[,;\t][^\n]*theta", read_csv),
+    "mininec": (r"MININEC|^\*+ +PATTERN DATA +\*+", read_mininec),
     "msi": (r"^\s*(?:HORIZONTAL|VERTICAL)\s+\d+\s*$", read_msi),
 }
 """By name: what a file of the format has in it, and what reads it."""
+_OTHER_FORMATS = {
+    r"^##\s*File Type:\s*Far Field": "a far field of FEKO (.ffe); write its table as csv",
+    r"^\s*(V|H|R|L)?\s*dB\s+.*Tot\s*dB|^EZNEC": "a table of EZNEC; its file of NEC's output is read",
+    r"\A\s*REVNUM|NSMA|WG16\.99": "two cuts as of NSMA; ask the maker for .msi",
+    r"\A\s*Field data in cuts": "cuts of GRASP (.cut)",
+    r"\A\s*(Az\.?|Alpha|Phi|El)[^\n]*\[": "a table of CST over other angles; export Theta and Phi",
+    r"\A[^\n]*(elevation|azimuth|_el\b|\bel\b|\baz\b)[^\n]*[,;\t]": "a table over elevations: theta is 90 "
+    "less the elevation, and phi grows from x towards y, counter-clockwise",
+}
 
 
 def read_pattern(
@@ -121,12 +135,14 @@ def _content(path: Path) -> bytes:
 
 def _format_of(text: str, asserted: str | None) -> str:
     formats = ", ".join(FORMATS)
-    looks = [
-        name for name, (sign, _) in FORMATS.items() if re.search(sign, text, re.MULTILINE | re.IGNORECASE)
-    ]
+    looks = [name for name, (sign, _) in FORMATS.items() if re.search(sign, text, _FLAGS)]
+    other = next(
+        (f": it looks like {name}" for sign, name in _OTHER_FORMATS.items() if re.search(sign, text, _FLAGS)),
+        "",
+    )
     require(
         asserted is not None or looks,
-        f"it has the marks of no known format; export the pattern in one of {formats}",
+        f"it has the marks of no known format{other}; export the pattern in one of {formats}",
     )
     require(
         asserted in (None, *looks),
