@@ -42,6 +42,7 @@ ED_269 = {"identifier": "X", "geometry": [{"horizontalProjection": {"type": "Cir
         ({"volumes": [{"outline_circle": {}}]}, "ASTM"),
         ({"areas": [{"sub_areas": []}]}, "DJI"),
         ({"limit": 1, "items": [FEATURE]}, "openAIP"),
+        ({"type": "FeatureCollection", "features": 5}, "got 5, must be a list"),
     ],
 )
 def test_other_json_is_refused_by_its_name(content: Any, words: str, tmp_path: Path) -> None:

@@ -11,9 +11,8 @@ STAY_IN, FREE, STAY_OUT = "an area to stay in", "an area where flying is allowed
 """What a feature may say of flying in it."""
 UNSTATED = "an area"
 """What it is if it says nothing of that."""
-_ROLES = (STAY_IN, FREE, STAY_OUT)  # the first counts where it says two
 
-_YES, _NO = ("true", "yes", "1", "1.0"), ("false", "no", "0", "0.0")
+_YES, _NO, _NEUTRAL = ("true", "yes", "1", "1.0"), ("false", "no", "0", "0.0"), ("common", "customized")
 _SENSES = (  # of keys: what yes means, and what no
     (("inclusion", "inclusive", "included", "keepin", "stayin"), STAY_IN, STAY_OUT),
     (("exclusion", "exclusive", "excluded", "keepout", "stayout"), STAY_OUT, STAY_IN),
@@ -30,11 +29,10 @@ _WORDS = (
     | dict.fromkeys(("norestriction", "norestrictions", "unrestricted", "allow", "granted"), FREE)
     | dict.fromkeys(("restrictionnone", "restrictionsnone", "restrictionno", "restrictionfalse"), FREE)
     | dict.fromkeys(("kindgeofence", "kindairspace"), STAY_IN)  # as nullpose exports them
-    | dict.fromkeys(("common", "customized"), UNSTATED)  # of ED-318, which decide nothing
 )
 """The role by a value, or by a key with its value, in small letters alone."""
 _DECIDES = re.compile(
-    "type$|kind$|restrict|prohib|forbid|fence|zone$|inclu|exclu|keep|stay|nofly|nfz|allow|permi|flyable"
+    "type$|kind$|restrict(?!ioncond)|prohib|forbid|fence|zone$|inclu|exclu|keep|stay|nofly|nfz|allow|permi|flyable"
 )
 _MAY_DECIDE = re.compile(f"{_DECIDES.pattern}|categor|class|status|rule|variant|usage|fly|flight|mode|action")
 
@@ -54,13 +52,12 @@ def role_of(feature: Feature) -> tuple[str, str, list[str]]:
         role = _WORDS.get(re.sub("[^a-z]", "", word)) or _WORDS.get(f"{name}{word}")
         if role and _MAY_DECIDE.search(name):
             roles[role] = f"{key} = {value}"
-        elif _DECIDES.search(name) and "condition" not in name and not isinstance(value, dict):
+        elif _DECIDES.search(name) and word not in _NEUTRAL and not isinstance(value, dict):
             unknown.append(f"{key} = {value}"[:60])
-    roles.pop(UNSTATED, None)
     require(
         roles.keys() <= {STAY_IN, FREE} or len(roles) == 1,
         feature.place,
         f"{' and '.join(roles.values())} contradict each other: is it to be stayed in or out of? Keep one",
     )
-    role = min(roles, key=_ROLES.index, default=UNSTATED)
+    role = STAY_IN if STAY_IN in roles else next(iter(roles), UNSTATED)
     return role, roles.get(role, ""), unknown

@@ -189,9 +189,8 @@ def areas_of(
 
 def _pieces(feature: Feature) -> list[Feature]:
     """Return a feature of KML once for each solid that it may hold, with its own heights."""
-    if feature.geometry is None or "altitudeMode" not in feature.properties:
-        return [feature]
-    return [replace(feature, geometry=piece) for piece in connected(feature.geometry)] or [feature]
+    pieces = connected(feature.geometry) if "altitudeMode" in feature.properties else []
+    return [replace(feature, geometry=piece) for piece in pieces] or [feature]
 
 
 def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bool) -> list[Area]:

@@ -46,33 +46,26 @@ def members_of(text: str) -> dict[str, Any]:
     if value_of(data, "fileType") == "Plan":
         return _members_of_plan(data)
     is_known = kind in (*_GEOMETRIES, "GeometryCollection", "Feature", "FeatureCollection")
-    if not is_known or any(isinstance(value_of(each, "geometry"), list) for each in members or ()):
+    listed = members if isinstance(members, list) else []
+    if not is_known or any(isinstance(value_of(each, "geometry"), list) for each in listed):
         for sign, words in _OTHERS.items():
             require(not re.search(sign, text), "", f"this is {words.replace(';', ', which is not read;')}")
     require(isinstance(data, dict), "", f"got {described(data)}, must be a FeatureCollection")
     if is_known and kind != "FeatureCollection":
-        members = [data if kind == "Feature" else {"type": "Feature", "geometry": data}]
+        listed = [data if kind == "Feature" else {"type": "Feature", "geometry": data}]
     require(is_known, "type", f'got {described(kind)}, must be "FeatureCollection", "Feature" or a geometry')
-    require(
-        isinstance(members, list) and members,
-        "features",
-        f"got {described(members)}, must be a list of one feature or more",
-    )
+    require(listed, "features", f"got {described(members)}, must be a list of one feature or more")
     if "crs" in data:
         stated = value_of(data["crs"], "properties") or data["crs"]
         require_wgs84(str(value_of(stated, "name") or value_of(stated, "code") or described(stated)))
-    matched = data.get("numberMatched")
-    is_cut = True in (
-        data.get("exceededTransferLimit"),
-        value_of(data.get("properties"), "exceededTransferLimit"),
-    )
+    is_cut = any(value_of(each, "exceededTransferLimit") for each in (data, data.get("properties")))
     require(
-        not is_cut and not (isinstance(matched, int) and matched > len(members)),
+        not is_cut and data.get("numberMatched") in (None, "unknown", len(listed)),
         "features",
-        f"it has {len(members)}, a part of what its server holds (exceededTransferLimit, numberMatched); "
+        f"it has {len(listed)}, a part of what its server holds (exceededTransferLimit, numberMatched); "
         "load all of them",
     )
-    return {f"features[{index}]": member for index, member in enumerate(members)}
+    return {f"features[{index}]": member for index, member in enumerate(listed)}
 
 
 def _members_of_plan(plan: PlainTable) -> PlainTable:
@@ -89,21 +82,19 @@ def _members_of_plan(plan: PlainTable) -> PlainTable:
         for index, each in enumerate(listed if isinstance(listed, list) else [listed]):
             shape, place = value_of(each, kind), f"geoFence.{kind}s[{index}]"
             rules = {"inclusion": value_of(each, "inclusion"), "radius_m": value_of(shape, "radius")}
-            is_whole = isinstance(rules["inclusion"], bool) and (
-                kind == "polygon" or rules["radius_m"] is not None
+            require(
+                isinstance(rules["inclusion"], bool) and (kind == "polygon" or rules["radius_m"] is not None),
+                place,
+                "must state inclusion, true or false, and of a circle the radius",
             )
-            require(is_whole, place, "must state inclusion, true or false, and of a circle the radius")
-            found[place] = (
-                _feature("Point", value_of(shape, "center"), rules)
-                if kind == "circle"
-                else _feature("Polygon", [shape], rules)
-            )
+            corners = [shape] if kind == "polygon" else value_of(shape, "center")
+            found[place] = _feature({"polygon": "Polygon", "circle": "Point"}[kind], corners, rules)
     return found
 
 
 def _feature(kind: str, places: object, properties: PlainTable) -> PlainTable:
-    geometry = {"type": kind, "coordinates": _turned(places)}
-    return {"type": "Feature", "geometry": geometry, "properties": properties}
+    shape = {"type": kind, "coordinates": _turned(places)}
+    return {"type": "Feature", "geometry": shape, "properties": properties}
 
 
 def _turned(places: object) -> object:

@@ -15,6 +15,7 @@ from nullpose.scenario.faults import refusal, require
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PLACE = re.compile(rf"{_NUMBER},{_NUMBER}(?:,(?:{_NUMBER})?)?")
+_SIDES = ("outerBoundaryIs", "innerBoundaryIs")
 _CHAINS = ("Point", "LineString", "LinearRing", "Track")
 _HERE = ("{*}name", "{*}description", "{*}TimeSpan/*", "{*}TimeStamp/*")
 _DATA = ("{*}ExtendedData/*", "{*}ExtendedData/{*}SchemaData/*")
@@ -99,8 +100,7 @@ def _members(parent: Element, place: str) -> Iterator[tuple[str, bool, PlainTabl
         if kind in ("MultiGeometry", "MultiTrack"):
             yield from _members(each, place)
             continue
-        bounds = ("outerBoundaryIs", "innerBoundaryIs") if is_polygon else ()
-        rings = [ring for side in bounds for ring in each.iterfind(f"{{*}}{side}/{{*}}LinearRing")]
+        rings = [ring for side in _SIDES for ring in each.iterfind(f"{{*}}{side}/{{*}}LinearRing")]
         chains = rings if is_polygon else [each] * (kind in _CHAINS)
         lines = [line for chain in chains if (line := list(_corners(chain, place)))]
         require(

@@ -81,26 +81,27 @@ def is_solid(faces: BaseGeometry | None) -> bool:
     """Check if polygons have a wall among them, or lie one above the other, as a roof and a floor do."""
     polygons = [shapely.make_valid(part) for part in parts_of(shapely.force_2d(faces))]
     areas = shapely.area(polygons)
-    has_walls = bool(np.any(areas <= _SAME_CORNER_DEG * shapely.length(polygons)))
-    return has_walls or areas.sum() > (2.0 - _LOOPS) * shapely.union_all(polygons).area
+    is_doubled = areas.sum() > (2.0 - _LOOPS) * shapely.union_all(polygons).area
+    return bool(is_doubled or np.any(areas <= _SAME_CORNER_DEG * shapely.length(polygons)))
 
 
-def connected(geometry: BaseGeometry) -> Iterator[BaseGeometry]:
-    """Yield the parts of a geometry together that touch each other, seen from above."""
+def connected(geometry: BaseGeometry | None) -> list[BaseGeometry]:
+    """Return the parts of a geometry together that touch each other, seen from above."""
     parts = list(parts_of(geometry))
     seen = [shapely.buffer(shapely.make_valid(shapely.force_2d(part)), _SAME_CORNER_DEG) for part in parts]
-    for region in parts_of(shapely.union_all(seen)):
-        yield shapely.GeometryCollection(
+    return [
+        shapely.GeometryCollection(
             [part for part, each in zip(parts, seen, strict=True) if each.intersects(region)]
         )
+        for region in parts_of(shapely.union_all(seen))
+    ]
 
 
 def disc(lon_deg: float, lat_deg: float, radius_m: float, alt_m: float) -> Polygon:
     """Return a polygon with its corners on a circle [m]; its sides are up to 0.015 % of the radius inside."""
     angles = np.linspace(0.0, 2.0 * np.pi, DISC_SIDES, endpoint=False)
     places_m = radius_m * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
-    places = geodetic_from_enu(places_m, [lat_deg, lon_deg, alt_m])
-    return shapely.Polygon(places[:, 1::-1])
+    return shapely.Polygon(geodetic_from_enu(places_m, [lat_deg, lon_deg, alt_m])[:, 1::-1])
 
 
 def near(polygon: Polygon, middle_deg: float) -> Polygon:
