@@ -66,6 +66,20 @@ ONCE = "from tiny import thrice, twice; print(twice(1.0), thrice(1.0))"
 NO_ROOM = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
 
 
+OTHER_SOURCES = """
+from importlib import reload
+
+import tiny
+from nullpose.solver.kernels.compiler import linked
+
+for sources, misses in (("old", 1), ("old", 0), ("new", 1), ("new", 0), ("old", 0)):
+    linked.digest_of_sources = lambda: sources
+    reload(tiny)
+    assert tiny.twice(1.0) == 2.0
+    assert sum(tiny.twice.stats.cache_misses.values()) == misses
+"""
+
+
 def run(program: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
     """Runs a program that has the kernels in a module, ``tiny``."""
     (folder / "tiny.py").write_text(KERNELS, encoding="utf-8")
@@ -78,6 +92,12 @@ def test_what_is_damaged_is_compiled_again(tmp_path: Path) -> None:
     """Truncated, empty, or with one bit turned: never loaded, replaced by what is sound, and only that."""
     done = run(DAMAGES, tmp_path)
     assert (done.stdout, done.stderr) == ("sound\n", "")
+
+
+def test_what_is_made_of_other_sources_is_not_run(tmp_path: Path) -> None:
+    """Not even if a process that began with them keeps it after the sources have changed."""
+    done = run(OTHER_SOURCES, tmp_path)
+    assert done.returncode == 0, done.stderr
 
 
 def test_a_folder_without_room_is_said_once(tmp_path: Path) -> None:

@@ -87,15 +87,20 @@ def _compiled(function, options, is_part=False):
 
 
 @cache
-def _drop_outdated(cache_path: str) -> None:
-    """Delete the cached kernels unless they were made of the present sources of kernels and what these take.
+def digest_of_sources() -> str:
+    """Return the SHA-256 of the sources of all kernels and of what these take, as they are at the first call.
 
     A cached kernel holds the code of those it calls, but numba compares only the file of the kernel itself.
     """
     kernels = sorted(Path(__file__).parents[1].rglob("*.py"))
     sources = [*kernels, *(Path(str(module.__file__)) for module in (records, ratios, model, elevation))]
-    present = sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
-    stamp = Path(cache_path) / "kernels.sha256"
+    return sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
+
+
+@cache
+def _drop_outdated(cache_path: str) -> None:
+    """Delete the cached kernels unless they were made of the present sources."""
+    present, stamp = digest_of_sources(), Path(cache_path) / "kernels.sha256"
     with contextlib.suppress(OSError):
         if stamp.exists() and stamp.read_text() == present:
             return

@@ -25,6 +25,7 @@ from numba.core.serialize import dumps
 
 from nullpose.objectives import Ratios
 from nullpose.solver.kernels.compiler import interpreted
+from nullpose.solver.kernels.compiler.jit import digest_of_sources
 from nullpose.solver.kernels.compiler.notices import UNCACHED, warn_once
 
 _CHECKSUM = 32  # bytes
@@ -115,7 +116,9 @@ class _Files(IndexDataCacheFile):
     """
 
     def _path(self, key) -> Path:
-        choice = sha256(repr((self._version, self._source_stamp, key)).encode()).hexdigest()
+        # a process that began with other sources may still be writing
+        stamps = self._version, self._source_stamp, digest_of_sources()
+        choice = sha256(repr((*stamps, key)).encode()).hexdigest()
         return Path(self._cache_path) / self._index_name.replace(".nbi", f".{choice}.nbc")
 
     def load(self, key):
