@@ -181,3 +181,24 @@ def test_a_mode_that_is_not_read_is_named(tmp_path: Path) -> None:
         scenario, notes = zones_of(tmp_path, "z.kml")
         assert scenario.airspace.no_fly[0].altitude_m is None
         assert notes[1:] == [f'z.kml: "p" counts at all altitudes; not read: heights of its corners ({mode})']
+
+
+def test_a_fence_of_kml_ends_at_its_lowest_roof(tmp_path: Path) -> None:
+    """Under a roof that slopes a zone reaches up to its highest corner; as a solid a fence of it is none."""
+    corners = list(SQUARE.exterior.coords)
+    roof = shapely.Polygon([(x, y, 30.0 if x < 14.5 else 60.0) for x, y in corners])
+    floor = shapely.force_3d(SQUARE, 20.0)
+
+    def load_fence(*faces: Any, more: str = MODE) -> tuple[float, float]:
+        text = "".join(kml_of(face, more) for face in faces)
+        mark = f"<Placemark><MultiGeometry>{text}</MultiGeometry></Placemark>"
+        (tmp_path / "f.kml").write_text(kml(mark), encoding="utf-8")
+        return load(scene(tmp_path, 'altitude_m = [10, 120]\ngeofence_from = "f.kml"')).airspace.altitude_m
+
+    assert load_fence(roof, more=f"<extrude>1</extrude>{MODE}") == (10.0, 30.0)
+    assert of_kml(tmp_path, kml_of(roof, f"<extrude>1</extrude>{MODE}")) == [(-1e6, 60.0)]
+    assert load_fence(floor, shapely.force_3d(SQUARE, 60.0)) == (20.0, 60.0)
+    with pytest.raises(ScenarioError, match="heights of its corners"):
+        load_fence(floor, roof)
+    solid = f"<MultiGeometry>{kml_of(floor, MODE)}{kml_of(roof, MODE)}</MultiGeometry>"
+    assert of_kml(tmp_path, solid) == [(20.0, 60.0)]

@@ -111,13 +111,13 @@ class Airspace(Section):
         [[49.9998, 14.4996], [49.9998, 14.5004], [50.0006, 14.5004], [50.0006, 14.4996]],
     )
     geofence_from: Label | None = optional(
-        "Name of a geographic file (GeoJSON, KML, GeoPackage and others) "
-        "with the fence as one polygon, relative to this file's "
+        "Name of a geographic file (GeoJSON, KML, a plan of QGroundControl and others) "
+        "with the fence as one polygon or circle, relative to this file's "
         "folder. In place of geofence_m.",
         "fence.geojson",
     )
     no_fly_from: Label | None = optional(
-        "Name of a geographic file (GeoJSON, KML, GeoPackage and others) "
+        "Name of a geographic file (GeoJSON, KML, a plan of QGroundControl and others) "
         "with no-fly zones, relative to this file's folder. They "
         "are added to those in tables headed [[airspace.no_fly]].",
         "zones.kml",

@@ -79,7 +79,7 @@ def altitude_limits(
         read |= {f"{path}Reference" for path in read}
         is_narrowed = is_fence and any(end[2] for end in (low, high) if end)
     elif not is_ours:
-        found, unread_heights = _of_corners(feature, ground_m)
+        found, unread_heights = _of_corners(feature, ground_m, is_fence)
         likely |= unread_heights
     unread = [path for path in likely if path not in read]
     stated = [
@@ -199,24 +199,26 @@ def shift_m(place: str, over: str, key: str, ground_m: Ground) -> float:
     return (ground_m[key] or 0.0) - (ground_m[over] or 0.0)
 
 
-def _of_corners(feature: Feature, ground_m: Ground) -> tuple[PlainTable, PlainTable]:
+def _of_corners(feature: Feature, ground_m: Ground, is_fence: bool) -> tuple[PlainTable, PlainTable]:
     """Read the altitudes between roof and floor, or from the ground up to what is extruded, in KML.
 
-    Corners on the ground are no roof; nor is a face by itself, which may follow the terrain.
+    Corners on the ground are no roof; nor is a face by itself, which may follow the terrain. A zone reaches
+    up to its highest corner; a fence that is extruded up to its lowest, and a solid is one if it is level.
 
     Returns:
         The altitudes, and what of the heights of the corners is not read.
     """
-    mode, is_extruded = (
-        feature.properties.get("altitudeMode", ""),
-        feature.properties.get("extrude") in (1, True),
-    )
+    mode, extrude = (feature.properties.get(key, "") for key in ("altitudeMode", "extrude"))
     heights_m = shapely.get_coordinates(feature.geometry, include_z=True)[:, 2]
     heights_m = heights_m[np.isfinite(heights_m)]
     if mode in _ON_THE_GROUND or not np.any(heights_m):
         return {}, {}
     low_m, high_m = float(heights_m.min()), float(heights_m.max())
     is_above = mode in _OF_KML and high_m > (ground_m[_OF_KML[mode]] or 0.0)
-    if is_above and (is_extruded or (high_m - low_m >= _FLAT_M and is_solid(feature.geometry))):
-        return {_OF_KML[mode]: [-_FAR_M if is_extruded else low_m, high_m]}, {}
+    if is_above and extrude in (1, True):
+        return {_OF_KML[mode]: [-_FAR_M, low_m if is_fence else high_m]}, {}
+    is_level = np.minimum(heights_m - low_m, high_m - heights_m).max() < _FLAT_M
+    is_read = high_m - low_m >= _FLAT_M and is_solid(feature.geometry) and (is_level or not is_fence)
+    if is_above and is_read:
+        return {_OF_KML[mode]: [low_m, high_m]}, {}
     return {}, {f"heights of its corners{f' ({mode})' if mode else ''}": high_m}
