@@ -61,6 +61,7 @@ def test_a_key_that_looks_like_an_altitude_is_named_in_a_zone_and_refused_in_a_f
         {"layer": {"upperLimit": 40}},
         {"limits": {"top": {"value": 40}}},
         {"description": "Max. 40 m AGL"},
+        {"note": "Hauteur maximale de 50 m"},
         {"name": "D12 GND-FL95"},
         {"layer": {"lower": 0, "upper": 100, "uom": "m"}, "maxHeight": 40},
     ],
@@ -76,7 +77,10 @@ def test_a_fence_whose_altitude_is_stated_in_another_way_is_refused(
     assert any("counts at altitude_m; not read:" in note for note in notes)
 
 
-@pytest.mark.parametrize("properties", [{}, {"alt_name": "B2"}, {"ceiling": "UNL"}, {"speed_limit": 9}])
+@pytest.mark.parametrize(
+    "properties",
+    [{}, {"alt_name": "B2"}, {"ceiling": "UNL"}, {"speed_limit": 9}, {"highway": 1}, {"limitedUse": 1}],
+)
 def test_a_fence_without_an_altitude_is_one_at_all(properties: dict[str, Any], tmp_path: Path) -> None:
     """What states no number bounds nothing."""
     assert fence_of(tmp_path, properties)[0].airspace.altitude_m == (10.0, 120.0)

@@ -36,12 +36,16 @@ _WEATHER = (
 _ON_THE_GROUND = ("clampToGround", "clampToSeaFloor")
 _OF_KML = {"absolute": "altitude_msl_m", "relativeToGround": "altitude_m"}
 _LIKE_LIMITS = re.compile(
-    r"upper|lower|floor|ceil|altit|elev|height|roof|hoehe|höhe|vertical|agl|msl|flight_?level"
-    r"|(?<![a-z])(?:(?:min|max|rel|abs)_?)?(?:alt|alts|top|bottom|base|limits?|z(?:_?min|_?max)?|fl|hgt)(?![a-z])"
+    r"upper|lower|floor|ceil|altit|altura|elev|height|hauteur|plafond|hoogte|roof|hoehe|höhe|grenze|vertical"
+    r"|agl|msl|limite(?!d)|flight_?level|^(?:(?:min|max|low|high)(?:est)?|h|z)(?:_?(?:min|max|m|ft))?$"
+    r"|(?<![a-z])(?:(?:min|max|rel|abs)_?)?(?:alts?|top|bottom|base|limits?|z|fl|hgt)"
+    r"(?:_?(?:min|max|m|ft))?(?![a-z])"
 )
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
 _NO_LIMITS = {"altitudeMode", "alt_name", "alt_text", "speed_limit"}
-_SAYS_LIMITS = re.compile(r"\b(?:A?MSL|AGL|GND|SFC|UNL|FL ?\d+)\b|altitude|ceiling", re.IGNORECASE)
+_SAYS_LIMITS = re.compile(
+    r"\b(?:A?MSL|AGL|GND|SFC|UNL|FL ?\d+)\b|altitude|ceiling|height|hauteur|höhe", re.IGNORECASE
+)
 _LIKE_TIMES = re.compile(
     r"applicab|schedul|hours|timestamp|^(?:begin|start|end|until|when|status)$|activ|valid|expir|effectiv"
     r"|(?:start|end)_?(?:date|time)",

@@ -99,7 +99,8 @@ class NamedFiles:
         require(
             PurePath(file).suffix.lower() in kind.endings,
             "",
-            f"the name must end in one of {', '.join(kind.endings)}, which tells the kind",
+            f"the name must end in one of {', '.join(kind.endings)}, which tells the kind; convert others, "
+            "as QGIS and ogr2ogr do",
         )
         return inside(self._folder, file, self._allow_outside, place)
 
