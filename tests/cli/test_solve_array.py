@@ -35,7 +35,7 @@ def test_the_array_is_what_is_solved(run: Run, array: str) -> None:
 
 def test_other_verbs_say_that_they_leave_it_out(run: Run, array: str, tmp_path: Path) -> None:
     """Cases of one dipole are solved without the array, and it is said."""
-    assert "All cases use one dipole" in run("compare", array, "--fast").stdout
+    assert "All cases use one antenna" in run("compare", array, "--fast").stdout
     settings = ("--set", "jammers.M.power_w", "--from", 1, "--to", 2, "--points", 2, "--scheme", "vertical")
     result = run("sweep", array, *settings, "--out", tmp_path / "out")
     assert result.exit_code == 0

@@ -1,6 +1,7 @@
 """The answer to the title's question, in words that follow from the numbers."""
 
 import io
+import math
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -12,6 +13,7 @@ from nullpose import Airframe, ResultTable, Status, compare_airframes, load
 from nullpose.report.answer import answer_lines
 from nullpose.report.comparison import airframes_view
 from nullpose.report.figures.dots import draw_comparison
+from nullpose.report.numbers import bound_text
 from nullpose.scenario import apply_overrides
 from nullpose.study.vehicles import dipoles
 
@@ -61,12 +63,11 @@ def test_the_example_of_the_question(plain: ResultTable) -> None:
     best, first, arrays, advice = answer_lines(plain)
     assert best.startswith("A level vehicle with the dipole mounted at 80 degrees reaches")
     assert first == (
-        "A 10 degree tilt with a horizontal dipole reaches 0.03 dB less than the omnidirectional vehicle. It "
-        "is proved to suffice; of the vehicles compared with a vertical or horizontal dipole, none with less "
-        "tilt is."
+        "A 10 degree tilt with a horizontal dipole reaches 0.03 dB less than the omnidirectional vehicle. "
+        "Proved enough. No vertical or horizontal dipole with less tilt was."
     )
     assert "with an array of 2 with digital combining reaches 3.28 dB more" in arrays
-    assert not any("fewer" in line or "none with" in line for line in (best, arrays))  # they are the least
+    assert not any("fewer" in line or "less tilt" in line for line in (best, arrays))  # they are the least
     assert "nullpose vehicle" in advice
 
 
@@ -78,18 +79,17 @@ def test_no_other_vehicle_suffices(plain: ResultTable) -> None:
     worse = with_value(worse, "tilt-30-horizontal", 0.9 * plain.of("omnidirectional")[0].objective.value)
     _, first, *_ = answer_lines(worse)
     assert first == (
-        "Of the vehicles compared with a vertical or horizontal dipole, a 30 degree tilt with a "
-        "horizontal dipole comes nearest by the values found: it reaches 0.46 dB less than the "
-        "omnidirectional vehicle. All are proved not to suffice."
+        "No vertical or horizontal dipole compared is enough (proved). The nearest, a 30 degree tilt with a "
+        "horizontal dipole, reaches 0.46 dB less than the omnidirectional vehicle."
     )
     rows = tuple(replace(row, objective=replace(row.objective, upper_bound=None)) for row in worse.rows)
-    assert "Not all are proved not to suffice" in answer_lines(replace(worse, rows=rows))[1]
+    assert "was found enough (not proved of all)" in answer_lines(replace(worse, rows=rows))[1]
 
 
 def test_without_a_proof_nothing_is_proved() -> None:
     """A search alone finds a vehicle that suffices; the table and the answer say that it is not proved."""
     fast = compared("paper", certify=False)
-    assert "It is found (not proved) to suffice" in answer_lines(fast)[0]
+    assert "Found enough, not proved." in answer_lines(fast)[0]
     assert text_of(fast).count("not proved") > len(fast.rows) - 1
 
 
@@ -99,7 +99,7 @@ def test_nothing_to_give() -> None:
     for result in zero.rows:
         zero = with_value(zero, result.name, 0.0)
     (line,) = answer_lines(zero)
-    assert line == "Of the vehicles compared, none with one dipole was found to reach every node."
+    assert line == "No vehicle compared with one dipole was found to reach every node."
     assert "nan" not in text_of(zero)
     draw_comparison(zero)
 
@@ -107,7 +107,8 @@ def test_nothing_to_give() -> None:
 def test_what_is_proved_is_told(plain: ResultTable) -> None:
     """Certified values, and nothing where nothing was proved."""
     lines = text_of(plain).splitlines()
-    assert "bounded: as near as needed. Proofs of arrays are not checked against rounding." in lines
+    assert "bounded: the proof stopped as soon as the verdict was clear." in " ".join(lines)
+    assert "Proofs of arrays are not checked against rounding." in " ".join(lines)
     fast = compared("paper", certify=False)
     assert {result.status for result in dipoles(fast)} == {Status.BEST_FOUND}
     assert "certified" not in text_of(fast)
@@ -143,10 +144,46 @@ def test_figure_has_a_dot_for_each_vehicle(robust: ResultTable) -> None:
     guaranteed = {"guaranteed, robust pose", "guaranteed, pose shown"}
     assert set(legend) == guaranteed | {
         "value found",
-        "upper bound (near enough)",
+        "upper bound",
         "omnidirectional",
     }
     figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in axes.texts]
     assert not any(box.overlaps(other) for i, box in enumerate(boxes) for other in boxes[i + 1 :])
     assert all(box.x1 <= figure.bbox.x1 for box in boxes)
+
+
+@pytest.mark.parametrize("apart", [1e3, 1e9, math.inf])
+def test_bounds_far_away_hide_no_value(plain: ResultTable, apart: float) -> None:
+    """The axis follows the values; a bound far above them is an arrow at the edge, with its number."""
+    far = [
+        replace(row, objective=replace(row.objective, upper_bound=apart * row.objective.value))
+        for row in dipoles(plain)[:-1]
+    ]
+    names = [row.name for row in far]
+    table = replace(plain, rows=(*far, *(row for row in plain.rows if row.name not in names)))
+    figure = draw_comparison(table)
+    (axes,) = figure.axes
+    left, right = axes.get_xlim()
+    values_db = [row.objective.value_db for row in table.rows]
+    assert left < min(values_db) < max(values_db) < right
+    assert max(values_db) - min(values_db) > 0.4 * (right - left)
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "upper bound far above" in legend
+    numbers = [text.get_text() for text in axes.texts]
+    assert len(numbers) > 3
+    assert set(numbers) <= {bound_text(row.objective, 1) for row in far}
+
+
+def test_close_values_are_told_apart_by_whole_numbers(plain: ResultTable) -> None:
+    """Values within a hundredth of a decibel: no number of the axis is written as a difference."""
+    rows = tuple(
+        replace(row, objective=replace(row.objective, value=28.3 + 5e-4 * place, upper_bound=28.32))
+        for place, row in enumerate(plain.rows)
+    )
+    figure = draw_comparison(replace(plain, rows=rows))
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    assert axes.xaxis.get_offset_text().get_text() == ""
+    ticks = [float(text.get_text()) for text in axes.get_xticklabels()]
+    assert ticks == pytest.approx(list(axes.get_xticks()), abs=1e-9)

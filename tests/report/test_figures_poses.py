@@ -6,14 +6,17 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from nullpose import Pose, Scenario, load, solve
+from nullpose import Pose, Scenario, load, solve, sweep
 from nullpose.errors import UsageError
+from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose
 from nullpose.report.figures.stage import ALONE, Stage
 from nullpose.report.figures.style import prepare_figure_file, write_figure
+from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.geometry import outline_m
 from nullpose.study.value_map import value_map
+from nullpose.study.vehicles import compare_schemes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -89,3 +92,32 @@ def test_a_figure_is_named_by_its_kind(tmp_path: Path) -> None:
         prepare_figure_file(tmp_path / "figure.jpg")
     prepare_figure_file(tmp_path / "new" / "figure.SVG")
     assert (tmp_path / "new").is_dir()
+
+
+@pytest.mark.parametrize("width", [None, "column"])
+def test_long_names_stay_within_every_figure(paper: Scenario, width: str | None) -> None:
+    """Titles are broken into lines, and so are long names in a key; at far places every number is whole."""
+    points = paper.to_dict()
+    for each in (*points["nodes"], *points["jammers"]):
+        each["name"] = f"{each['name']}, the one with a name that no other has, beside the motorway bridge"
+        each["position_m"] = [each["position_m"][0] + 14500.0, each["position_m"][1] - 14500.0, 0.0]
+    scenario = Scenario.from_dict(points | {"name": " ".join(["A name as long as a sentence"] * 8)})
+    solution = solve(scenario, certify=False)
+    figures = [
+        draw_pose(solution, width),
+        draw_sweep(sweep(scenario, "jammers[0].power_w", [1e-9, 2e-9], certify=False), width=width),
+        draw_comparison(compare_schemes(scenario, certify=False), width),
+    ]
+    for figure in figures:
+        figure.draw_without_rendering()
+        titles = [
+            figure._suptitle,
+            *(each for axes in figure.axes for each in (axes.title, axes._left_title)),
+        ]
+        texts = [*titles, *(text for legend in figure.legends for text in legend.get_texts())]
+        for text in [text for text in texts if text is not None and text.get_text()]:
+            box = text.get_window_extent()
+            assert figure.bbox.x0 <= box.x0
+            assert box.x1 <= figure.bbox.x1
+        for axes in figure.axes:
+            assert axes.xaxis.get_offset_text().get_text() == axes.yaxis.get_offset_text().get_text() == ""

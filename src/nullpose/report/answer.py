@@ -18,9 +18,9 @@ from nullpose.study.vehicles import (
 )
 
 _VERDICTS = {
-    Verdict.SUFFICES: "is proved to suffice",
-    Verdict.FALLS_SHORT: "is proved not to suffice",
-    Verdict.NOT_PROVED: "is not proved to suffice, nor not to",
+    Verdict.SUFFICES: "is proved enough",
+    Verdict.FALLS_SHORT: "is proved too little",
+    Verdict.NOT_PROVED: "is proved neither enough nor too little",
 }
 
 
@@ -30,12 +30,15 @@ def answer_lines(comparison: ResultTable) -> list[str]:
     Of each kind the least that suffices, or the nearest.
     """
     if all(row.objective.value <= 0.0 for row in dipoles(comparison)):
-        return ["Of the vehicles compared, none with one dipole was found to reach every node."]
-    ends = {"the best mount": (BEST_MOUNT,), "a vertical or horizontal dipole": ("-vertical", "-horizontal")}
+        return ["No vehicle compared with one dipole was found to reach every node."]
+    ends = {
+        "dipole at the best mount": (BEST_MOUNT,),
+        "vertical or horizontal dipole": ("-vertical", "-horizontal"),
+    }
     kinds = {
         kind: [row for row in dipoles(comparison) if row.name.endswith(end)] for kind, end in ends.items()
     }
-    kinds["an array"] = [row for row in comparison.rows if row.case.array is not None]
+    kinds["array"] = [row for row in comparison.rows if row.case.array is not None]
     lines = [_least_line(comparison, kind, found) for kind, found in kinds.items() if found]
     for row in [row for row in comparison.rows if row.name == FILE_VEHICLE]:
         verdict = _VERDICTS[verdict_on(comparison, row)]
@@ -45,11 +48,11 @@ def answer_lines(comparison: ResultTable) -> list[str]:
 
 def sufficing(quantity: Quantity) -> list[str]:
     """Say what a vehicle has to reach to suffice, and how either answer is proved."""
-    loss = "" if quantity.is_rate else f" ({-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB less)"
-    share = f"{100.0 * (1.0 - TOLERANCE):g} %"
+    loss = "" if quantity.is_rate else f" ({-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB)"
+    share = f"{100.0 * TOLERANCE:g} %{loss}"
     return [
-        f"yes: the value is at least {share}{loss} of the omnidirectional bound.",
-        f"no: the bound, rounded up, is below {share} of the omnidirectional value.",
+        f"yes: the value is at most {share} below the omnidirectional bound.",
+        f"no: the bound, rounded up, is more than {share} below the omnidirectional value.",
     ]
 
 
@@ -59,17 +62,16 @@ def _least_line(comparison: ResultTable, kind: str, found: Sequence[ResultRow]) 
     close = [row for row in found if row.objective.value >= enough]
     proved = [row for row in close if verdict_on(comparison, row) is Verdict.SUFFICES]
     if close:
-        row, how = (proved or close)[0], "proved" if proved else "found (not proved)"
+        row, how = (proved or close)[0], "Proved enough" if proved else "Found enough, not proved"
         less, (size, least) = "less tilt", (_tilt_rad(row), _tilt_rad(found[0]))
         if row.case.array and found[0].case.array:
             less, size, least = "fewer elements", row.case.array.elements, found[0].case.array.elements
-        others = f"; of the vehicles compared with {kind}, none with {less} is" if least < size else ""
-        return f"{capitalised(row.case.phrase)} {_reach(comparison, row)}. It is {how} to suffice{others}."
+        others = f" No {kind} with {less} was." if least < size else ""
+        return f"{capitalised(row.case.phrase)} {_reach(comparison, row)}. {how}.{others}"
     nearest = max(found, key=lambda row: row.objective.value)
     are_short = all(verdict_on(comparison, row) is Verdict.FALLS_SHORT for row in found)
-    reach = f"{nearest.case.phrase} comes nearest by the values found: it {_reach(comparison, nearest)}"
-    all_of = "All" if are_short else "Not all"
-    return f"Of the vehicles compared with {kind}, {reach}. {all_of} are proved not to suffice."
+    how = "is enough (proved)" if are_short else "was found enough (not proved of all)"
+    return f"No {kind} compared {how}. The nearest, {nearest.case.phrase}, {_reach(comparison, nearest)}."
 
 
 def _tilt_rad(row: ResultRow) -> float:

@@ -49,7 +49,7 @@ def comparison_view(comparison: ResultTable) -> View:
         f"{work_words(starts, boxes)} (all cases together)",
         f"* worst node: the {quantity.smallest} is here. Change: from the best case.",
         "Each upper bound holds for the poses that its scheme allows.",
-        "All cases use one dipole on this file's vehicle. Other vehicles and arrays: compare --airframes",
+        "All cases use one antenna on this file's vehicle. Other vehicles and arrays: compare --airframes",
     ]
     return document(
         head(found[0].scenario.name),
@@ -221,11 +221,12 @@ def _vehicle_proof_lines(found: Sequence[ResultRow]) -> list[str]:
     unchecked = dict.fromkeys(
         "arrays" if row.case.array else "dipoles" for row in found if row.rigour is Rigour.FLOATING_POINT
     )
-    needed = "bounded: as near as needed. " if any(row.reason == AS_NEEDED for row in found) else ""
+    is_cut = any(row.reason == AS_NEEDED for row in found)
     rounding = f"Proofs of {' and '.join(unchecked)} are not checked against rounding." if unchecked else ""
     searched = [Status.BEST_FOUND.message for row in found if row.status is Status.BEST_FOUND]
     return [
-        *filter(None, [f"{needed}{rounding}".strip()]),
+        *(["bounded: the proof stopped as soon as the verdict was clear."] if is_cut else []),
+        *filter(None, [rounding]),
         *(f"{_STATUS[Status.BEST_FOUND]}: {message}." for message in dict.fromkeys(searched)),
         *grouped((row.label, "" if row.reason == AS_NEEDED else row.reason) for row in found),
     ]
@@ -238,5 +239,5 @@ def _proof_lines(comparison: ResultTable) -> list[str]:
     return [
         *(f"{_STATUS[status]}: {status.message.removeprefix('certified ')}." for status in statuses),
         *grouped((row.label, row.reason) for row in solved),
-        *(f"Bounds, rounded up: {line}" for line in rigour_lines((row.label, row.rigour) for row in solved)),
+        *(f"Bounds: {line}" for line in rigour_lines((row.label, row.rigour) for row in solved)),
     ]

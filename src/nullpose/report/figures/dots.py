@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-import textwrap
+from itertools import compress
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,15 +16,15 @@ from nullpose.report.answer import answer_lines
 from nullpose.report.comparison import numbers_of
 from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, Look, house_style, inches
 from nullpose.report.figures.sweep import draw_caption
-from nullpose.report.numbers import capitalised, number
+from nullpose.report.numbers import bound_text, capitalised, number
 from nullpose.study import ResultRow, ResultTable
 from nullpose.study.case import OMNIDIRECTIONAL
 
 _ROW_INCH, _SENTENCE_INCH, _PRINTED = 0.33, 0.3, 0.66  # on a screen; height in print over that
-_NAME_LETTERS = 60  # in a line of a scene's name
 _GAP = 0.6  # between dipoles and arrays, in rows
 _WIDEST_DB = 25.0  # from the best dipole; dots farther off are at the edge, as arrows
 _BESIDE = 0.08  # of the width drawn, free at both ends
+_NEAR_DB = 3.0  # bounds so near the values, or as near as these are to each other, widen the axis
 
 
 def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure:
@@ -39,8 +39,8 @@ def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure
         count = len(axes.get_legend_handles_labels()[0])
         figure.legend(loc="outside upper center", ncols=3 if count == 3 else 2, handlelength=1.2)
         if width is None:
-            name = textwrap.fill(comparison.rows[0].scenario.name, _NAME_LETTERS)
-            axes.set_title(name, loc="left", fontweight="bold", parse_math=False)
+            name = comparison.rows[0].scenario.name
+            axes.set_title(name, loc="left", fontweight="bold", parse_math=False, wrap=True)
             draw_caption(figure, lines)
     return figure
 
@@ -48,26 +48,34 @@ def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure
 def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     """Draw a dot for each row, a tick at its bound, and what it guarantees under errors.
 
-    At the right stand the values, and with vehicles their difference from the omnidirectional one's.
+    At the right stand the values, and with vehicles their difference from the omnidirectional one's. A bound
+    far above all values is an arrow at the edge, with its number.
     """
     found, quantity = comparison.rows, comparison.rows[0].objective.quantity
     is_array = np.array([row.case.array is not None for row in found])
     places = np.arange(len(found)) + _GAP * is_array
     values, bounds, nominal, robust, _ = numbers_of(comparison)
-    low, high = _frame(axes, quantity, places, np.array([values, bounds, nominal, robust]), is_array)
+    low, high = _frame(axes, quantity, places, np.array([values, nominal, robust]), bounds, is_array)
+    left, right = axes.get_xlim()
     shown = np.clip(np.nan_to_num(values, nan=low), low, high)
-    axes.hlines(places, *axes.get_xlim(), color="#cccccc", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.0)
-    axes.hlines(places, shown, np.fmin(bounds, high), color=INK, linewidth=1.0, zorder=2.0)
+    is_far = bounds > high
+    axes.hlines(places, left, right, color="#cccccc", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.0)
+    ends = np.where(is_far, right, np.fmax(bounds, shown))
+    axes.hlines(places, shown, ends, color=INK, linewidth=1.0, zorder=2.0)
     dots: Look = {"linestyle": "", "clip_on": False, "zorder": 3.0}
     axes.plot([], [], "o", color=GREY, label="value found")
     for place, row, value, at in zip(places, found, values, shown, strict=True):
-        left, right = axes.get_xlim()
         mark, at = (">", 0.5 * (high + right)) if value > high else ("o", at) if value >= low else ("<", left)
         axes.plot(at, place, mark, color=_colour(row), **dots)
-    whole = dict(zip(comparison.names, values.tolist(), strict=True)).get(OMNIDIRECTIONAL, math.nan)
-    bound = "upper bound" if math.isnan(whole) else "upper bound (near enough)"
     marks: dict[str, tuple[FloatArray, Look]] = {
-        bound: (bounds, {"marker": "|", "color": INK, "markersize": 13.0}),
+        "upper bound": (
+            np.where(is_far, math.nan, bounds),
+            {"marker": "|", "color": INK, "markersize": 13.0},
+        ),
+        "upper bound far above": (
+            np.where(is_far, right, math.nan),
+            {"marker": ">", "color": INK, "markersize": 4.5},
+        ),
         "guaranteed, robust pose": (robust, {"marker": "d", "color": INK, "markersize": 5.0}),
         "guaranteed, pose shown": (
             nominal,
@@ -76,37 +84,51 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     }
     for label, (numbers, look) in marks.items():
         if np.any(np.isfinite(numbers)):
-            is_seen = (numbers >= low) & (numbers <= high)
+            is_seen = (numbers >= low) & (numbers <= right)
             axes.plot(np.where(is_seen, numbers, math.nan), places, label=label, **look | dots)
+    for place, row in zip(places[is_far], compress(found, is_far), strict=True):
+        at_edge: Look = {"xytext": (-4.0, 1.0), "textcoords": "offset points", "ha": "right", "va": "bottom"}
+        axes.annotate(bound_text(row.objective, 1), (right, place), fontsize="small", **at_edge)
     if np.any(shown != np.nan_to_num(values, nan=low)):
         axes.plot([], [], ">", color=GREY, label="beyond the axis")
+    whole = dict(zip(comparison.names, values.tolist(), strict=True)).get(OMNIDIRECTIONAL, math.nan)
     if math.isfinite(whole):
         look = {"color": VEHICLES[OMNIDIRECTIONAL].colour, "linewidth": 0.9, "zorder": 1.5}
         axes.axvline(whole, label=OMNIDIRECTIONAL, **look)
     axes.set_yticks(places, [row.label for row in found])
     beside = axes.secondary_yaxis("right")
     beside.set_yticks(places, [_difference_words(value, whole, quantity) for value in values.tolist()])
-    beside.tick_params(axis="y", length=0)
+    beside.tick_params(axis="y", length=0, pad=7.0)
     beside.spines["right"].set_visible(False)
 
 
 def _frame(
-    axes: Axes, quantity: Quantity, places: FloatArray, numbers: FloatArray, is_array: NDArray[np.bool_]
+    axes: Axes,
+    quantity: Quantity,
+    places: FloatArray,
+    numbers: FloatArray,
+    bounds: FloatArray,
+    is_array: NDArray[np.bool_],
 ) -> tuple[float, float]:
-    """Set limits and names of the axes; return the lowest and the highest value in view."""
-    finite: list[float] = numbers[np.isfinite(numbers)].tolist()
-    low, high, least = min(0.0, *finite), max(1e-3, *finite), 1e-3
+    """Set limits and names of the axes; return the lowest and the highest number in view.
+
+    All numbers that poses reach choose them, decibels up to 25 from the best dipole, then bounds near these.
+    """
+    finite, dipoles = (each[np.isfinite(each)] for each in (numbers, numbers[:, ~is_array]))
+    finite = finite if finite.size else np.zeros(1)
+    low, high = min(0.0, finite.min()), max(1e-3, finite.max())
+    least = near = 1e-3
     if not quantity.is_rate:  # decibels have no natural zero
-        dipoles = numbers[:, ~is_array] if np.any(np.isfinite(numbers[:, ~is_array])) else numbers
-        best, least = float(np.nanmax(dipoles)), 0.5
-        low = max(min(finite), best - _WIDEST_DB)
-        high = max(finite) if max(finite) <= best + _WIDEST_DB else best
+        best = dipoles.max() if dipoles.size else finite.max()
+        low, high = max(finite.min(), best - _WIDEST_DB), finite.max()
+        high, least, near = high if high <= best + _WIDEST_DB else best, 0.5, _NEAR_DB
+    high = np.fmax.reduce(bounds, where=bounds <= high + max(near, high - low), initial=high)
     beside = _BESIDE * max(high - low, least)
     axes.tick_params(axis="y", length=0)
     axes.set(xlim=(low - beside, high + beside), ylim=(places[-1] + 0.6, -0.6))
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})")
-    return low, high
+    return float(low), float(high)
 
 
 def _colour(row: ResultRow) -> str:

@@ -117,7 +117,7 @@ def draw_value_map(result: Result, field: Field, width: str | None = None) -> Fi
         draw_field(axes, result, field)
         if width is None:
             words = f"{result.label}: {field.title}"
-            axes.set_title(f"{result.scenario.name}\n{words}", fontsize=9, parse_math=False)
+            axes.set_title(f"{result.scenario.name}\n{words}", fontsize=9, parse_math=False, wrap=True)
         place_names(axes)
     return figure
 

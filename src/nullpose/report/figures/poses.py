@@ -51,6 +51,7 @@ _ROWS = 1.2, 1.0  # of a panel in a column, over the legend below it
 _PAGE_SHARE, _COLUMN_SHARES = 0.46, (0.84, 0.71)  # heights over widths; in a column without a plan, and with
 _LEGEND_COLUMN_INCH = 1.7
 _KEY_PT, _WIDEST = (6.5, 6.0), 0.985  # letters of a key; its width over the figure's
+_KEY_LETTERS = 48  # in a line of it: a column holds so many in bold
 _PLAN_WIDTH, _AXIS_INCH = 0.5, 0.5  # of a plan with a key, over the figure's; name of the axis below it
 _LOWEST_INCH, _HIGHEST_INCH = 1.0, 75.0 / 25.4  # of such a plan, and of the figure if the key has space
 
@@ -101,7 +102,7 @@ def draw_panels(
         if plan:
             draw_plan(figure.add_subplot(grid[:, 0]), stage, stage.poses[0])
         if width is None:
-            figure.suptitle(head, fontsize=10)
+            figure.suptitle(head, fontsize=10, wrap=True)
         _draw_legend(figure, stage, surface)
         for axes in figure.axes:
             place_names(axes)
@@ -130,13 +131,12 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
         kinds = {kind for kind, _, _ in stage.keyed}
         entries = stage.keyed + [entry for entry in entries if entry[0] not in kinds]
     handles: Any = [tuple(marks[kind].values()) for kind, _, _ in entries]
+    lines = [textwrap.fill(words, _KEY_LETTERS) for _, _, words in entries]
     look |= {"alignment": "left", "borderaxespad": 0.1, "handlelength": 1.3 if stage.key else 1.7}
     for count, points in product(
         range(max(1, math.floor(columns)), 0, -1), _KEY_PT if stage.key else (None,)
     ):
-        legend = figure.legend(
-            handles, [words for _, _, words in entries], ncols=count, fontsize=points, **look
-        )
+        legend = figure.legend(handles, lines, ncols=count, fontsize=points, **look)
         for text, (_, name, _) in zip(legend.get_texts(), entries, strict=True):
             text.set_fontweight("bold" if name in stage.worst else "normal")
         width_px, height_px = legend.get_window_extent().size
@@ -156,7 +156,6 @@ def _keyed_height(stage: Stage, wide_inch: float, key_inch: float) -> float:
     return below_inch + float(np.clip(shape * _PLAN_WIDTH * wide_inch, _LOWEST_INCH, most_inch))
 
 
-_LETTERS = 130  # in a line of a title
 _CUT_RAD = math.radians(110.0)  # the part of the pattern that is left open towards the camera
 _SURFACE = "radiation pattern"
 
@@ -188,7 +187,7 @@ def draw_pose(result: Result, width: str | None = None) -> Figure:
         Stage.of(result, is_narrow=is_column(width)),
         draw_dipole,
         surface=_SURFACE,
-        head=f"{scenario.name}\n{textwrap.fill('; '.join(words), _LETTERS)}",
+        head=f"{scenario.name}\n{'; '.join(words)}",
         plan=True,
         width=width,
     )
@@ -211,7 +210,7 @@ def draw_robust(result: Result, width: str | None = None) -> Figure:
         for name, pose in poses.items()
     ]
     errors = f"{quantity.smallest}; errors: {error_words(scenario)}"
-    head = f"{scenario.name}\n{textwrap.shorten(errors, _LETTERS, placeholder=' ...')}"
+    head = f"{scenario.name}\n{errors}"
     both = (details.robust.pose, details.nominal.pose)
     stage = Stage(scenario=scenario, poses=both, view=PAIR, uncertain=True)
     return draw_panels(stage, draw_dipole, surface=_SURFACE, head=head, titles=titles, width=width)

@@ -100,6 +100,8 @@ _RC: dict[Any, Any] = {
     "grid.color": "#dddddd",
     "grid.linewidth": 0.6,
     "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,  # every number at an axis is whole, and none stands beside it
+    "axes.formatter.limits": (-99, 99),
     "axes.spines.top": False,
     "axes.spines.right": False,
     "xtick.color": GREY,

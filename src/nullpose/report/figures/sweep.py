@@ -130,5 +130,8 @@ def draw_sweep_axes(axes: Axes, table: ResultTable, *, log: bool = False, bounds
         draw_curves(axes, table, bounds=bounds)
         if bounds:
             _keep_curves_large(axes, table)
-    axes.set(xlabel=axis_label(table.path), ylabel=value_label(table), xscale="log" if log else "linear")
+    axes.set(xscale="log" if log else "linear", ylabel=value_label(table))
+    axes.set_xlabel(axis_label(table.path), parse_math=False, wrap=True)
+    if not log:
+        axes.xaxis.set_major_formatter("{x:.10g}")  # also of powers of some nW
     axes.margins(x=0.02)

@@ -44,7 +44,8 @@ def draw_least_tilt(
         _draw_shares(first, found, angles_deg, shares)
         _draw_losses(second, angles_deg, shares)
         if width is None:
-            figure.suptitle(found.omnidirectional.scenario.name, fontweight="bold", parse_math=False)
+            name = found.omnidirectional.scenario.name
+            figure.suptitle(name, fontweight="bold", parse_math=False, wrap=True)
     return figure
 
 
@@ -73,7 +74,8 @@ def _draw_shares(axes: Axes, found: LeastTilt, angles_deg: FloatArray, shares: F
     axes.set(xlim=(0.0, 90.0), xlabel="Largest tilt (deg)")
     axes.set(ylim=(None, 1.02), ylabel="Share of the omnidirectional value")
     axes.legend(loc="lower right", handlelength=3.2)
-    axes.set_title(f"Dot: suffices for {found.share:.4g}; bar: proved too little", fontsize="small")
+    title = f"Dot: enough for {found.share:.4g}; bar: proved too little"
+    axes.set_title(title, fontsize="small", wrap=True)
 
 
 def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None:
@@ -88,5 +90,5 @@ def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None
     inside = [middle for middle in middles if min(middle) > _EDGE_DEG]
     axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=inside)
     axes.set(xlabel="Largest tilt (deg)", ylabel="Mount of the antenna (deg)")
-    axes.set_title("Loss against an omnidirectional vehicle", fontsize="small")
+    axes.set_title("Loss against an omnidirectional vehicle", fontsize="small", wrap=True)
     axes.figure.colorbar(shown, ax=axes, label="dB", extend="max")

@@ -157,7 +157,7 @@ def _panels(
         figure = Figure(figsize=(_WIDTH, high), layout=layout)
         panels = list(figure.subplots(down, columns, sharex=True, sharey=True, squeeze=False).flat)
         for axes, point in zip(panels, points, strict=False):
-            axes.set_title(point_words(summary.spec, point), loc="left", fontsize=9.0)
+            axes.set_title(point_words(summary.spec, point), loc="left", fontsize=9.0, wrap=True)
             draw(axes, point)
         for axes in panels[len(points) :]:
             axes.remove()
