@@ -13,6 +13,7 @@ from nullpose.studio.answer import Notice, Progress, answer_of, signed
 from nullpose.studio.card import card_html, proof
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.field_map import MAPS, FieldMap
+from nullpose.studio.look import scale_colours
 from nullpose.studio.readout import readout_html
 from nullpose.studio.state import State
 from nullpose.study import Field
@@ -89,13 +90,26 @@ def test_the_value_is_marked_at_its_place_on_the_scale(proved: State) -> None:
     assert f'data-np="overlay-tick" style="left:{share:.1f}%"' in html
     assert "best &lt;SINR&gt;" in html
     assert f"<span>{low:g}</span><span>{high:g} dB</span>".replace("-", MINUS) in html
-    assert "lines to nodes: the same colours<" in html
     other = card_html(_mapped(proved, -8.0, 2.0, MAPS[1]))
-    assert f"lines to nodes: {low:g} to {high:g} dB<".replace("-", MINUS) in other
     robust = case_named("Robust pose")
     guaranteed = _mapped(replace(proved, case=robust).with_event(replace(answer, case=robust)), -50.0, 50.0)
     for unmarked in (other, card_html(_mapped(proved, 20.0, 30.0)), card_html(guaranteed)):
         assert "overlay-tick" not in unmarked
+
+
+def test_links_differ_in_colour_where_nodes_differ_in_sinr() -> None:
+    """The ends are around the nodes' SINR, with a map of the smallest values or without."""
+    vertical = case_named("Vertical")
+    answer = answer_of(1, vertical, solve(_PAPER, vertical.scheme, certify=False))
+    found_db = [link.sinr_db for link in answer.result.links]
+    assert max(found_db) - min(found_db) > 1.0
+    plain = State(scenario=_PAPER, case=vertical).with_event(answer)
+    for state in (plain, _mapped(plain, -20.0, min(found_db))):
+        low, high = state.link_range_db
+        assert low <= min(found_db)
+        assert high >= max(found_db)
+        assert len(np.unique(scale_colours(found_db, low, high), axis=0)) == 2
+    assert f"lines to nodes: {low:g} to {high:g} dB<".replace("-", MINUS) in card_html(state)
 
 
 def test_the_bar_follows_the_proof_of_the_present_scene(result: Result) -> None:

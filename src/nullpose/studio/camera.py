@@ -20,9 +20,14 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+NARROW_PX = 600.0
+"""Width of the canvas below which it is a phone's."""
 CARD_PX = (352.0, 392.0)
+PHONE_CARD_PX = (352.0, 252.0)
 """Width and height of the canvas's upper left corner that the card covers for one case, pixels."""
 
+_SECOND_PX = 180.0  # height of a second case
+_HINTS = 0.27  # of a phone's height, covered by the panel's title and on a first visit by hints
 _CANVAS_PX = (1000.0, 800.0)  # where none is known
 _AHEAD = -np.array([0.82, -0.52, 0.64]) / np.linalg.norm([0.82, -0.52, 0.64])  # the camera's view
 _FOV_RAD = math.radians(50.0)  # upright; a wider one bends the scene at its edges
@@ -64,6 +69,7 @@ def aim(
     pose: Pose | None = None,
     *,
     turns: bool = False,
+    cases: int = 1,
 ) -> None:
     """Point a camera at the whole of a scene: points, drone, and the ground between them.
 
@@ -75,7 +81,11 @@ def aim(
         scenario: the scene.
         pose: of the drone, if there is one.
         turns: whether all is to be seen too while the camera goes around the scene's centre.
+        cases: how many the card has.
     """
+    canvas = canvas_px(camera)
+    is_narrow = canvas[0] < NARROW_PX
+    (wide, high), free = PHONE_CARD_PX if is_narrow else CARD_PX, canvas * [1.0, 1.0 - _HINTS * is_narrow]
     matter, frame, size_m = matter_m(scenario, pose), frame_m(scenario), scene_size_m(scenario)
     if turns:
         centre_m = centre_of_m(scenario)
@@ -85,8 +95,8 @@ def aim(
             for points_m in (matter, frame)
         )
     camera.fov = _FOV_RAD
-    corners_px = (CARD_PX[0], 0.0), (0.0, CARD_PX[1])
-    fits = [_position_m(canvas_px(camera), matter, frame, np.array(corner_px)) for corner_px in corners_px]
+    corners_px = (wide, 0.0), (0.0, high + _SECOND_PX * (cases - 1))
+    fits = [_position_m(canvas, free, matter, frame, np.array(corner_px)) for corner_px in corners_px]
     camera.position = max(fits, key=_AHEAD.__matmul__)
     # on the ground, about which a hand turns it
     camera.look_at = camera.position - _AHEAD * camera.position[2] / _AHEAD[2]
@@ -97,18 +107,18 @@ def aim(
 
 
 def _position_m(
-    canvas: FloatArray, matter_m: FloatArray, frame_m: FloatArray, corner_px: FloatArray
+    canvas: FloatArray, free: FloatArray, matter_m: FloatArray, frame_m: FloatArray, corner_px: FloatArray
 ) -> FloatArray:
-    """Find the nearest position with all matter right of and below a corner, and the frame on the canvas.
+    """Find the nearest position with all matter right of and below a corner, and all on the free canvas.
 
     In its middle, as far as that brings it no farther away: a linear program, since all is linear in it.
     """
     right = np.cross(_AHEAD, [0.0, 0.0, 1.0]) / np.linalg.norm(_AHEAD[:2])
     sides, slope = (right, np.cross(_AHEAD, right)), 2.0 * math.tan(0.5 * _FOV_RAD) / canvas[1]
-    corner = np.minimum(corner_px, canvas - 3.0 * _LABEL_PX)  # there is always some space
+    corner = np.minimum(corner_px, free - 3.0 * _LABEL_PX)  # there is always some space
     planes, offsets = [], []
     for points_m, begin_px, edge_px in ((matter_m, corner, _LABEL_PX), (frame_m, 0.0 * canvas, _EDGE_PX)):
-        for sign, end_px in ((-1.0, begin_px + edge_px), (1.0, canvas - edge_px)):
+        for sign, end_px in ((-1.0, begin_px + edge_px), (1.0, free - edge_px)):
             for side, tangent, margin in zip(sides, slope * (end_px - 0.5 * canvas), np.eye(2), strict=True):
                 normal = sign * (side - tangent * _AHEAD)
                 planes.append([*-normal, *margin])

@@ -37,15 +37,13 @@ def _scale(state: State, scale: Scale) -> dict[str, object]:
     if scale.of_value and answer is not None and not answer.case.robust and low <= answer.shown_value <= high:
         tick = 100.0 * (answer.shown_value - low) / (high - low)
     low_db, high_db = state.link_range_db
-    is_shared = scale.of_value and unit == "dB"
-    links = f"lines to nodes: {'the same colours' if is_shared else f'{low_db:g} to {high_db:g} dB'}"
     return {
         "gradient": ",".join(map(css, scale_colours([share / 8 for share in range(9)], 0.0, 1.0))),
         "tick": tick,
         "low": f"{low:g}".replace("-", MINUS),
         "high": f"{high:g} {unit}".replace("-", MINUS),
         "title": scale.field.title,
-        "links": links.replace("-", MINUS),
+        "links": f"lines to nodes: {low_db:g} to {high_db:g} dB".replace("-", MINUS),
     }
 
 

@@ -82,7 +82,7 @@ def scene_html(state: State, look: Look = LIGHT, camera: CameraHandle | None = N
     server, _ = open_server(LOOPBACK, 0)
     try:
         first = server.initial_camera
-        aim(first, state.scenario, pose)
+        aim(first, state.scenario, pose, cases=len(state.cases))
         if camera is not None:
             first.position, first.look_at, first.fov = camera.position, camera.look_at, camera.fov
             first.up = camera.up_direction
@@ -91,7 +91,7 @@ def scene_html(state: State, look: Look = LIGHT, camera: CameraHandle | None = N
         stage.render(replace(state, selected=None, pointed=None))
         page = str(server.scene.as_html(dark_mode=look.dark))
         phone = SimpleNamespace(image_width=390, image_height=844)
-        aim(phone, state.scenario, pose)
+        aim(phone, state.scenario, pose, cases=len(state.cases))
     finally:
         with unannounced():
             server.stop()

@@ -18,7 +18,7 @@ from nullpose.errors import NullposeError, ScenarioError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio import exports
-from nullpose.studio.camera import aim, canvas_px, ray
+from nullpose.studio.camera import NARROW_PX, aim, canvas_px, ray
 from nullpose.studio.case import case_named, cases_of, new_scenario
 from nullpose.studio.controls import NO_CASE
 from nullpose.studio.edits import Entry, with_typed, without
@@ -34,7 +34,6 @@ from nullpose.studio.toml_like import toml_like
 
 _GESTURE_S = 1.5  # slider steps closer in time than this are undone together
 _LATE_S = 0.15  # while a hand moves its last answer stays, unless the next one takes longer than this
-_NARROW_PX = 600.0  # width of the canvas below which it is a phone's
 _NOTICE_S = 8.0  # how long a notice stays
 
 _log = logging.getLogger("nullpose.studio")
@@ -57,7 +56,7 @@ class Page:
         self._lock, self._is_open = threading.RLock(), True
         self._gesture, self._slid_at = 0, 0.0
         self._late: threading.Timer | None = None
-        self._aimed = (-1, False)  # at which scene, and whether with its drone
+        self._aimed = (-1, False, 0)  # at which scene, whether with its drone, and beside how many cases
         self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None  # canvas and position
         self._grip_m = np.zeros(3)  # where a dragged point is held, from its position
         self._is_folded = False
@@ -98,10 +97,11 @@ class Page:
         state, camera = self.session.state, self._client.camera
         answer = state.current(state.case)
         with self._client.atomic():
-            aim(camera, state.scenario, answer.result.pose if answer else None, turns=state.is_presented)
-        self._aimed, self.stage.eye_m = (state.opened, answer is not None), camera.position
+            pose, cases = answer.result.pose if answer else None, len(state.cases)
+            aim(camera, state.scenario, pose, turns=state.is_presented, cases=cases)
+        self._aimed, self.stage.eye_m = (state.opened, answer is not None, cases), camera.position
         self._fit = canvas_px(camera), np.array(camera.position)
-        self.stage.is_narrow = self._fit[0][0] < _NARROW_PX
+        self.stage.is_narrow = self._fit[0][0] < NARROW_PX
 
     def render(self) -> None:
         """Send the browser what differs between the state and what it shows."""
@@ -127,7 +127,7 @@ class Page:
 
     def _render_scene(self) -> None:
         state = self.session.state
-        if self._aimed < (state.opened, state.current(state.case) is not None):
+        if self._aimed < (state.opened, state.current(state.case) is not None, len(state.cases)):
             self.aim()  # first, since the pattern is open towards the camera
         self.stage.render(state)
         if state.is_presented != self._is_folded:

@@ -18,6 +18,7 @@ from nullpose.scenario import GroundPoint, NoFlyZone, Scenario
 from nullpose.studio.answer import Answer, Event, Notice, status_words
 from nullpose.studio.case import OPTIMUM, Case, cases_of
 from nullpose.studio.field_map import MAPS, FieldMap, Scale
+from nullpose.studio.look import scale_range
 from nullpose.studio.toml_like import toml_like
 
 Kind = Literal["nodes", "jammers", "eavesdroppers", "no_fly"]
@@ -29,7 +30,6 @@ KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "no_fly")
 _SCENE = ("scenario", "case", "compared", "text", "opened")
 _ROUND_M = 3  # digits of a metre that a dragged position keeps
 _ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field has all of them
-_LINK_RANGE_DB = (-6.0, 12.0)  # of the links' colours before there is a map
 
 POWER_DB = (-30.0, 40.0)
 """Range of the strongest jammer's power over the nodes' that a page offers, dB."""
@@ -140,10 +140,9 @@ class State:
 
     @property
     def link_range_db(self) -> tuple[float, float]:
-        """Ends of the links' colours, dB: those of the map of the best values."""
-        maps = self.latest(FieldMap)
-        scale = None if maps is None else maps.scale(MAPS[0])
-        return scale.ends if scale is not None and scale.field.unit == "dB" else _LINK_RANGE_DB
+        """Ends of the links' colours, dB: around the SINR of all nodes in the cases shown."""
+        answers = filter(None, map(self.answer, self.cases))
+        return scale_range([link.sinr_db for answer in answers for link in answer.result.links])
 
     @property
     def cases(self) -> tuple[Case, ...]:

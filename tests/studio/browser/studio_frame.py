@@ -13,7 +13,7 @@ from benchmarks.chromium import pixels
 from playwright.sync_api import Browser
 from tests.studio.browser.hand import DESK, PAPER, PHONE, Hand, opened
 
-from nullpose.studio.camera import CARD_PX
+from nullpose.studio.camera import PHONE_CARD_PX
 from nullpose.studio.server import Studio, studio
 
 CONTRAST = (Path(__file__).parent / "contrast.js").read_text(encoding="utf-8")
@@ -92,11 +92,11 @@ def test_a_touch_phone_shows_the_scene_first(browser: Browser, alone: Studio) ->
         pose = hand.session.state.answer(hand.session.state.case).result.pose
         points = [point.position_m for point in (*PAPER.nodes, *PAPER.jammers)]
         seen = pixels(hand.camera, [*points, pose.position_m])[:, :2]
-        assert np.all((seen > [0.0, CARD_PX[1]]) & (seen < [390.0, 844.0]))
+        assert np.all((seen > [0.0, PHONE_CARD_PX[1]]) & (seen < [390.0, 616.0]))
         card = hand.page.locator("#np-overlay").bounding_box()
         assert card is not None
         assert card["x"] >= 0.0
-        assert (card["x"] + card["width"], card["y"] + card["height"]) < (CARD_PX[0], CARD_PX[1] + 16)
+        assert (card["x"] + card["width"], card["y"] + card["height"]) < PHONE_CARD_PX
         title.tap()
         readout.wait_for(state="visible")
         sheet = hand.page.locator(".mantine-Paper-root", has=readout).bounding_box()

@@ -17,7 +17,7 @@ from playwright.sync_api import Browser
 from tests.studio.browser.hand import EXAMPLES, PAPER
 
 import nullpose
-from nullpose.studio.camera import CARD_PX, aim
+from nullpose.studio.camera import PHONE_CARD_PX, aim
 
 
 def _value(browser: Browser, path: Path) -> float:
@@ -88,7 +88,7 @@ def test_on_a_phone_the_drone_is_in_the_frame(browser: Browser, monkeypatch: pyt
     x, y, _ = pixels(camera, [result.pose.position_m])[0]
     picture = imread(io.BytesIO(page.screenshot()))[..., :3]
     drone = picture[int(y) - 6 : int(y) + 7, int(x) - 6 : int(x) + 7]
-    assert y > CARD_PX[1]
+    assert y > PHONE_CARD_PX[1]
     assert np.mean(drone.max(axis=-1) < 0.75) > 0.3, "there is no drone where it is to be"
     assert [one for one in page.get_by_label("scene tree").all() if one.is_visible()] == []
     page.close()
