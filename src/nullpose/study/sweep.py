@@ -19,7 +19,7 @@ from nullpose.errors import Fault, ScenarioError, UsageError, require_usage
 from nullpose.objectives import Quantity
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
-from nullpose.solver import Result, Rigour, SolveKeywords, SolveOptions, Status, solve
+from nullpose.solver import Result, SolveKeywords, SolveOptions, Status, solve
 from nullpose.solver.objective import status_of
 from nullpose.solver.result import Stats
 from nullpose.study.case import SHARE, Case
@@ -55,7 +55,7 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
     """Return the certified result that results of freer points imply, or None.
 
     Their least upper bound holds here, too; if one of their poses is allowed here and comes near to that
-    bound, nothing is left to solve. The bound has no certificate of its own.
+    bound, nothing is left to solve. The proof of the bound holds here as it is.
 
     Args:
         scenario: the point.
@@ -70,8 +70,7 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
     if best is None or (airframe is not None and best.pose.tilt_rad > airframe.tilt_max_rad):
         return None
     reused = evaluated(best, scenario, best.pose, bound)
-    objective = replace(reused.objective, rigour=Rigour.FLOATING_POINT)
-    status, _ = status_of(objective, solve_options.target, "not solved by itself")
+    status, _ = status_of(reused.objective, solve_options.target, "not solved by itself")
     if status is not Status.CERTIFIED:
         return None
     return replace(
@@ -79,7 +78,7 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
         scheme=best.scheme,
         note=best.note,
         status=status,
-        objective=objective,
+        proofs=best.proofs,
         stats=Stats(wall_s=time.perf_counter() - began, evaluations=1),
     )
 
@@ -100,8 +99,8 @@ def sweep(
 ) -> ResultTable:
     """Return the best pose of every scheme at every value of one setting, each with its upper bound.
 
-    Where the best value can only fall along the setting, a point takes the bound of a freer one if a pose of
-    that one reaches it; such a row has no certificate.
+    Where the best value can only fall along the setting, a point takes the bound of a freer one, with its
+    proof, if a pose of that one reaches it.
 
     Every value is checked before the first solve. An interrupt ends the sweep, during a proof as anywhere
     else.
