@@ -49,6 +49,19 @@ def test_first_screen_is_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert [line for line in shown if line != "..." and _without_leaves(line) not in lines] == []
 
 
+def test_the_pose_of_free_space_loses_in_the_city_what_it_says() -> None:
+    """The command prints how far the pose is below the bound, and where the best one is."""
+    command = re.search(r"`nullpose (evaluate examples/urban\.toml [^`]*)`", README)
+    assert command is not None
+    free = nullpose.load(ROOT / "examples" / "urban.toml").model_copy(update={"channel": None})
+    best = nullpose.solve(free, certify=False).pose.position_m
+    assert f"--pose={best[0]:.1f},{best[1]:.0f},{best[2]:.0f} " in command[1]
+    printed = CliRunner().invoke(app, command[1].split()).stdout
+    assert "10 dB below the bound" in printed
+    higher_m = float(re.search(r"best pose: .* ([0-9.]+)\) m", printed)[1]) - best[2]
+    assert f"{round(higher_m, -1):.0f} m higher" in README
+
+
 def _without_leaves(line: str) -> str:
     return re.sub(r"\d+ leaves", "N leaves", line.rstrip())
 

@@ -1,4 +1,4 @@
-"""Numbers of the lemmas, rounded up; "The certificate explained" derives each, and so does a test.
+"""Numbers of the lemmas, rounded up; docs/proofs.md derives each, and so does a test.
 
 The solver has its own copies. Powers of distances are left to the place of use.
 """

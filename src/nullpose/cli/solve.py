@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from nullpose.solver import ErrorSizes, Result
 
 _REJECTED = "{}; this is a fault of nullpose: please report it with the scenario"
-_ASSUMED = "The scenario states no errors. These are taken in their place; --off changes them."
+_ASSUMED = "Your file states no errors, so these defaults count (change: --off)."
 
 
 @expanded

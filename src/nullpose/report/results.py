@@ -135,6 +135,7 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
     objective, quantity = result.objective, result.objective.quantity
     poses = {"robust pose": robust, "best pose without errors": nominal}
     gain = quantity.in_unit(robust.guaranteed) - quantity.in_unit(nominal.guaranteed)
+    more = f"The robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors."
     bound = (
         "no upper bound on the guaranteed value"
         if objective.upper_bound is None
@@ -146,7 +147,7 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
         result_head(result, errors, result.note),
         table("", beside(cells), bold=[f"guaranteed ({quantity.unit})"]),
         "Guaranteed: under all errors within the limits. Lowest found: by a search.",
-        f"The robust pose guarantees {with_unit(gain, quantity)} more than the best pose without errors.\n",
+        f"{more if math.isfinite(gain) else 'The best pose without errors guarantees nothing.'}\n",
         f"worst for the robust pose: {robust.worst_case}\n",
         *(pairs(capitalised(name), frame_rows(scenario, pose.pose)) for name, pose in poses.items()),
         sensitivity_view(result),

@@ -50,7 +50,7 @@ class Rigour(StrEnum):
 
 _MESSAGES = {
     Rigour.VERIFIED: "verified (the bound was checked in interval arithmetic)",
-    Rigour.VERIFIABLE: "verifiable (solve --certificate writes the proof, verify checks it)",
+    Rigour.VERIFIABLE: "verifiable (to check the bound: solve --certificate, then verify)",
     Rigour.FLOATING_POINT: "floating-point (the bound is not checked against rounding, no certificate)",
     Rigour.NONE: "none (there is no bound)",
 }
