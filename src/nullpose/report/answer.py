@@ -49,10 +49,9 @@ def answer_lines(comparison: ResultTable) -> list[str]:
 def sufficing(quantity: Quantity) -> list[str]:
     """Say what a vehicle has to reach to suffice, and how either answer is proved."""
     loss = "" if quantity.is_rate else f" ({-10.0 * math.log10(1.0 - TOLERANCE):.2f} dB)"
-    share = f"{100.0 * TOLERANCE:g} %{loss}"
     return [
-        f"yes: the value is at most {share} below the omnidirectional bound.",
-        f"no: the bound, rounded up, is more than {share} below the omnidirectional value.",
+        f"yes: the value is at most {100.0 * TOLERANCE:g} %{loss} below the omnidirectional bound.",
+        f"no: the bound is more than {100.0 * TOLERANCE:g} %{loss} below the omnidirectional value.",
     ]
 
 

@@ -221,12 +221,11 @@ def _vehicle_proof_lines(found: Sequence[ResultRow]) -> list[str]:
     unchecked = dict.fromkeys(
         "arrays" if row.case.array else "dipoles" for row in found if row.rigour is Rigour.FLOATING_POINT
     )
-    is_cut = any(row.reason == AS_NEEDED for row in found)
-    rounding = f"Proofs of {' and '.join(unchecked)} are not checked against rounding." if unchecked else ""
     searched = [Status.BEST_FOUND.message for row in found if row.status is Status.BEST_FOUND]
     return [
-        *(["bounded: the proof stopped as soon as the verdict was clear."] if is_cut else []),
-        *filter(None, [rounding]),
+        *["bounded: the proof stopped as soon as the verdict was clear."]
+        * any(row.reason == AS_NEEDED for row in found),
+        *[f"Proofs of {' and '.join(unchecked)} are not checked against rounding."] * bool(unchecked),
         *(f"{_STATUS[Status.BEST_FOUND]}: {message}." for message in dict.fromkeys(searched)),
         *grouped((row.label, "" if row.reason == AS_NEEDED else row.reason) for row in found),
     ]

@@ -26,8 +26,7 @@ CARD_PX = (352.0, 392.0)
 PHONE_CARD_PX = (352.0, 252.0)
 """Width and height of the canvas's upper left corner that the card covers for one case, pixels."""
 
-_SECOND_PX = 180.0  # height of a second case
-_HINTS = 0.27  # of a phone's height, covered by the panel's title and on a first visit by hints
+_SECOND_PX, _HINTS = 180.0, 0.27  # height of a second case; of a phone's, that of title and hints below
 _CANVAS_PX = (1000.0, 800.0)  # where none is known
 _AHEAD = -np.array([0.82, -0.52, 0.64]) / np.linalg.norm([0.82, -0.52, 0.64])  # the camera's view
 _FOV_RAD = math.radians(50.0)  # upright; a wider one bends the scene at its edges

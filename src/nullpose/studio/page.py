@@ -97,9 +97,17 @@ class Page:
         state, camera = self.session.state, self._client.camera
         answer = state.current(state.case)
         with self._client.atomic():
-            pose, cases = answer.result.pose if answer else None, len(state.cases)
-            aim(camera, state.scenario, pose, turns=state.is_presented, cases=cases)
-        self._aimed, self.stage.eye_m = (state.opened, answer is not None, cases), camera.position
+            aim(
+                camera,
+                state.scenario,
+                answer.result.pose if answer else None,
+                turns=state.is_presented,
+                cases=len(state.cases),
+            )
+        self._aimed, self.stage.eye_m = (
+            (state.opened, answer is not None, len(state.cases)),
+            camera.position,
+        )
         self._fit = canvas_px(camera), np.array(camera.position)
         self.stage.is_narrow = self._fit[0][0] < NARROW_PX
 

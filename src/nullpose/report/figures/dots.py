@@ -21,6 +21,13 @@ from nullpose.study import ResultRow, ResultTable
 from nullpose.study.case import OMNIDIRECTIONAL
 
 _ROW_INCH, _SENTENCE_INCH, _PRINTED = 0.33, 0.3, 0.66  # on a screen; height in print over that
+_AT_EDGE: Look = {
+    "fontsize": "small",
+    "xytext": (-4.0, 1.0),
+    "textcoords": "offset points",
+    "ha": "right",
+    "va": "bottom",
+}
 _GAP = 0.6  # between dipoles and arrays, in rows
 _WIDEST_DB = 25.0  # from the best dipole; dots farther off are at the edge, as arrows
 _BESIDE = 0.08  # of the width drawn, free at both ends
@@ -36,11 +43,15 @@ def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure
         figure = Figure(figsize=(inches((7.0, high), width, 0.0)[0], high), layout="constrained")
         axes = figure.add_subplot()
         draw_dots(axes, comparison)
-        count = len(axes.get_legend_handles_labels()[0])
-        figure.legend(loc="outside upper center", ncols=3 if count == 3 else 2, handlelength=1.2)
+        figure.legend(
+            loc="outside upper center",
+            ncols=3 if len(axes.get_legend_handles_labels()[0]) == 3 else 2,
+            handlelength=1.2,
+        )
         if width is None:
-            name = comparison.rows[0].scenario.name
-            axes.set_title(name, loc="left", fontweight="bold", parse_math=False, wrap=True)
+            axes.set_title(
+                comparison.rows[0].scenario.name, loc="left", fontweight="bold", parse_math=False, wrap=True
+            )
             draw_caption(figure, lines)
     return figure
 
@@ -60,8 +71,9 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     shown = np.clip(np.nan_to_num(values, nan=low), low, high)
     is_far = bounds > high
     axes.hlines(places, left, right, color="#cccccc", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.0)
-    ends = np.where(is_far, right, np.fmax(bounds, shown))
-    axes.hlines(places, shown, ends, color=INK, linewidth=1.0, zorder=2.0)
+    axes.hlines(
+        places, shown, np.where(is_far, right, np.fmax(bounds, shown)), color=INK, linewidth=1.0, zorder=2.0
+    )
     dots: Look = {"linestyle": "", "clip_on": False, "zorder": 3.0}
     axes.plot([], [], "o", color=GREY, label="value found")
     for place, row, value, at in zip(places, found, values, shown, strict=True):
@@ -87,8 +99,7 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
             is_seen = (numbers >= low) & (numbers <= right)
             axes.plot(np.where(is_seen, numbers, math.nan), places, label=label, **look | dots)
     for place, row in zip(places[is_far], compress(found, is_far), strict=True):
-        at_edge: Look = {"xytext": (-4.0, 1.0), "textcoords": "offset points", "ha": "right", "va": "bottom"}
-        axes.annotate(bound_text(row.objective, 1), (right, place), fontsize="small", **at_edge)
+        axes.annotate(bound_text(row.objective, 1), (right, place), **_AT_EDGE)
     if np.any(shown != np.nan_to_num(values, nan=low)):
         axes.plot([], [], ">", color=GREY, label="beyond the axis")
     whole = dict(zip(comparison.names, values.tolist(), strict=True)).get(OMNIDIRECTIONAL, math.nan)
@@ -125,9 +136,12 @@ def _frame(
     high = np.fmax.reduce(bounds, where=bounds <= high + max(near, high - low), initial=high)
     beside = _BESIDE * max(high - low, least)
     axes.tick_params(axis="y", length=0)
-    axes.set(xlim=(low - beside, high + beside), ylim=(places[-1] + 0.6, -0.6))
     axes.grid(visible=False, axis="y")
-    axes.set_xlabel(f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})")
+    axes.set(
+        xlim=(low - beside, high + beside),
+        ylim=(places[-1] + 0.6, -0.6),
+        xlabel=f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})",
+    )
     return float(low), float(high)
 
 

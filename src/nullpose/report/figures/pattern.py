@@ -116,8 +116,9 @@ def draw_pattern(table: PatternTable) -> Figure:
         cuts.append((title, -1, np.concatenate([theta, 360.0 - theta[-2:0:-1]]), whole))
     with house_style():
         figure = Figure(figsize=(8.4, 8.6), layout="constrained")
-        title = f"{table.source}: {table.quantity} in dBi"
-        figure.suptitle(title, fontsize=11.0, parse_math=False, wrap=True)
+        figure.suptitle(
+            f"{table.source}: {table.quantity} in dBi", fontsize=11.0, parse_math=False, wrap=True
+        )
         for place, (title, turn, at_deg, values_dbi) in enumerate(cuts, start=1):
             axes: Any = figure.add_subplot(2, 2, place, polar=True)
             axes.set_title(title, fontsize=9.5, pad=12.0)

@@ -209,8 +209,7 @@ def draw_robust(result: Result, width: str | None = None) -> Figure:
         f"{name}\n{words(pose.guaranteed)} guaranteed, {words(pose.nominal)} without errors"
         for name, pose in poses.items()
     ]
-    errors = f"{quantity.smallest}; errors: {error_words(scenario)}"
-    head = f"{scenario.name}\n{errors}"
+    head = f"{scenario.name}\n{quantity.smallest}; errors: {error_words(scenario)}"
     both = (details.robust.pose, details.nominal.pose)
     stage = Stage(scenario=scenario, poses=both, view=PAIR, uncertain=True)
     return draw_panels(stage, draw_dipole, surface=_SURFACE, head=head, titles=titles, width=width)

@@ -44,8 +44,9 @@ def draw_least_tilt(
         _draw_shares(first, found, angles_deg, shares)
         _draw_losses(second, angles_deg, shares)
         if width is None:
-            name = found.omnidirectional.scenario.name
-            figure.suptitle(name, fontweight="bold", parse_math=False, wrap=True)
+            figure.suptitle(
+                found.omnidirectional.scenario.name, fontweight="bold", parse_math=False, wrap=True
+            )
     return figure
 
 
@@ -71,11 +72,10 @@ def _draw_shares(axes: Axes, found: LeastTilt, angles_deg: FloatArray, shares: F
             if side_deg is not None:
                 axes.plot(side_deg, found.share, mark, color=look.colour, markersize=size, zorder=4.0)
     axes.axhline(found.share, color=GREY, linewidth=0.9, linestyle="--")
-    axes.set(xlim=(0.0, 90.0), xlabel="Largest tilt (deg)")
-    axes.set(ylim=(None, 1.02), ylabel="Share of the omnidirectional value")
+    axes.set(xlim=(0.0, 90.0), xlabel="Largest tilt (deg)", ylim=(None, 1.02))
+    axes.set_ylabel("Share of the omnidirectional value")
     axes.legend(loc="lower right", handlelength=3.2)
-    title = f"Dot: enough for {found.share:.4g}; bar: proved too little"
-    axes.set_title(title, fontsize="small", wrap=True)
+    axes.set_title(f"Dot: enough for {found.share:.4g}; bar: proved too little", fontsize="small", wrap=True)
 
 
 def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None:
