@@ -1,5 +1,6 @@
 """The figure of one pose: whatever the scene has is on it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from nullpose.errors import UsageError
 from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_pose
-from nullpose.report.figures.stage import ALONE, Stage
+from nullpose.report.figures.stage import ALONE, Stage, limits_m
 from nullpose.report.figures.style import prepare_figure_file, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.geometry import outline_m
@@ -19,6 +20,7 @@ from nullpose.study.value_map import value_map
 from nullpose.study.vehicles import compare_schemes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+CHANNEL = {"model": "free-space", "blocked_loss_db": 20.0}
 
 
 @pytest.mark.parametrize("name", ["airframe", "eavesdropper", "no-fly", "requirements", "geodetic", "town"])
@@ -121,3 +123,13 @@ def test_long_names_stay_within_every_figure(paper: Scenario, width: str | None)
             assert box.x1 <= figure.bbox.x1
         for axes in figure.axes:
             assert axes.xaxis.get_offset_text().get_text() == axes.yaxis.get_offset_text().get_text() == ""
+
+
+def test_no_roof_is_cut_off(paper: Scenario) -> None:
+    """A tower beside the drone is drawn up to its roof, or to half of the scene's width over the drone."""
+    solution = solve(paper, certify=False)
+    for height_m, top_m in ((25.0, 25.0), (500.0, 8.0 + (1.3 * ALONE.pattern + 0.5) * 50.0)):
+        tower = {"polygon_m": [[10, 30], [14, 30], [14, 34], [10, 34]], "height_m": height_m}
+        stage = Stage.of(solution)
+        scenario = Scenario.from_dict(paper.to_dict() | {"buildings": [tower], "channel": CHANNEL})
+        assert limits_m(replace(stage, scenario=scenario))[1][2] == pytest.approx(top_m, abs=0.1)

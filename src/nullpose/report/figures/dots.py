@@ -29,9 +29,8 @@ _AT_EDGE: Look = {
     "va": "bottom",
 }
 _GAP = 0.6  # between dipoles and arrays, in rows
-_WIDEST_DB = 25.0  # from the best dipole; dots farther off are at the edge, as arrows
+_WIDEST_DB, _NEAR_DB = 25.0, 3.0  # from the best dipole, arrows beyond; bounds so near widen the axis
 _BESIDE = 0.08  # of the width drawn, free at both ends
-_NEAR_DB = 3.0  # bounds so near the values, or as near as these are to each other, widen the axis
 
 
 def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure:

@@ -18,8 +18,8 @@ from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
 from nullpose.solver import Result
 
 # Lengths drawn, as shares of the scene's extent.
-_MARGIN = 0.12  # free ground around the scene
-_MARGIN_OF_ZONES = 0.03
+_MARGIN, _MARGIN_OF_ZONES = 0.12, 0.03  # free ground around the scene
+_ROOFS = 0.5  # over drone and pattern, for roofs
 _FAR = 3.0  # zones that reach farther from the scene's middle are left out
 _LEAST_M = 1.0
 _MOST_NUMBERS, _MOST_LETTERS = 4, 45  # nodes, and letters of all their names, with numbers beside them
@@ -184,7 +184,12 @@ def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
     low = np.min([places.min(axis=0) - share * extent_m for places, share in around], axis=0)
     high = np.max([places.max(axis=0) + share * extent_m for places, share in around], axis=0)
     top_m = max(pose.position_m[2] for pose in stage.poses) + 1.3 * stage.view.pattern * extent_m
-    return np.append(low, min(0.0, points[:, 2].min())), np.append(high, top_m)
+    roofs_m = [
+        min(max(top_m, each.heights_m[1]), top_m + _ROOFS * extent_m)
+        for each in stage.scenario.buildings
+        if np.all((each.outline_m.min(axis=0) < high) & (each.outline_m.max(axis=0) > low))
+    ]
+    return np.append(low, min(0.0, points[:, 2].min())), np.append(high, max(roofs_m, default=top_m))
 
 
 def set_box_m(point: Jammer | Eavesdropper) -> FloatArray:
