@@ -74,7 +74,9 @@ def test_tables_on_disk_are_the_rows(make: Make, ladder: Ladder) -> None:
         assert list(tidy[column]) == list(frame[column])
     summary = pd.read_csv(folder / "report" / "summary.csv")
     pd.testing.assert_frame_equal(summary, report.summary.table(), check_dtype=False, rtol=1e-12)
-    assert report.notes[0].startswith("Of 54 rows: 51 certified, 1 best found, 1 given, 1 failed;")
+    assert report.notes[0].startswith(
+        "Of 54 rows: 51 certified, 1 best found, 1 given, 1 failed. Uncertified "
+    )
     gain = report.summary.row(1, "omnidirectional")["gain_median"]
     assert f"an omnidirectional vehicle gains {gain:.2f}" in report.answer
     data = json.loads(json_text(report.to_dict()))
