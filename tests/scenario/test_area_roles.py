@@ -95,10 +95,13 @@ def test_where_flying_is_allowed_is_counted_among_zones(words: dict[str, Any], t
 
 def test_a_fence_among_zones_needs_a_fence(tmp_path: Path) -> None:
     """A file that holds both is named in both keys: its zones are there once, its fence is the fence."""
-    features = [(SQUARE, {"inclusion": True}), (POND, {"inclusion": False})]
+    features = [(SQUARE, {"inclusion": True}), (POND, {"inclusion": False, "ceiling": 40})]
     scenario, notes = fence_of(tmp_path, features)
     require_kept_out(scenario, in_metres(POND))
-    assert "f.geojson: zones beside it: 1" in notes
+    assert notes == [
+        "f.geojson: zones: 1 of 1 in reach (1 polygon)",
+        'f.geojson: "features[1]" counts at all altitudes; not read: ceiling',
+    ]
     both = 'altitude_m = [10.0, 120.0]\ngeofence_from = "f.geojson"\nno_fly_from = "f.geojson"'
     notes.clear()
     airspace = load(scene(tmp_path, both), on_note=notes.append).airspace

@@ -124,7 +124,10 @@ def test_a_plan_is_a_fence_with_zones(tmp_path: Path) -> None:
     pond, tower = scenario.airspace.no_fly
     assert shapely.Polygon(pond.polygon_m).symmetric_difference(in_metres(POND)).area < 1e-3
     assert (tower.centre_m, tower.radius_m) == (pytest.approx((0.0, 0.0), abs=1e-6), 20.0)
-    assert notes == ["p.plan: fence: 1 polygon; passed over: 1 point", "p.plan: zones beside it: 2"]
+    assert notes == [
+        "p.plan: fence: 1 polygon; passed over: 1 point",
+        "p.plan: zones: 2 of 2 in reach (1 polygon, 1 cylinder)",
+    ]
 
 
 def test_the_zones_of_a_plan(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import TypeAlias, TypeVar
@@ -109,7 +110,8 @@ def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     areas, counts, remarks = areas_of(features, reach, ground_m, names)
     fences = [area for area in areas if area.role != STAY_OUT]
     outlines = [part for area in fences for part in (*area.polygons, *area.cylinders)]
-    beside = [(zone, area.place) for area in areas if area not in fences for zone in area.zones()]
+    others = [area for area in areas if area not in fences]
+    beside = [(zone, area.place) for area in others for zone in area.zones()]
     require(
         len(outlines) == 1,
         "",
@@ -127,8 +129,9 @@ def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     fenced |= _altitudes(airspace, fences[0], ground_m)
     places = {"airspace.geofence_lat_lon_deg": fences[0].place}
     places |= {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(beside, len(holes))}
-    remarks += [f"zones beside it: {len(beside)}"] * bool(beside)
-    return fenced, list(notes_on(fences, counts, [*radius_words, *remarks], is_fence=True)), places
+    notes = [*notes_on(fences, counts, [*radius_words, *remarks], is_fence=True)]
+    notes += notes_on(others, Counter(area=len(others)), []) if others else []
+    return fenced, notes, places
 
 
 def _outline(fence: Area, ground_m: Ground) -> tuple[Polygon, list[str]]:
