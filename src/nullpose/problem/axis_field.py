@@ -8,8 +8,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS, FREE_AXIS, Axes
+from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS, FREE_AXIS, NARROW_AXIS, Axes
 from nullpose.scenario.arrays import read_only
+
+_NARROW = 0.1  # difference of a band's ends below which a straight step of the axis leaves it too soon
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,15 +108,15 @@ class AxisField:
     def arrays(self) -> Axes:
         """The field as the kernels take it: (kind, offset, matrix).
 
-        The kind is 0 for any axis, 1 for an affine one, 2 for a band, whose ends stand in place of the
-        offset's first two numbers, and 3 for a band whose ends are one, a cone.
+        The ends of a band stand in place of the offset's first two numbers. A band whose ends are one is a
+        cone. One that is narrow, and does not hold the vertical, is a kind of its own for the search alone.
         """
         low, high = self.band
         # writable copies, as those are that kernels make: they are compiled for one kind of array
         offset, matrix = self.offset.copy(), self.matrix.copy()
         if not self.is_free:
             return Axes(AFFINE_AXIS, offset, matrix)
-        if (low, high) == (0.0, 1.0):
-            return Axes(FREE_AXIS, offset, matrix)
         offset[:2] = low, high
-        return Axes(CONE_AXIS if low == high else BAND_AXIS, offset, matrix)
+        wide = FREE_AXIS if (low, high) == (0.0, 1.0) else BAND_AXIS
+        narrow = CONE_AXIS if low == high else NARROW_AXIS
+        return Axes(narrow if high < 1.0 and high < low + _NARROW else wide, offset, matrix)

@@ -40,14 +40,14 @@ class Domain(NamedTuple):
     zone_range_m: FloatArray = np.zeros((0, 2))
 
 
-FREE_AXIS, AFFINE_AXIS, BAND_AXIS, CONE_AXIS = 0, 1, 2, 3
-"""Kinds of axis field: any axis, affine in the position, a band of elevations, a cone about the vertical."""
+FREE_AXIS, AFFINE_AXIS, BAND_AXIS, NARROW_AXIS, CONE_AXIS = 0, 1, 2, 3, 4
+"""Kinds of axis field: any axis, affine in the position, a band of elevations, a narrow one, a cone."""
 
 
 class Axes(NamedTuple):
     """An axis field of one of the kinds.
 
-    The ends of a band or a cone stand in the first two places of the offset.
+    The ends of a band or of a cone about the vertical stand in the first two places of the offset.
     """
 
     kind: int

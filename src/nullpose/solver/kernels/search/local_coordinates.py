@@ -2,8 +2,9 @@
 
 A pose is six numbers, the position and the axis. It is an affine function of the search variables: a step in
 position, scaled by the distance to the nearest node; for a free axis a step in its tangent plane and a part
-that rotates with the position (see ``rotation_rates``), the axis being renormalised after every step. On a
-cone about the vertical the axis has one variable, and is put back on the cone.
+that rotates with the position (see ``rotation_rates``), the axis being renormalised after every step. In a
+narrow band the axis has its azimuth and its height, u_z, in which the band's ends are straight: a step in the
+tangent plane leaves the band at second order. On a cone about the vertical it has its azimuth alone.
 
 The slacks of a pose are those of six faces, of the keep-out balls, of the chosen side of each forbidden
 piece, and of the two ends of an elevation band.
@@ -13,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS
+from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS, NARROW_AXIS
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share, strongest_point
@@ -25,7 +26,7 @@ from nullpose.solver.kernels.linear_algebra.symmetric import (
     squared_distance,
     tangents,
 )
-from nullpose.solver.kernels.linear_algebra.vectors import along, dot, minus, row, scaled
+from nullpose.solver.kernels.linear_algebra.vectors import along, dot, minus, row, scaled, store
 
 _TIP = 1e-6  # squared sine from a dipole's own null below which nothing follows it
 
@@ -44,11 +45,17 @@ def clamp_elevation(least, greatest, u):
     wanted = min(max(u[2] * u[2], least), greatest)
     if wanted == u[2] * u[2]:
         return
+    raise_to(math.copysign(math.sqrt(wanted), u[2]), u)
+
+
+@kernel
+def raise_to(height, u):
+    """Bring an axis to unit length and to a height, u_z, its azimuth kept."""
     across = math.hypot(u[0], u[1])
     if not across > 1e-12:
         u[0], u[1], across = 1.0, 0.0, 1.0
-    scale = math.sqrt(1.0 - wanted) / across
-    u[0], u[1], u[2] = scale * u[0], scale * u[1], math.copysign(math.sqrt(wanted), u[2])
+    scale = math.sqrt(max(0.0, 1.0 - height * height)) / across
+    u[0], u[1], u[2] = scale * u[0], scale * u[1], height
 
 
 @kernel
@@ -117,13 +124,16 @@ def local_coordinates(family, axis_field, pose, free, directions):
             directions[n, i] = length
             if axis_field.kind == AFFINE_AXIS:
                 add_scaled(length, axis_field.matrix[:, i], directions[n, 3:])
-            elif axis_field.kind != CONE_AXIS:
+            elif axis_field.kind < NARROW_AXIS:
                 add_scaled(length, rates[i], directions[n, 3:])
             n += 1
-    if axis_field.kind == CONE_AXIS:
+    if axis_field.kind >= NARROW_AXIS:
         across = math.hypot(u[0], u[1])
         directions[n, 3], directions[n, 4] = -u[1] / across, u[0] / across
         n += 1
+        if axis_field.kind == NARROW_AXIS:
+            store((-u[2] * u[0] / across, -u[2] * u[1] / across, across), directions[n, 3:])
+            n += 1
     elif axis_field.kind != AFFINE_AXIS:
         tangents(u, directions[n, 3:], directions[n + 1, 3:])
         n += 2
@@ -138,8 +148,8 @@ def move(axis_field, pose, directions, n, step, scale, moved):
         add_scaled(scale * step[m], directions[m], moved)
     if axis_field.kind == AFFINE_AXIS:
         axis_at(axis_field, moved[:3], moved[3:])
-    elif axis_field.kind == CONE_AXIS:
-        clamp_axis(axis_field, moved[3:])
+    elif axis_field.kind >= NARROW_AXIS:
+        raise_to(moved[5], moved[3:])
     else:
         normalise(moved[3:])
 
@@ -199,7 +209,7 @@ def domain_slacks(p, u, domain, axis_field, chosen, out):
         out[c] = side_slack(domain.piece_sides[s], p)
         c += 1
     out[c] = out[c + 1] = math.inf
-    if axis_field.kind == BAND_AXIS:
+    if BAND_AXIS <= axis_field.kind < CONE_AXIS:
         least, greatest, size = axis_field.offset[0], axis_field.offset[1], dot(u, u)
         out[c] = u[2] * u[2] - least * size if least > 0.0 else math.inf
         out[c + 1] = greatest * size - u[2] * u[2] if greatest < 1.0 else math.inf
@@ -229,7 +239,7 @@ def add_slack_slopes(domain, axis_field, chosen, pose, duals, slopes, hess):
                 slopes[c, i] = 2.0 * (pose[i] - side[1 + i])
                 hess[i, i] += 2.0 * duals[c]
         c += 1
-    if axis_field.kind == BAND_AXIS:
+    if BAND_AXIS <= axis_field.kind < CONE_AXIS:
         for end in range(2):
             for i in range(3):
                 weight = (2.0 - 4.0 * end) * ((1.0 if i == 2 else 0.0) - axis_field.offset[end])

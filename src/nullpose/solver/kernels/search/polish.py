@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.objectives.ratios import Ratios
-from nullpose.problem.records import BAND_AXIS, CONE_AXIS, Axes, Domain
+from nullpose.problem.records import BAND_AXIS, CONE_AXIS, NARROW_AXIS, Axes, Domain
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.barrier import (
@@ -88,7 +88,7 @@ def enter(problem, pose):
         problem.free[i] = high - low > 1e-9
         margin = min(1e-2, 1e-3 * (high - low)) if problem.free[i] else 0.0
         pose[i] = min(max(pose[i], low + margin), high - margin)
-    if problem.axis_field.kind == BAND_AXIS:
+    if BAND_AXIS <= problem.axis_field.kind < CONE_AXIS:
         margin = min(1e-3, 1e-2 * (ends[1] - ends[0]))
         least = ends[0] + margin if ends[0] > 0.0 else 0.0
         greatest = ends[1] - margin if ends[1] < 1.0 else 1.0
@@ -164,10 +164,10 @@ def linearise(problem, point, grads, parts, n, model, h):
             for m in range(n):
                 model.rates[c, m] = inner(grads[c], model.directions[m], 6)
         model.rates[c, n] = -1.0 if c < ratios else 0.0
-    if (
-        problem.axis_field.kind == CONE_AXIS
-    ):  # it bends away from the step by u_z e3, in units of its variable
-        h[n - 1, n - 1] += pose[5] * inner(duals, grads[:, 5], ratios)
+    if problem.axis_field.kind >= NARROW_AXIS:  # a step at one height bends away from the straight one
+        bend = pose[5] * inner(duals, grads[:, 5], duals.shape[0]) / (pose[3] ** 2 + pose[4] ** 2)
+        for m in range(n - 2 if problem.axis_field.kind == NARROW_AXIS else n - 1, n):
+            h[m, m] += bend
 
 
 @inner_kernel
