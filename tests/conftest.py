@@ -13,6 +13,7 @@ from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel
 from nullpose.channel.power_law import power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
+from nullpose.solver import SolveOptions
 
 if TYPE_CHECKING:
     from nullpose.paper.reproduce import Reproduction
@@ -23,6 +24,9 @@ os.environ["MPLBACKEND"] = "Agg"
 settings.register_profile("house", derandomize=True, deadline=None)
 settings.register_profile("random", derandomize=False, deadline=None, print_blob=True)
 settings.load_profile("house")
+
+# No proof ends earlier because the machine is busy.
+SolveOptions.__init__.__kwdefaults__["time_limit_s"] = 600.0
 
 LONG_FILE_LINES = 350
 

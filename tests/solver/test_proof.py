@@ -140,7 +140,7 @@ def test_progress_is_told(random_scene: Callable) -> None:
 
 def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
     """A leaf of one stage that distances exclude begins the next with multipliers of different ratios."""
-    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((0.0, 10, False),))
+    monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((0.0, 10),))
     for seed in range(4):
         family = build_family(random_scene(np.random.default_rng(seed), 6, 2, 30.0))
         proof = proof_of(family, AxisField.free(), gap=1e-2)
@@ -151,17 +151,23 @@ def test_stages_keep_the_multipliers(random_scene: Callable, monkeypatch: pytest
             assert len(set(ratios)) == len(ratios)
 
 
-def test_a_long_try_is_shared(random_scene: Callable, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Begun by one thread and gone on with by three, a try proves what one thread alone proves."""
-    family = build_family(random_scene(np.random.default_rng(3), 5, 1, 30.0))
-    alone = proof_of(family, AxisField.free(), gap=1e-4)
-    monkeypatch.setattr(
-        import_module("nullpose.solver.proof"), "_TRIES", ((0.0, 50, False), (0.0, 200_000, True))
+@pytest.mark.parametrize("stages", [False, True])
+def test_threads_change_nothing(
+    random_scene: Callable, monkeypatch: pytest.MonkeyPatch, stages: bool
+) -> None:
+    """However many threads share the boxes of a try or a stage, these are the same, and so are the leaves."""
+    family = build_family(random_scene(np.random.default_rng(3), 9, 2, 30.0))
+    if stages:
+        monkeypatch.setattr(import_module("nullpose.solver.proof"), "_TRIES", ((0.0, 50),))
+    one, *others = (
+        proof_of(family, AxisField.free(), gap=1e-5, node_limit=30_000, threads=threads)
+        for threads in (1, 2, 7)
     )
-    shared = proof_of(family, AxisField.free(), gap=1e-4, threads=3)
-    assert alone.reason == shared.reason == ""
-    assert shared.nodes > 100
-    assert shared.upper_bound == pytest.approx(alone.upper_bound, rel=2e-4)
+    assert one.nodes > 5_000
+    for other in others:
+        assert (other.nodes, other.reason, other.upper_bound) == (one.nodes, one.reason, one.upper_bound)
+        np.testing.assert_array_equal(other.incumbent.position_m, one.incumbent.position_m)
+        np.testing.assert_array_equal(other.leaves, one.leaves)
 
 
 def _scene_of_seed(seed: list[int]) -> dict[str, object]:

@@ -53,7 +53,7 @@ def test_no_number_of_boxes_ends_a_proof() -> None:
 def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where leaves do not fit into memory the proof is closed without them, and has no certificate."""
     scenario = whips(1)
-    monkeypatch.setattr(PROOF, "_TRIES", ((0.0, 10, False),))
+    monkeypatch.setattr(PROOF, "_TRIES", ((0.0, 10),))
     kept = solve(scenario, gap=1e-3, threads=1)
     monkeypatch.setattr(PROOF, "_MOST_BYTES", 1e4)
     dropped = solve(scenario, gap=1e-3, threads=1)

@@ -29,7 +29,7 @@ class BranchAndBound(ABC):
         nodes: boxes examined before, which count towards the limit.
     """
 
-    chunk: int  # boxes between two looks at the clock
+    chunk: int  # boxes of a queue between two looks at the clock
     nodes_of_search: int  # boxes that take as long as a thorough search, which is made after so many
     proved: float  # no pose has its smallest ratio above this
 
@@ -60,12 +60,7 @@ class BranchAndBound(ABC):
     def has_space(self, workers: WorkerPool) -> bool:
         """Check that the leaves so far, and more of them, may be kept."""
 
-    @property
-    def threads(self) -> int:
-        """How many threads a long run uses."""
-        return self.limits.threads or processors()
-
-    def work_off(self, workers: WorkerPool, gap: float, most: int, deadline: float, threads: int = 1) -> str:
+    def work_off(self, workers: WorkerPool, gap: float, most: int, deadline: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, or nothing.
 
         Args:
@@ -73,17 +68,16 @@ class BranchAndBound(ABC):
             gap: relative.
             most: boxes to examine at most.
             deadline: on ``limit_clock``.
-            threads: how many work at once.
         """
         with ended_when(lambda: limit_clock() > deadline):
-            return self._work_off(workers, gap, self.nodes + most, deadline, threads)
+            return self._work_off(workers, gap, self.nodes + most, deadline)
         return self._time_is_up()
 
     def _time_is_up(self) -> str:
         return f"the time limit of {self.limits.time_limit_s:g} s"
 
-    def _work_off(self, workers: WorkerPool, gap: float, until: int, deadline: float, threads: int) -> str:
-        workers.grow(threads)
+    def _work_off(self, workers: WorkerPool, gap: float, until: int, deadline: float) -> str:
+        threads = self.limits.threads or processors()
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as pool:
             while not workers.done:
                 if limit_clock() > deadline:
@@ -92,8 +86,8 @@ class BranchAndBound(ABC):
                     return f"the node limit of {self.limits.node_limit}"
                 if workers.stuck:
                     return "shadows of buildings that meet in one point"
-                budget = min(self.chunk, until - self.nodes)
-                self.nodes += workers.work(self.exclusion_kernel(gap), budget, pool)
+                kernel = self.exclusion_kernel(gap)
+                self.nodes += workers.work(kernel, self.chunk, until - self.nodes, pool)
                 for position_m, orientation in workers.better():
                     self.improve(position_m, orientation)
                 if self.nodes >= self.nodes_of_search and not workers.done:

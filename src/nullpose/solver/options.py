@@ -60,8 +60,8 @@ class SolveOptions:
             beyond to so many bits/s/Hz.
         time_limit_s: seconds after which the proof stops with the bound reached.
         node_limit: boxes after which it stops.
-        threads: threads of a long proof at most; None for one for each processor. One thread gives the same
-            bounds and poses on any machine, as long as no time limit ends it.
+        threads: threads of a long proof at most; None for one for each processor. Boxes, pose and
+            bound do not depend on them.
         certify: whether to prove anything; without it the search alone is run, more thoroughly.
         seed: seed of the searches, a whole number of at least 0; equal seeds give equal answers.
         on_progress: called now and then during a proof with the gap so far and the boxes examined.

@@ -75,7 +75,7 @@ class PatternRun(BranchAndBound):
         options: what is asked for.
     """
 
-    chunk, nodes_of_search = 20_000, 60_000
+    chunk, nodes_of_search = 5_000, 60_000
 
     def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, options: SolveOptions) -> None:
         super().__init__(options, limit_clock())
@@ -153,8 +153,8 @@ class PatternRun(BranchAndBound):
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         root, self.keeps_leaves = self.root_of(gap), self.reach.spins
-        workers = WorkerPool(np.array(list(self._roots(*root))), self.threads, orientation=(3, 3))
-        reason = self.work_off(workers, gap, self.node_limit - self.nodes, until, self.threads)
+        workers = WorkerPool(np.array(list(self._roots(*root))), orientation=(3, 3))
+        reason = self.work_off(workers, gap, self.node_limit - self.nodes, until)
         bound = self.value * (1.0 + gap)
         if not reason and bound < self.proved:
             self.proved, self.root = bound, root

@@ -30,20 +30,20 @@ _THINNEST = 0.99 * 2.0**-MOST_HALVINGS  # side of a box or a cell, over the root
 _ALTERNATE = 3_000  # boxes after which the other way to split is tried
 _LATE, _EARLY = 0.0, 1e9  # when axes are split: where no multipliers exclude a box's centre, or always
 _TRIES = (
-    (_LATE, 400, False),
-    (_LATE, _ALTERNATE, False),
-    (_EARLY, _ALTERNATE, False),
-    (_LATE, 20_000, False),
-    (_EARLY, 30_000, True),
-    (_LATE, 200_000, True),
-    (_EARLY, 200_000, True),
+    (_LATE, 400),
+    (_LATE, _ALTERNATE),
+    (_EARLY, _ALTERNATE),
+    (_LATE, 20_000),
+    (_EARLY, 30_000),
+    (_LATE, 200_000),
+    (_EARLY, 200_000),
 )
-"""Tries of the target from the root: when axes are split, boxes in all, and whether all threads share them.
+"""Tries of the target from the root: when axes are split, and boxes in all.
 
 Late takes some hundred boxes where early takes many thousands, and in some scenes the other way round.
-Nothing cheap was found that tells which. To start threads takes longer than most proofs.
+Nothing cheap was found that tells which.
 """
-_DIRECT_SHARE = 0.125  # of the time left, at most: then come the stages, which have a bound to show
+_DIRECT_SHARE = 0.5  # of the time left, at most: then come the stages, which have a bound to show
 _BARRIERS = (0.01, 0.1, 0.3)  # weights of the barrier in climbs, which can lead to different maxima
 _FOR_STAGES = 4  # boxes of a limit that are left to the stages, which bound what is far at once
 _STAGE = 0.1  # each stage's gap, as a share of the one before
@@ -107,8 +107,9 @@ class _Run(BranchAndBound):
         self.target = INSIDE * limits.ratio_gap(self.value)
         self.spare = _LATE
         # two forms have no duality gap (Brickman), unless a band is in force
-        is_many = len(ratios.numerator_point) > 2 or axis_field.band is not None
-        self.has_gaps = axis_field.is_free and is_many
+        self.has_gaps = axis_field.is_free and (
+            len(ratios.numerator_point) > 2 or axis_field.band != (0.0, 1.0)
+        )
         self.incumbent_row = np.zeros(node.COLUMNS)  # its multipliers are the incumbent's
         self.proved, farthest = entry_of(root.fill_root, ratios)(
             ratios,
@@ -132,18 +133,16 @@ class _Run(BranchAndBound):
 
         Boxes that do not end may lie around a better pose: if one is found there, the try begins again.
         """
-        now = limit_clock()
-        until, last = now + _DIRECT_SHARE * (self.deadline - now), self.node_limit - _FOR_STAGES
+        until = (1.0 - _DIRECT_SHARE) * limit_clock() + _DIRECT_SHARE * self.deadline
         pools: dict[float, WorkerPool] = {}
-        examined = {_LATE: 0, _EARLY: 0}
-        for spare, boxes, is_shared in _TRIES:
+        examined, last = {_LATE: 0, _EARLY: 0}, self.node_limit - _FOR_STAGES
+        for spare, boxes in _TRIES:
             if spare == _EARLY and not self.has_gaps:
                 continue
-            workers = pools.setdefault(spare, WorkerPool(self.root, 1))
+            workers = pools.setdefault(spare, WorkerPool(self.root))
             self.spare, before = spare, self.nodes
             most = max(1, min(boxes - examined[spare], last - self.nodes))
-            threads = self.threads if is_shared else 1
-            leaves, reason = self.exclude_all(workers, self.target, most, until, threads)
+            leaves, reason = self.exclude_all(workers, self.target, most, until)
             if not reason or limit_clock() > until or self.nodes >= last:
                 break
             examined[spare] += self.nodes - before
@@ -166,14 +165,14 @@ class _Run(BranchAndBound):
         return self.value > before * (1.0 + self.target)
 
     def exclude_all(
-        self, workers: WorkerPool, gap: float, most: int, deadline: float, threads: int = 1
+        self, workers: WorkerPool, gap: float, most: int, deadline: float
     ) -> tuple[FloatArray, str]:
         """Exclude all above ``value (1 + gap)``; return the leaves and why it stopped short, if it did.
 
         There are no leaves if they take too much memory: then a stage begins with the root again.
         """
         self.keeps_leaves = True
-        reason = self.work_off(workers, gap, most, deadline, threads)
+        reason = self.work_off(workers, gap, most, deadline)
         if reason:
             return self.root[:0], reason
         self.proved, leaves = min(self.proved, self.value * (1.0 + gap)), workers.leaves()
@@ -283,8 +282,9 @@ def prove(
             start, gap = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = target if _STAGE * gap <= _LAST_STAGE * target else _STAGE * gap
-                most, threads = run.node_limit - run.nodes, run.threads
-                leaves, reason = run.exclude_all(WorkerPool(start, threads), gap, most, run.deadline, threads)
+                leaves, reason = run.exclude_all(
+                    WorkerPool(start), gap, run.node_limit - run.nodes, run.deadline
+                )
                 if reason:
                     break
                 start = leaves if len(leaves) else run.root

@@ -1,4 +1,8 @@
-"""Workers that share the nodes of one branch and bound stage: one thread each, since kernels need no lock."""
+"""Queues that share the nodes of one branch and bound stage, worked off in rounds.
+
+How many queues there are does not depend on the threads that work them off, nor does what a queue does in a
+round. So a run is the same on every machine, however busy it is.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +19,7 @@ Kernel: TypeAlias = Callable[..., tuple[int, int, int, int, object]]
 """The branch and bound kernel with its arguments before the stack."""
 
 _FEWEST_TO_SHARE = 8
-_MOST_WORKERS = 8
+_QUEUES = 8
 _BLOCK = 32_768  # leaves that are made room for at once, at most
 _FIRST = 256  # leaves that room is made for: so little is had without asking the system for memory
 _DEPTH = 256  # rows that a stack is given beyond those it begins with
@@ -24,13 +28,11 @@ _SPARE = 16  # rows of a stack that a kernel needs
 
 def processors() -> int:
     """Count the processors that this process may use."""
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
-        return os.cpu_count() or 1
+    # affinity is not known on every system
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-class _Worker:
+class _Queue:
     """A stack of nodes to do, ``top`` of them, and the leaves made of them, ``filled`` of them.
 
     Both arrays grow in place: a larger copy would hold them twice.
@@ -77,83 +79,86 @@ class _Worker:
 
 
 class WorkerPool:
-    """One worker or several, and the nodes among them.
+    """The queues of a run, and the nodes among them: one queue while there are few.
 
     Args:
         start: (n, columns) the nodes to begin with.
-        workers: how many threads.
         orientation: shape of what a pose has beside its position: an axis, or a rotation.
     """
 
-    def __init__(self, start: FloatArray, workers: int, orientation: tuple[int, ...] = (3,)) -> None:
-        count = max(1, min(workers, _MOST_WORKERS))
+    def __init__(self, start: FloatArray, orientation: tuple[int, ...] = (3,)) -> None:
         self._orientation = orientation
-        self._workers = [_Worker(start[i::count], orientation) for i in range(count)]
-
-    def grow(self, workers: int) -> None:
-        """Bring the pool to so many workers, new ones without nodes."""
-        none = self._workers[0].stack[:0]
-        more = range(len(self._workers), min(workers, _MOST_WORKERS))
-        self._workers += [_Worker(none, self._orientation) for _ in more]
+        self._queues = [_Queue(start, orientation)]
 
     @property
     def done(self) -> bool:
         """Whether no node is left."""
-        return not any(worker.top for worker in self._workers)
+        return not any(queue.top for queue in self._queues)
 
     @property
     def stuck(self) -> bool:
         """Whether all nodes that are left are too small to tell more."""
-        return not self.done and all(worker.stuck or not worker.top for worker in self._workers)
+        return not self.done and all(queue.stuck or not queue.top for queue in self._queues)
 
     @property
     def filled(self) -> int:
         """How many leaves there are."""
-        return sum(worker.filled for worker in self._workers)
+        return sum(queue.filled for queue in self._queues)
 
     @property
     def size_bytes(self) -> int:
         """How much memory nodes and leaves take, bytes, those being twice there as they are put together."""
-        return sum(worker.stack.nbytes + 2 * worker.leaves.nbytes for worker in self._workers)
+        return sum(queue.stack.nbytes + 2 * queue.leaves.nbytes for queue in self._queues)
 
     def drop_leaves(self) -> None:
         """Give back the memory of all leaves made so far."""
-        for worker in self._workers:
-            worker.filled = 0
-            _make_room(worker.leaves, _FIRST)
+        for queue in self._queues:
+            queue.filled = 0
+            _make_room(queue.leaves, _FIRST)
 
-    def work(self, kernel: Kernel, budget: int, pool: ThreadPoolExecutor | None) -> int:
-        """Let every worker with nodes work off a budget; return how many nodes it was in all."""
-        for idle in self._workers:
-            richest = max(self._workers, key=lambda worker: worker.top)
-            if not idle.top and richest.top >= _FEWEST_TO_SHARE:
-                idle.take(richest.give())
-        busy = [worker for worker in self._workers if worker.top]
-        if pool is None or len(busy) == 1:
-            return sum(worker.work(kernel, budget) for worker in busy)
-        return sum(pool.map(lambda worker: worker.work(kernel, budget), busy))
+    def work(self, kernel: Kernel, chunk: int, most: int, pool: ThreadPoolExecutor | None) -> int:
+        """Work off a round of every queue; return how many nodes it was in all.
+
+        Args:
+            kernel: what excludes them.
+            chunk: nodes of a queue in a round, at most.
+            most: nodes in all, about.
+            pool: of the threads that share the queues; none if one thread does it all.
+        """
+        for place in range(_QUEUES):
+            richest = max(self._queues, key=lambda queue: queue.top)
+            if richest.top < _FEWEST_TO_SHARE:
+                break
+            if place == len(self._queues):
+                self._queues.append(_Queue(richest.give(), self._orientation))
+            elif not self._queues[place].top:
+                self._queues[place].take(richest.give())
+        busy = [queue for queue in self._queues if queue.top]
+        budget = max(1, min(chunk, most // len(busy)))
+        spread = map if pool is None or len(busy) == 1 else pool.map
+        return sum(spread(lambda queue: queue.work(kernel, budget), busy))
 
     def better(self) -> list[tuple[FloatArray, FloatArray]]:
         """Return the poses, position and orientation, that beat the incumbent."""
-        return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.better]
+        return [(q.position_m.copy(), q.orientation.copy()) for q in self._queues if q.better]
 
     def last(self) -> list[tuple[FloatArray, FloatArray]]:
-        """List the places at which workers with boxes left stopped: a middle and an orientation, or zeros."""
-        return [(w.position_m.copy(), w.orientation.copy()) for w in self._workers if w.top]
+        """List the places at which queues with boxes left stopped: a middle and an orientation, or zeros."""
+        return [(q.position_m.copy(), q.orientation.copy()) for q in self._queues if q.top]
 
     def boxes(self) -> FloatArray:
         """Collect the boxes still to do, (n, columns)."""
-        return np.concatenate([worker.stack[: worker.top] for worker in self._workers])
+        return np.concatenate([queue.stack[: queue.top] for queue in self._queues])
 
     def leaves(self) -> FloatArray:
-        """Return all leaves made; the workers give up theirs, since memory for both would be too much."""
-        first, *others = self._workers
+        """Return all leaves made; the queues give up theirs, since memory for both would be too much."""
+        first, *others = self._queues
         used, whole = first.filled, first.leaves
         _make_room(whole, self.filled)
-        for worker in others:
-            whole[used : used + worker.filled] = worker.leaves[: worker.filled]
-            used += worker.filled
-            del worker.leaves
+        for queue in others:
+            whole[used : used + queue.filled] = queue.leaves[: queue.filled]
+            used += queue.filled
+            del queue.leaves
         return whole
 
 
