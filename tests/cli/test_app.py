@@ -22,6 +22,7 @@ VERBS = {
     "map": f"{SCENE} {PROOF} --scheme --altitude --cells --fast --out --width --json",
     "sweep": f"{SCENE} {PROOF} --from --to --points --log --linear --scheme --reach --mount --fast --bounds "
     "--out --width --json",
+    "vehicle": f"{SCENE} {PROOF} --reach --loss-db --mount --figure --width --json",
     "verify": "--scenario --show --allow-outside --json",
     "reproduce": "--out --seed --json",
     "check": f"{SCENE} --json",

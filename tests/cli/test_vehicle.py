@@ -29,12 +29,25 @@ def test_json_is_a_contract(run: Run, paper: str) -> None:
     answer = json.loads(result.stdout)
     assert list(answer) == ["target", "mounts", "best", "rigour", "seconds"]
     assert list(answer["target"]) == ["share", "value", "omnidirectional_value"]
-    keys = ["mount_deg", "suffices_deg", "value", "fails_deg", "upper_bound"]
+    keys = ["mount_deg", "suffices_deg", "value", "fails_deg", "upper_bound", "reason"]
     assert all(list(side) == keys for side in (*answer["mounts"], answer["best"]))
     upright, flat = answer["mounts"]
     assert upright["fails_deg"] == pytest.approx(upright["suffices_deg"] - 0.1)
     assert upright["upper_bound"] < answer["target"]["value"] <= upright["value"]
     assert (flat["suffices_deg"], flat["fails_deg"], flat["upper_bound"]) == (0.0, None, None)
+    assert (upright["reason"], flat["reason"]) == ("", "")
+
+
+def test_what_a_limit_left_open_is_said(run: Run, paper: str) -> None:
+    """The two sides are then further apart than a step, or one is missing, and the limit is named."""
+    options = ("vehicle", paper, "--mount", "45", "--gap", "1e-2", "--node-limit", 1)
+    (side,) = json.loads(run(*options, "--json").stdout)["mounts"]
+    assert side["reason"] == "the node limit of 1"
+    assert (
+        None in (side["suffices_deg"], side["fails_deg"]) or side["suffices_deg"] - side["fails_deg"] > 0.15
+    )
+    words = " ".join(run(*options).stdout.split())
+    assert "The rest is open: the node limit of 1." in words
 
 
 @pytest.mark.parametrize("width", [(), ("--width", "column")])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -12,19 +12,14 @@ from nullpose.cli.options import (
     REACH,
     FigureFiles,
     JsonOutput,
+    ProofOptions,
     SceneOptions,
-    Seed,
-    TimeLimit,
     Width,
     expanded,
-    limit_keyword,
     mounts_of,
 )
 from nullpose.cli.output import compiling_announced, prepare_outputs, tell
 from nullpose.cli.progress import Ticker
-
-if TYPE_CHECKING:
-    from nullpose.solver import SolveKeywords
 
 
 @expanded
@@ -57,14 +52,12 @@ def vehicle(
     ] = MOUNTS,
     figure: FigureFiles = None,
     width: Width = None,
-    time_limit: TimeLimit = None,
-    seed: Seed = 0,
+    proof: ProofOptions,
     json_output: JsonOutput = False,
 ) -> None:
     """Find the least tilt that a vehicle needs.
 
-    For each mount of the antenna: a tilt with which a pose reaches the target, and one 0.1 degrees below
-    with which none does.
+    For each mount of the antenna: the least tilt that is enough, and the largest that is proved too little.
     """
     from nullpose.report.vehicle import vehicle_view
     from nullpose.study.least_tilt import least_tilt, values_by_angle
@@ -72,15 +65,20 @@ def vehicle(
     share, mounts_deg = _share(reach, loss_db), mounts_of(mount)
     scenario = scene.read()
     prepare_outputs(scene, figure=figure or [], width=width)
-    options: SolveKeywords = {**limit_keyword(time_limit), "seed": seed}
-    with compiling_announced(time_limit), Ticker("least tilt") as ticker:
-        found = least_tilt(scenario, share=share, mounts_deg=mounts_deg, on_progress=ticker, **options)
+    with compiling_announced(proof.time_limit), Ticker("least tilt") as ticker:
+        found = least_tilt(
+            scenario,
+            share=share,
+            mounts_deg=mounts_deg,
+            on_progress=ticker,
+            **proof.keywords(),
+        )
     if figure:
         from nullpose.report.figures.style import write_figure
         from nullpose.report.figures.vehicle import draw_least_tilt
 
-        with compiling_announced(time_limit), Ticker("values by axis angle") as ticker:
-            values = values_by_angle(found, on_progress=ticker, **options)
+        with compiling_announced(proof.time_limit), Ticker("values by axis angle") as ticker:
+            values = values_by_angle(found, on_progress=ticker, **proof.keywords())
         write_figure(draw_least_tilt(found, values, width), *figure)
     tell(found, vehicle_view, json_output, files=figure or [])
 

@@ -54,29 +54,32 @@ def answer(found: LeastTilt) -> str:
     if found.best is not None:
         needs = _sentence(found.best)
         least = f"With the antenna mounted at {found.best.mount_deg:.4g} degrees, a level vehicle suffices"
-        is_level = found.best.suffices_deg == 0.0
         sentences.append(
             f"{least} for this scene."
-            if is_level
+            if found.best.suffices_deg == 0.0
             else f"Of all mounts looked at, {needs[:1].lower()}{needs[1:]}"
         )
     return "\n".join(sentences)
 
 
 def _sentence(mount: MountTilt) -> str:
+    return f"{_sides(mount)} The rest is open: {mount.reason}." if mount.reason else _sides(mount)
+
+
+def _sides(mount: MountTilt) -> str:
     at = f"mounted at {mount.mount_deg:.4g} degrees"
-    if mount.suffices_deg is None and mount.fails_deg is None:
-        return f"Of an antenna {at} neither is known: what suffices, nor what is too little."
+    least = (
+        ""
+        if mount.fails_deg is None
+        else f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt"
+    )
     if mount.suffices_deg is None:
-        return f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt."
+        neither = f"Of an antenna {at} neither is known: what suffices, nor what is too little"
+        return f"{least or neither}."
     if mount.suffices_deg == 0.0:
         return f"An antenna {at} needs no tilt: a level vehicle suffices."
-    if mount.fails_deg is None:
-        return f"An antenna {at} needs at most {mount.suffices_deg:.1f} degrees of tilt."
-    return (
-        f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt; "
-        f"{mount.suffices_deg:.1f} degrees suffice."
-    )
+    most = f"{mount.suffices_deg:.1f} degrees"
+    return f"{least}; {most} suffice." if least else f"An antenna {at} needs at most {most} of tilt."
 
 
 def _value(quantity: Quantity, value: float | None) -> str | None:

@@ -24,7 +24,7 @@ from nullpose.solver import Result, SolveKeywords, Status, solve
 from nullpose.solver.rigour import Rigour
 from nullpose.study.case import SHARE
 from nullpose.study.progress import OnProgress, report_steps
-from nullpose.study.vehicle_search import LEAST_GAP, VehicleSearch, Verdict, required
+from nullpose.study.vehicle_search import AS_NEEDED, LEAST_GAP, VehicleSearch, Verdict, required
 
 MOUNTS_DEG = (0.0, 45.0, 90.0)
 """The mounts that are looked at unless others are stated."""
@@ -47,6 +47,7 @@ class MountTilt:
         result: the pose with that tilt; its bound is that of the omnidirectional vehicle.
         fails_deg: a tilt with which no pose reaches the share; None where a level vehicle suffices.
         upper_bound: that no pose with that tilt exceeds.
+        reason: why the two are further apart than a step, or one is missing; empty if neither.
     """
 
     mount_deg: float
@@ -54,6 +55,7 @@ class MountTilt:
     result: Result | None = None
     fails_deg: float | None = None
     upper_bound: float | None = None
+    reason: str = ""
 
     @property
     def value(self) -> float | None:
@@ -73,8 +75,10 @@ class MountTilt:
 
     def to_dict(self) -> PlainTable:
         """Write the two sides as plain data."""
-        keys = ("mount_deg", "suffices_deg", "value", "fails_deg", "upper_bound")
-        return {key: getattr(self, key) for key in keys}
+        return {
+            key: getattr(self, key)
+            for key in ("mount_deg", "suffices_deg", "value", "fails_deg", "upper_bound", "reason")
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -220,7 +224,7 @@ def values_by_angle(
         "upside down",
     )
     angles_deg, values = np.linspace(0.0, 90.0, _ANGLES), []
-    options.setdefault("gap", _GAP)
+    options["gap"] = options.get("gap") or _GAP
     for angle_deg in report_steps(angles_deg.tolist(), on_progress):
         level = Airframe(tilt_max_deg=0.0, mount_deg=angle_deg)
         try:
@@ -248,21 +252,22 @@ class TiltSearch(VehicleSearch):
         Raises:
             KeyboardInterrupt: Ctrl-C ended a proof.
         """
-        good, bad = self._at_least_tilt(self.whole, mount_deg), None
+        good, bad, reason = self._at_least_tilt(self.whole, mount_deg), None, ""
         least, most, steps = _MOST_STEPS if good is None else _steps(good), -1, 0
-        while least - most > 1:
+        while least - most > 1 and not reason:
             tilt = Airframe(tilt_max_deg=_degrees(steps), mount_deg=mount_deg)
             try:
                 result = uninterrupted(self.solved(tilt))
-            except SolveError:  # no pose was found that reaches every node, which proves nothing
-                break
+            except SolveError:  # which proves nothing
+                reason = "no pose was found that reaches every node"
+                continue
             other = self._at_least_tilt(result, mount_deg)
             if other is not None:
                 least, good = min(_steps(other), steps), other
             elif self.judge(result) is Verdict.FALLS_SHORT:
                 most, bad = steps, result
             else:
-                break
+                reason = self.whole.reason or result.reason.replace(AS_NEEDED, "") or "proofs come no nearer"
             steps = (least + most) // 2
         return MountTilt(
             mount_deg=mount_deg,
@@ -270,6 +275,7 @@ class TiltSearch(VehicleSearch):
             result=good,
             fails_deg=None if bad is None else _degrees(most),
             upper_bound=None if bad is None else bad.objective.upper_bound,
+            reason=reason,
         )
 
     def _at_least_tilt(self, result: Result, mount_deg: float) -> Result | None:
