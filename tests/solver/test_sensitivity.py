@@ -1,5 +1,6 @@
 """Sensitivity: the values found under errors are as low as those of thousands of random errors."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -141,6 +142,30 @@ def test_a_jammer_elsewhere_shows_that_a_pose_stands_on_a_null():
     found = sensitivity(scenario, result.pose, ErrorSizes(jammers_m=200.0))
     assert found.loss_db("jammers") > 20.0
     assert found.loss_db("all") >= found.loss_db("jammers")
+
+
+def test_jammers_that_move_together_do_their_worst():
+    """Two jammers that leave the null on opposite sides: the search finds no more than that case gives."""
+    scenario = Scenario.from_dict(
+        {
+            "airspace": {"altitude_m": [17.0, 19.0]},
+            "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+            "nodes": [
+                {"position_m": [45.7, 106.6, 2.3], "power_w": 1.644},
+                {"position_m": [166.9, 194.0, 0.7], "power_w": 0.4748},
+            ],
+            "jammers": [
+                {"position_m": [156.6, 47.5, 3.0], "power_w": 10930.0},
+                {"position_m": [111.5, 33.1, 2.7], "power_w": 40680.0},
+            ],
+        }
+    )
+    pose = Pose([267.33, 87.54, 17.53], *np.radians([-19.46, 83.86, 0.0]))
+    moved_m = [(22.824, -19.465, 0.0), (0.69, 29.989, 0.0)]
+    case = replace(ErrorCase.none(scenario), jammer_offsets_m=moved_m)
+    ratios = ratios_under(scenario, pose.position_m, pose.orientation(scenario.antenna_record), case)
+    found = sensitivity(scenario, pose, ErrorSizes(attitude_deg=2.0, position_m=0.5, jammers_m=30.0))
+    assert found.all <= found.jammers <= 1.001 * np.min(ratios) < 0.02 * found.nominal
 
 
 def test_an_eavesdropper_elsewhere_costs_secrecy():
