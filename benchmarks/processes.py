@@ -31,7 +31,7 @@ def measure(quick: bool, progress: Progress) -> list[dict[str, Any]]:
         rows = []
         for name, arguments in progress(runs[:3] if quick else runs):
             rows.append(_timed(name, arguments, folder))
-            _wait_for_kernels(Path(folder))
+            wait_for_kernels(Path(folder))
         return rows
 
 
@@ -43,7 +43,7 @@ def _timed(name: str, arguments: list[str], cache: str) -> dict[str, Any]:
     return {"command": name, "seconds": time.perf_counter() - start, "exit_code": done.returncode}
 
 
-def _wait_for_kernels(folder: Path) -> None:
+def wait_for_kernels(folder: Path) -> None:
     """Wait until the processes that compile kernels have given up the folder's lock."""
     import fcntl
 
