@@ -62,7 +62,7 @@ def with_unit(value: float, quantity: Quantity) -> str:
 def value_words(objective: Objective) -> str:
     """Write the objective's value, as in ``0.98 dB (1.25)``."""
     quantity, value = objective.quantity, objective.value
-    words = f"{quantity.in_unit(value):.7g} {quantity.unit}"
+    words = f"{round(quantity.in_unit(value), 7):.7g} {quantity.unit}"
     return words if quantity.is_rate else f"{words} ({value:.7g})"
 
 

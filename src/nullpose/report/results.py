@@ -10,6 +10,7 @@ from nullpose.physics import (
     Pose,
     pose_frames,
 )
+from nullpose.report.decimals import COMPONENTS, DEGREES, METRES, more_decimals
 from nullpose.report.document import View, beside, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, tilt_rad
 from nullpose.report.links import gain_columns, links_table, nulls_table
@@ -31,26 +32,32 @@ def work_words(starts: int, boxes: int) -> str:
     return f"search: {starts:,} starts{f'; proof: {boxes:,} boxes examined' if boxes else ''}"
 
 
-def azimuth_text(pose: Pose, is_even: bool = True) -> str:
+def azimuth_text(pose: Pose, more: int, is_even: bool = True) -> str:
     """Write the azimuth of the antenna's axis in degrees, a dash for an upright one."""
-    return "-" if tilt_rad(pose) < _UPRIGHT_RAD else f"{math.degrees(azimuth_rad(pose, is_even)):z.2f}"
+    return "-" if tilt_rad(pose) < _UPRIGHT_RAD else _degrees(azimuth_rad(pose, is_even), more)
 
 
 def pose_cells(scenario: Scenario, pose: Pose) -> dict[str, str]:
     """Write position, attitude and axis of a pose as cells of a column."""
-    is_even = scenario.antenna_record.is_even
+    is_even, more = scenario.antenna_record.is_even, more_decimals(scenario, pose)
     tilts = {"vehicle's tilt": pose.tilt_rad, "axis tilt": tilt_rad(pose, is_even)}
     return {
-        **{f"{axis} (m)": f"{x:z.3f}" for axis, x in zip("xyz", pose.position_m, strict=True)},
-        **{f"{name} (deg)": f"{angle_deg:z.2f}" for name, angle_deg in _angles_deg(pose).items()},
-        **{f"{name} (deg)": f"{math.degrees(angle_rad):z.2f}" for name, angle_rad in tilts.items()},
-        "axis azimuth (deg)": azimuth_text(pose, is_even),
+        **{f"{axis} (m)": x for axis, x in zip("xyz", _metres(pose.position_m, more), strict=True)},
+        **{f"{name} (deg)": _degrees(each, more) for name, each in (_angles_rad(pose) | tilts).items()},
+        "axis azimuth (deg)": azimuth_text(pose, more, is_even),
     }
 
 
-def _angles_deg(pose: Pose | FramePose) -> dict[str, float]:
-    angles = {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
-    return {name: math.degrees(angle_rad) for name, angle_rad in angles.items()}
+def _angles_rad(pose: Pose | FramePose) -> dict[str, float]:
+    return {"roll": pose.roll_rad, "pitch": pose.pitch_rad, "yaw": pose.yaw_rad}
+
+
+def _metres(position_m: Iterable[float], more: int) -> list[str]:
+    return [f"{x:z.{METRES + more}f}" for x in position_m]
+
+
+def _degrees(angle_rad: float, more: int) -> str:
+    return f"{math.degrees(angle_rad):z.{DEGREES + more}f}"
 
 
 def result_view(result: Result) -> View:
@@ -59,16 +66,17 @@ def result_view(result: Result) -> View:
         return _robust_view(result, result.details)
     scenario, pose = result.scenario, result.pose
     array = scenario.array
-    antenna = _antenna_rows(scenario, pose) if array is None else [("array", array_words(array))]
+    more = more_decimals(scenario, pose)
+    antenna = _antenna_rows(scenario, pose, more) if array is None else [("array", array_words(array))]
     note = "Jamming does not depend on the pose. It is part of the nodes' noise."
-    searches, place = result.stats.searches or 0, zip("xyz", pose.position_m, strict=True)
+    searches, place = result.stats.searches or 0, zip("xyz", _metres(pose.position_m, more), strict=True)
     agreement = f"{result.stats.agreeing} of {searches} local searches ended at this value"
-    more = (requirement_words(result), result.note, agreement if searches > 1 else "")
-    position = ", ".join(f"{axis} {x:z.4f} m" for axis, x in place)
-    at = [("position", position), ("attitude", _attitude_words(pose))]
+    lines = (requirement_words(result), result.note, agreement if searches > 1 else "")
+    position = ", ".join(f"{axis} {x} m" for axis, x in place)
+    at = [("position", position), ("attitude", _attitude_words(pose, more))]
     return document(
-        result_head(result, *more),
-        pairs("", [*at, *antenna, *frame_rows(scenario, pose)]),
+        result_head(result, *lines),
+        pairs("", [*at, *antenna, *frame_rows(scenario, pose, more)]),
         links_table(result, gain_columns(scenario, pose) if array is None else {}),
         nulls_table(scenario, pose) if array is None else None,
         note if scenario.jammers and result.objective.quantity.is_rate else None,
@@ -88,7 +96,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
     columns: dict[str, list[str | None]] = {
         "pose": [str(index) for index in range(1, len(results) + 1, step)],
         "position (m)": [" ".join(f"{x:z.2f}" for x in pose.position_m) for pose in poses],
-        "attitude (deg)": [" ".join(f"{x:z.1f}" for x in _angles_deg(pose).values()) for pose in poses],
+        "attitude (deg)": [" ".join(_degrees(x, -2) for x in _angles_rad(pose).values()) for pose in poses],
         f"{quantity.short} ({quantity.unit})": [
             f"{quantity.in_unit(result.objective.value):.4f}" for result in shown
         ],
@@ -142,19 +150,20 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
         else f"upper bound from {details.cases} combinations of errors"
     )
     errors = f"errors: {error_words(scenario)}; {bound}"
-    cells = {name: _guarded_cells(objective, pose) for name, pose in poses.items()}
+    decimals = {name: more_decimals(scenario, guarded.pose) for name, guarded in poses.items()}
+    cells = {name: _guarded_cells(objective, pose, decimals[name]) for name, pose in poses.items()}
     return document(
         result_head(result, errors, result.note),
         table("", beside(cells), bold=[f"guaranteed ({quantity.unit})"]),
         "Guaranteed: under all errors within the limits. Lowest found: by a search.",
         f"{more if math.isfinite(gain) else 'The best pose without errors guarantees nothing.'}\n",
         f"worst for the robust pose: {robust.worst_case}\n",
-        *(pairs(capitalised(name), frame_rows(scenario, pose.pose)) for name, pose in poses.items()),
+        *(pairs(capitalised(n), frame_rows(scenario, poses[n].pose, more)) for n, more in decimals.items()),
         sensitivity_view(result),
     )
 
 
-def _guarded_cells(objective: Objective, guarded: GuardedPose) -> dict[str, str]:
+def _guarded_cells(objective: Objective, guarded: GuardedPose, more: int) -> dict[str, str]:
     """Write what a pose guarantees, what it gives without errors, and where it is."""
     pose, quantity = guarded.pose, objective.quantity
     values = {
@@ -164,43 +173,45 @@ def _guarded_cells(objective: Objective, guarded: GuardedPose) -> dict[str, str]
     }
     return {
         **{f"{name} ({quantity.unit})": f"{quantity.in_unit(value):.4f}" for name, value in values.items()},
-        "position (m)": ", ".join(f"{x:z.3f}" for x in pose.position_m),
-        "roll, pitch, yaw (deg)": ", ".join(f"{x:z.2f}" for x in _angles_deg(pose).values()),
-        "axis azimuth (deg)": azimuth_text(pose),
+        "position (m)": ", ".join(_metres(pose.position_m, more)),
+        "roll, pitch, yaw (deg)": ", ".join(_degrees(x, more) for x in _angles_rad(pose).values()),
+        "axis azimuth (deg)": azimuth_text(pose, more),
         "worst node": guarded.binding_node,
     }
 
 
-def _antenna_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:
+def _antenna_rows(scenario: Scenario, pose: Pose, more: int) -> list[tuple[str, str | None]]:
     is_even = scenario.antenna_record.is_even
-    tilt = f"{math.degrees(tilt_rad(pose, is_even)):z.3f} deg from vertical"
-    airframe, azimuth = scenario.airframe, azimuth_text(pose, is_even)
+    tilt = f"{_degrees(tilt_rad(pose, is_even), more)} deg from vertical"
+    airframe, azimuth = scenario.airframe, azimuth_text(pose, more, is_even)
     leans = "" if azimuth == "-" else f", azimuth {azimuth} deg (0 east, 90 north)"
     return [
         ("airframe", None if airframe is None else airframe_words(airframe, pose.tilt_rad)),
         ("antenna axis", f"{tilt}{leans}"),
-        ("", _in_brackets(pose.antenna_axis)),
+        ("", _in_brackets(pose.antenna_axis, more)),
     ]
 
 
-def _attitude_words(pose: Pose | FramePose) -> str:
-    return ", ".join(f"{name} {angle_deg:z.3f} deg" for name, angle_deg in _angles_deg(pose).items())
+def _attitude_words(pose: Pose | FramePose, more: int) -> str:
+    return ", ".join(
+        f"{name} {_degrees(angle_rad, more)} deg" for name, angle_rad in _angles_rad(pose).items()
+    )
 
 
-def _in_brackets(numbers: Iterable[float]) -> str:
-    return f"({', '.join(f'{number:z.6f}' for number in numbers)})"
+def _in_brackets(numbers: Iterable[float], more: int) -> str:
+    return f"({', '.join(f'{number:z.{COMPONENTS + more}f}' for number in numbers)})"
 
 
-def frame_rows(scenario: Scenario, pose: Pose) -> list[tuple[str, str | None]]:
+def frame_rows(scenario: Scenario, pose: Pose, more: int) -> list[tuple[str, str | None]]:
     """Write a pose on the Earth, in NED and as quaternions; nothing without an origin."""
     frames = pose_frames(scenario, pose)
     if frames.geodetic is None:
         return []
-    north, east, down = (f"{component:z.4f}" for component in frames.ned.position_m)
+    north, east, down = _metres(frames.ned.position_m, more)
     return [
-        ("on the Earth", place_words(frames.geodetic)),
+        ("on the Earth", place_words(frames.geodetic, more + 2)),
         ("NED, body FRD", f"north {north} m, east {east} m, down {down} m"),
-        ("", _attitude_words(frames.ned)),
-        ("quaternion wxyz", f"{_in_brackets(frames.enu.quaternion_wxyz)} in ENU, body FLU"),
-        ("", f"{_in_brackets(frames.ned.quaternion_wxyz)} in NED, body FRD"),
+        ("", _attitude_words(frames.ned, more)),
+        ("quaternion wxyz", f"{_in_brackets(frames.enu.quaternion_wxyz, more)} in ENU, body FLU"),
+        ("", f"{_in_brackets(frames.ned.quaternion_wxyz, more)} in NED, body FRD"),
     ]

@@ -38,11 +38,12 @@ def array_words(array: Array) -> str:
     return f"{dipoles}, {array.layout}, {array.spacing_wavelengths:g} wavelengths apart"
 
 
-def place_words(place: Geodetic | Origin) -> str:
-    """Write a place on the Earth, to about a millimetre."""
+def place_words(place: Geodetic | Origin, more: int = 0) -> str:
+    """Write a place on the Earth, to about a millimetre, or with so many more decimals."""
     over = {"the WGS-84 ellipsoid": place.alt_m, "the sea": place.alt_msl_m}
-    altitudes = [f"{alt_m:z.3f} m over {what}" for what, alt_m in over.items() if alt_m is not None]
-    return f"lat {place.lat_deg:z.8f} deg, lon {place.lon_deg:z.8f} deg, alt {', '.join(altitudes)}"
+    altitudes = [f"{alt_m:z.{3 + more}f} m over {what}" for what, alt_m in over.items() if alt_m is not None]
+    lat, lon = (f"{angle_deg:z.{8 + more}f} deg" for angle_deg in (place.lat_deg, place.lon_deg))
+    return f"lat {lat}, lon {lon}, alt {', '.join(altitudes)}"
 
 
 def error_words(scenario: Scenario) -> str:
