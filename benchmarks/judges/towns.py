@@ -27,7 +27,7 @@ def towns(seed: int = 2) -> Iterator[tuple[str, Scenario, list[Pose]]]:
     rng = np.random.default_rng(seed)
     for name, bare in (("a town", load(_TOWN)), ("blocks", Scenario.from_dict(blocks(rng)))):
         places_m = _on_the_ground(rng, bare, _NODES + _JAMMERS)
-        channel = {"model": "free-space", "blocked_loss_db": 200.0}
+        channel = {"model": "free-space", "blocked_loss_db": 200.0, "shadow_margin_m": 0.0}
         points = {
             "nodes": table_of(rng, places_m[:_NODES], dict),
             "jammers": table_of(rng, places_m[_NODES:], dict),

@@ -137,7 +137,7 @@ def channels(scene: Scene) -> Iterator[Channel]:
         yield Channel(f"power law {exponent:g}", (law,), exponent)
     if scene.name == "paper":
         block = f"buildings=[{{polygon_m={BLOCK}, height_m=12.0}}]"
-        yield Channel("a block of buildings", (block, "channel.blocked_loss_db=20.0"))
+        yield Channel("a block of buildings", (block, "channel={blocked_loss_db=20.0, shadow_margin_m=0}"))
     for environment in ENVIRONMENTS:
         for average in AVERAGES:
             table = f'channel={{model="elevation", environment="{environment}", average="{average}"}}'

@@ -27,7 +27,7 @@ def test_one_prism_has_its_known_optimum(
     ratio: float, value: float, place_m: tuple[float, ...], boxes: int, paper: Callable[[float], Scenario]
 ) -> None:
     """On the edge of the shadow, in floating point; the physics agrees with the solver."""
-    scenario = among(paper(ratio), TOWER)
+    scenario = among(paper(ratio), TOWER, shadow_margin_m=0.0)
     result = solve(scenario, gap=1e-3)
     assert result.status == "certified"
     assert result.rigour == "floating-point"
@@ -40,12 +40,30 @@ def test_one_prism_has_its_known_optimum(
         certificate_of(result)
 
 
+def test_the_value_holds_for_the_drone_anywhere_within_the_margin(paper: Callable[[float], Scenario]) -> None:
+    """Half a metre beside a pose on the edge of a shadow the jammer is seen; with a margin it is not."""
+    results = [
+        solve(among(paper(1.0), TOWER, shadow_margin_m=margin_m), gap=1e-3) for margin_m in (0.0, 0.5, 2.0)
+    ]
+    values = [result.objective.value for result in results]
+    assert values[0] > values[1] > values[2] > 1.25
+    moved = np.random.default_rng(1).normal(size=(300, 3)) * [1.0, 1.0, 0.0]
+    moved *= 0.49 / np.linalg.norm(moved, axis=1)[:, None]
+    bare = results[0].scenario
+    lowest = []
+    for result in results[:2]:
+        axis = result.pose.orientation(bare.antenna_record)
+        lowest.append(objective_value(bare, result.pose.position_m + moved, axis).min())
+    assert lowest[0] < 0.9 * values[0]
+    assert lowest[1] > 0.95 * values[1]
+
+
 def test_the_example_is_certified_to_the_default_gap() -> None:
     """In a town the best pose sees all nodes, at the border of a shadow."""
     scenario = load("examples/town.toml")
     result = solve(scenario)
     assert result.status == "certified"
-    assert result.objective.value_db == pytest.approx(26.9136, abs=1e-3)
+    assert result.objective.value_db == pytest.approx(26.9070, abs=1e-3)
     assert result.stats.boxes < 2000
     position_m, points_m = result.pose.position_m, scenario.source_positions_m
     assert (scenario.source_channels.blocked_gain(position_m, points_m) == 1.0).all()

@@ -49,15 +49,15 @@ def test_what_is_filled_or_hatched_is_blocked(overrides: list[str]) -> None:
             scenario.prisms,
             np.insert(places, 2, altitude_m, axis=1),
             np.array([node.position_m]),
-            scenario.prisms.most_height_m,
+            is_interferer=False,
         )[:, 0]
         assert sure.mean() > 0.9
         assert np.array_equal(shapely.contains_xy(area, places)[sure], blocked[sure])
     middles = np.asarray(shapes["/shadows/jammers-0"].values["points"]).mean(axis=1)
     behind = np.insert(middles[:, :2], 2, altitude_m, axis=1)
-    place_m, roofs_m = np.array([scenario.jammers[0].position_m]), scenario.prisms.least_height_m
+    place_m = np.array([scenario.jammers[0].position_m])
     assert len(middles) > 10
-    assert np.all(is_blocked(scenario.prisms, behind, place_m, roofs_m))
+    assert np.all(is_blocked(scenario.prisms, behind, place_m, is_interferer=True))
 
 
 def test_they_are_shown_where_they_say_something(paper: Scenario) -> None:

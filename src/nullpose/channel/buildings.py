@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +30,7 @@ class Prisms(NamedTuple):
         least_height_m: (n,) altitude of the roof, at the low end of what is known [m].
         most_height_m: (n,) the same at the high end.
         building: (n,) int64, which building each is a piece of.
+        margin_m: distance from the drone within which the line of sight is as poor as at its worst [m].
     """
 
     start: NDArray[np.int64]
@@ -39,6 +39,7 @@ class Prisms(NamedTuple):
     least_height_m: FloatArray
     most_height_m: FloatArray
     building: NDArray[np.int64]
+    margin_m: float = 0.0
 
 
 def prisms_of(
@@ -46,6 +47,7 @@ def prisms_of(
     courtyards_m: Sequence[Sequence[FloatArray]],
     bases_m: ArrayLike,
     heights_m: ArrayLike,
+    margin_m: float = 0.0,
 ) -> Prisms:
     """Cut buildings into convex prisms; one of convex shape stays whole.
 
@@ -54,6 +56,7 @@ def prisms_of(
         courtyards_m: of each building, the vertices of its courtyards.
         bases_m: (b,) altitudes of the floors.
         heights_m: (b, 2) lowest and highest altitude that each roof may have.
+        margin_m: distance from the drone within which the line of sight is as poor as at its worst.
 
     Example:
         >>> import numpy as np
@@ -66,7 +69,7 @@ def prisms_of(
     """
     parts = [joined(convex_parts(*plan)) for plan in zip(outlines_m, courtyards_m, strict=True)]
     building = np.repeat(np.arange(len(parts)), [len(pieces) for pieces in parts])
-    pieces = _overlapping(parts, building) if parts else []
+    pieces = list(map(_distinct, _overlapping(parts, building))) if parts else []
     least_m, most_m = np.asarray(heights_m, dtype=np.float64).reshape(-1, 2)[building].T
     return Prisms(
         np.cumsum([0, *map(len, pieces)]).astype(np.int64),
@@ -75,7 +78,14 @@ def prisms_of(
         least_m,
         most_m,
         building,
+        margin_m,
     )
+
+
+def _distinct(walls: FloatArray) -> FloatArray:
+    """Leave out walls that lie in one line with the wall before."""
+    before = np.roll(walls, 1, axis=0)
+    return walls[np.abs(before[:, 0] * walls[:, 1] - before[:, 1] * walls[:, 0]) > _IN_LINE]
 
 
 def _overlapping(parts: Sequence[Sequence[FloatArray]], building: NDArray[np.int64]) -> list[FloatArray]:
@@ -107,6 +117,10 @@ def _overlapping(parts: Sequence[Sequence[FloatArray]], building: NDArray[np.int
 class Shadows(NamedTuple):
     """Where a building blocks the line of sight to each of several points: convex polyhedra.
 
+    To a node a link counts as clear where it is so for the drone anywhere within the margin: its shadows are
+    grown by it, and their edges stay sharp. To an interferer it counts as blocked likewise: its shadows are
+    shrunk by the margin.
+
     Args:
         of_point: (m + 1,) int64, where the shadows of each point begin in ``start``, and where the last end.
         start: (n + 1,) int64, where the sides of each shadow begin in ``sides``.
@@ -118,81 +132,100 @@ class Shadows(NamedTuple):
     start: NDArray[np.int64]
     sides: FloatArray
 
+    def hold(self, along_m: FloatArray) -> NDArray[np.bool_]:
+        """Check which points a building hides from each of several positions, (..., m).
 
-def shadows_of(prisms: Prisms, points_m: FloatArray, is_interferer: NDArray[np.bool_]) -> Shadows:
+        Args:
+            along_m: (..., s) each side's normal times the position [m].
+        """
+        inside = np.maximum.reduceat(along_m - self.sides[:, 3], self.start[:-1], axis=-1) < -TOUCHING_M
+        count = np.insert(np.cumsum(inside, axis=-1), 0, 0, axis=-1)
+        return np.asarray(np.diff(count[..., self.of_point], axis=-1) > 0)
+
+
+def shadows_of(prisms: Prisms, points_m: FloatArray, is_interferer: ArrayLike) -> Shadows:
     """Find where each prism blocks the line of sight to each point.
 
-    What a convex prism blocks from a point is convex: bounded by the sides that face the point, and by the
-    planes through the point along the edges between those and the others.
+    What a convex prism blocks from a point is convex: bounded by the faces that face the point, and by the
+    planes through the point and the edges between those and the others. From inside a prism everything is
+    blocked: such a shadow has a side at infinity.
 
     Args:
         prisms: the buildings.
-        points_m: (m, 3), metres; in no prism.
-        is_interferer: (m,) which points the lower roofs count for.
+        points_m: (m, 3), metres.
+        is_interferer: (m,) which points the lower roofs count for; or whether for all.
     """
-    shadows: list[FloatArray] = []
-    counts = [0]
-    walls = [prisms.sides[begin:end] for begin, end in pairwise(prisms.start)]
-    corners = list(map(_corners, walls))
-    for point_m, is_low in zip(points_m, is_interferer, strict=True):
-        roofs_m = prisms.least_height_m if is_low else prisms.most_height_m
-        solid = np.flatnonzero(roofs_m > prisms.base_m)
-        for index in solid:
-            ends_m = (prisms.base_m[index], roofs_m[index])
-            sides = _shadow(walls[index], corners[index], ends_m, point_m)
-            shadows.append(np.column_stack([sides, sides[:, 3] + (-HAIR_M if is_low else HAIR_M)]))
-        counts.append(len(shadows))
-    starts = np.cumsum([0, *(len(sides) for sides in shadows)])
-    sides = np.vstack([np.zeros((0, 5)), *shadows])
-    return Shadows(np.array(counts, dtype=np.int64), starts.astype(np.int64), sides)
+    is_low = np.broadcast_to(is_interferer, len(points_m))
+    roofs_m = np.where(is_low[:, None], prisms.least_height_m, prisms.most_height_m)
+    piece, planes, offsets_m, is_side = _planes(prisms, points_m, roofs_m)
+    point, row = np.nonzero(is_side & (roofs_m > prisms.base_m)[:, piece])
+    order = np.lexsort((piece[row], point))  # those of a shadow together
+    point, row = point[order], row[order]
+    normal, offset_m = planes[point, row], offsets_m[point, row]
+    length = np.linalg.norm(normal, axis=1)
+    normal = normal / np.where(length > 0.0, length, 1.0)[:, None]
+    offset_m = np.divide(offset_m, length, out=np.full(len(length), np.inf), where=length > 0.0)
+    grown_m = np.where(is_low, -1.0, 1.0)[point, None] * [prisms.margin_m, prisms.margin_m + HAIR_M]
+    first = np.flatnonzero(np.diff(point * len(prisms.base_m) + piece[row], prepend=-1))
+    of_point = np.searchsorted(point[first], np.arange(len(points_m) + 1))
+    sides = np.column_stack([normal, offset_m[:, None] + grown_m])
+    return Shadows(of_point, np.append(first, len(row)), sides)
 
 
-def _shadow(
-    walls: FloatArray, corners: FloatArray, ends_m: tuple[float, float], point_m: FloatArray
-) -> FloatArray:
-    """List the sides of the shadow of one prism, (s, 4)."""
-    base_m, roof_m = ends_m
-    ends = np.array([[0.0, 0.0, 1.0, roof_m], [0.0, 0.0, -1.0, -base_m]])
-    faces = np.vstack([np.insert(walls, 2, 0.0, axis=1), ends])
-    # what faces the point, or has it in its plane
-    kept = [faces[faces[:, :3] @ point_m >= faces[:, 3]]]
-    top, bottom = (np.column_stack([corners, np.full(len(corners), z)]) - point_m for z in (roof_m, base_m))
-    after = [np.roll(end, -1, axis=0) for end in (top, bottom)]
-    normals = np.cross(np.vstack([top, bottom, top]), np.vstack([*after, bottom]))
-    normals = np.vstack([normals, -normals])
-    length = np.linalg.norm(normals, axis=1)
-    normals = normals[length > 0.0] / length[length > 0.0, None]
-    solid = np.vstack([top, bottom])
-    reach = np.abs(solid).max()
-    tangent = normals[np.all(normals @ solid.T <= 1e-12 * reach, axis=1)]
-    return np.vstack([*kept, np.column_stack([tangent, tangent @ point_m])])
+def _planes(
+    prisms: Prisms, points_m: FloatArray, roofs_m: FloatArray
+) -> tuple[NDArray[np.int64], FloatArray, FloatArray, NDArray[np.bool_]]:
+    """List the planes that may bound the shadow of each prism from each point.
+
+    Returns:
+        Of each plane its prism, (k,); for each point the normal of any length, (m, k, 3), which is zero for
+        the side at infinity, times it a point of the plane, (m, k), and whether it is a side, (m, k).
+    """
+    walls, count, pieces = prisms.sides, len(prisms.sides), np.arange(len(prisms.base_m))
+    piece, onward = np.repeat(pieces, np.diff(prisms.start)), np.arange(1, count + 1)
+    onward[prisms.start[1:] - 1] = prisms.start[:-1]
+    up = np.outer(pieces >= 0, [0.0, 0.0, 1.0])
+    faces = np.vstack([np.insert(walls[:, :2], 2, 0.0, axis=1), up, -up])
+    walls_m, floors_m = (each + np.zeros((len(points_m), 1)) for each in (walls[:, 2], prisms.base_m))
+    faces_m = np.hstack([walls_m, roofs_m, -floors_m])
+    is_front = points_m @ faces.T >= faces_m
+    of_walls, of_roofs, of_floors = np.split(is_front, [count, count + len(pieces)], axis=1)
+    is_outside = np.logical_or.reduceat(of_walls, prisms.start[:-1], axis=1) | of_roofs | of_floors
+    # edges of each wall: with the next, with the roof and with the floor
+    one, other = np.tile(np.arange(count), 3), np.hstack([onward, count + piece, count + len(pieces) + piece])
+    heights_m = np.hstack([0.0 * walls_m, roofs_m[:, piece], floors_m[:, piece]])
+    corners_m = np.tile(_corners(walls, walls[onward]), (len(points_m), 3, 1))
+    to_edges_m = np.dstack([corners_m, heights_m]) - points_m[:, None]
+    away = np.where(is_front[:, one], -1.0, 1.0)[..., None]
+    tangent = away * np.cross(np.cross(faces[one], faces[other]), to_edges_m)
+    planes = np.hstack([faces + 0.0 * faces_m[..., None], 0.0 * (up + roofs_m[..., None]), tangent])
+    offsets_m = np.hstack([faces_m, 0.0 * roofs_m, np.einsum("mki,mi->mk", tangent, points_m)])
+    is_side = np.hstack([is_front, ~is_outside, is_front[:, one] != is_front[:, other]])
+    return np.hstack([piece, pieces, pieces, pieces, piece[one]]), planes, offsets_m, is_side
 
 
-def _corners(walls: FloatArray) -> FloatArray:
-    """Return the vertices of a convex polygon from its sides in order: where neighbours meet."""
-    before = np.roll(walls, 1, axis=0)
-    walls = walls[np.abs(before[:, 0] * walls[:, 1] - before[:, 1] * walls[:, 0]) > _IN_LINE]
-    before = np.roll(walls, 1, axis=0)
-    det = before[:, 0] * walls[:, 1] - before[:, 1] * walls[:, 0]
-    east = (before[:, 2] * walls[:, 1] - walls[:, 2] * before[:, 1]) / det
-    north = (before[:, 0] * walls[:, 2] - walls[:, 0] * before[:, 2]) / det
+def _corners(walls: FloatArray, onward: FloatArray) -> FloatArray:
+    """Return where walls meet others, (w, 2)."""
+    det = walls[:, 0] * onward[:, 1] - onward[:, 0] * walls[:, 1]
+    east = (walls[:, 2] * onward[:, 1] - onward[:, 2] * walls[:, 1]) / det
+    north = (walls[:, 0] * onward[:, 2] - onward[:, 0] * walls[:, 2]) / det
     return np.column_stack([east, north])
 
 
 def is_blocked(
-    prisms: Prisms, positions_m: ArrayLike, points_m: ArrayLike, heights_m: FloatArray
+    prisms: Prisms, positions_m: ArrayLike, points_m: ArrayLike, is_interferer: ArrayLike
 ) -> NDArray[np.bool_]:
     """Check if a building stands on the straight line between positions and ground points.
 
-    A line is clipped by the half-spaces of each prism; what is left of it lies inside. A line that touches
-    an edge, a wall or a roof is clear.
+    Without a margin a line that touches an edge, a wall or a roof is clear.
 
     Args:
-        prisms: the buildings.
+        prisms: the buildings, with the margin.
         positions_m: of the drone, (..., 3), metres.
         points_m: on the ground, (m, 3), or (..., m, 3) where they differ, metres.
-        heights_m: (n,) the roof of each prism: ``prisms.most_height_m`` where a building makes the value
-            worse (nodes), ``prisms.least_height_m`` where it makes it better (jammers).
+        is_interferer: (m,) whether each is a jammer or an eavesdropper, for which the lower roofs count and
+            shadows are shrunk by the margin; to a node the higher roofs, and shadows are grown. Or whether
+            all are.
 
     Returns:
         Array of shape (..., m).
@@ -201,36 +234,28 @@ def is_blocked(
         >>> import numpy as np
         >>> square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
         >>> tower = prisms_of([square], [[]], [0.0], [[20.0, 22.0]])
-        >>> is_blocked(tower, [-10.0, 5.0, 30.0], [[20.0, 5.0, 11.0], [20.0, 5.0, 20.0]], tower.most_height_m)
+        >>> is_blocked(tower, [-10.0, 5.0, 30.0], [[20.0, 5.0, 11.0], [20.0, 5.0, 20.0]], False)
         array([ True, False])
     """
-    begins_m = np.asarray(positions_m, dtype=np.float64)[..., None, :]
-    begins_m, ends_m = np.broadcast_arrays(begins_m, np.asarray(points_m, dtype=np.float64))
-    blocked = np.zeros(begins_m.shape[:-1], dtype=np.bool_)
-    begins_m, ends_m, links = begins_m.reshape(-1, 3), ends_m.reshape(-1, 3), blocked.reshape(-1)
-    rows = max(1, _BLOCK // max(1, len(prisms.sides)))  # links at a time
-    for first in range(0, len(links) if len(prisms.base_m) else 0, rows):
-        part = slice(first, first + rows)
-        links[part] = _meets(prisms, begins_m[part], ends_m[part], heights_m)
-    return blocked
+    at_m, to_m = np.asarray(positions_m, dtype=np.float64), np.asarray(points_m, dtype=np.float64)
+    is_low = np.broadcast_to(is_interferer, to_m.shape[-2:-1])
+    if to_m.ndim == 2:
+        shadows = shadows_of(prisms, to_m, is_low)
+        parts = np.array_split(at_m.reshape(-1, 3), 1 + at_m.size * len(shadows.sides) // _BLOCK)
+        found = [shadows.hold(part @ shadows.sides[:, :3].T) for part in parts]
+        return np.concatenate(found).reshape(*at_m.shape[:-1], len(to_m))
+    at_m, to_m = np.broadcast_arrays(at_m[..., None, :], to_m)
+    links = at_m.reshape(-1, 3), to_m.reshape(-1, 3), np.broadcast_to(is_low, to_m.shape[:-1]).reshape(-1)
+    count = 1 + to_m.size * len(prisms.sides) // _BLOCK
+    parts_of_each = zip(*(np.array_split(each, count) for each in links), strict=True)
+    found = [_is_each_blocked(prisms, *part) for part in parts_of_each]
+    return np.concatenate(found).reshape(to_m.shape[:-1])
 
 
-def _meets(
-    prisms: Prisms, begin_m: FloatArray, end_m: FloatArray, heights_m: FloatArray
+def _is_each_blocked(
+    prisms: Prisms, positions_m: FloatArray, points_m: FloatArray, is_interferer: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Clip the lines from begins to ends, (l, 3) each, by all prisms, (l,)."""
-    enters, leaves = np.zeros((len(begin_m), len(heights_m))), np.ones((len(begin_m), len(heights_m)))
-    for normals, offsets, start in (
-        (np.insert(prisms.sides[:, :2], 2, 0.0, axis=1), prisms.sides[:, 2], prisms.start[:-1]),
-        (np.array([[0.0, 0.0, 1.0]]), heights_m, np.arange(len(heights_m))),
-        (np.array([[0.0, 0.0, -1.0]]), -prisms.base_m, np.arange(len(heights_m))),
-    ):
-        outside = offsets - TOUCHING_M
-        at_begin, at_end = begin_m @ normals.T - outside, end_m @ normals.T - outside
-        slope = at_begin - at_end
-        crossing = np.divide(at_begin, slope, out=np.zeros_like(slope), where=slope != 0.0)
-        enter = np.where(at_begin < 0.0, 0.0, np.where(at_end < 0.0, crossing, np.inf))
-        leave = np.where(at_end < 0.0, 1.0, np.where(at_begin < 0.0, crossing, -np.inf))
-        enters = np.maximum(enters, np.maximum.reduceat(enter, start, axis=1))
-        leaves = np.minimum(leaves, np.minimum.reduceat(leave, start, axis=1))
-    return np.asarray(np.any(enters < leaves, axis=1))
+    """Check the lines from positions to points, (l, 3) each, (l,)."""
+    shadows = shadows_of(prisms, points_m, is_interferer)
+    at_sides_m = np.repeat(positions_m, np.diff(shadows.start[shadows.of_point]), axis=0)
+    return shadows.hold(np.sum(at_sides_m * shadows.sides[:, :3], axis=1))

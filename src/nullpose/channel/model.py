@@ -94,15 +94,10 @@ class PointChannels(NamedTuple):
             positions_m: of the drone, (..., 3), metres.
             points_m: the ground points, (m, 3), or (..., m, 3) where they differ, metres.
         """
-        gain = np.ones(np.broadcast_shapes(positions_m[..., None, :].shape, points_m.shape)[:-1])
-        for is_low, roof in enumerate(("most_height_m", "least_height_m")):
-            places = np.flatnonzero(self.is_interferer == bool(is_low))
-            if self.prisms is not None and len(places):
-                blocked = is_blocked(
-                    self.prisms, positions_m, points_m[..., places, :], getattr(self.prisms, roof)
-                )
-                gain[..., places] = np.where(blocked, self.rows[places, BLOCKED], 1.0)
-        return gain
+        if self.prisms is None:
+            return np.ones(np.broadcast_shapes(positions_m[..., None, :].shape, points_m.shape)[:-1])
+        blocked = is_blocked(self.prisms, positions_m, points_m, self.is_interferer)
+        return np.where(blocked, self.rows[:, BLOCKED], 1.0)
 
 
 def excess_gain(

@@ -218,6 +218,7 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
         f"path gain at {distance_m:g} m (dB)": f"{to_db(receiver.reference_gain):.2f}",
         "channel": channel_words(scenario),
         "loss of a blocked link (dB)": _blocked_words(scenario),
+        "margin of shadows (m)": None if scenario.prisms is None else f"{scenario.prisms.margin_m:g}",
     }
 
 

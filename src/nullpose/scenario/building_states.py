@@ -15,11 +15,9 @@ ON_POSTS = {"roof", "carport", "canopy", "bridge"}
 """What is said of buildings that are open from the ground up to a base, which they may state."""
 OPEN = {*ON_POSTS, "construction", "ruins", "collapsed", "parts"}
 """What is said of buildings that may be open at any height, or lower where their parts are."""
-_LIVES = "|".join(sorted({*GONE, *OPEN, "abandoned", "disused"}))
-MARK = re.compile(rf"(?:({_LIVES}):)?building(?::part)?")
+MARK = re.compile(rf"(?:({'|'.join(sorted(GONE | OPEN))}|abandoned|disused):)?building(?::part)?")
 """What OpenStreetMap marks buildings with, of today and of other days."""
-_STATES = ("building", "building:part", "class", "location", "status")
-_BELOW = re.compile(r"-\d+(?:\.\d+)?(?:;-\d+)*")
+_BELOW = r"-\d+(?:\.\d+)?(?:;-\d+)*"  # levels, all below the ground
 
 
 def state_of(feature: Feature) -> str:
@@ -29,11 +27,12 @@ def state_of(feature: Feature) -> str:
         feature: of a file.
     """
     properties = feature.properties
-    words = {str(properties.get(key)).lower() for key in _STATES}
+    stated = map(properties.get, ("building", "building:part", "class", "location", "status"))
+    words = {str(value).lower() for value in stated}
     flags = {key.lower() for key, value in properties.items() if value in ("yes", "true", True)}
     words |= {flag.removeprefix("is_").removeprefix("has_") for flag in flags}
     if properties.keys().isdisjoint(("building", "building:part")):
         words |= {mark[1] for mark in map(MARK.fullmatch, properties) if mark}
-    if any(_BELOW.fullmatch(str(properties.get(key))) for key in ("layer", "level")):
+    if any(re.fullmatch(_BELOW, str(properties.get(key))) for key in ("layer", "level")):
         words.add("underground")
     return next(iter([*sorted(words & GONE), *sorted(words & OPEN)]), "")

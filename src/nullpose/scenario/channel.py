@@ -24,6 +24,8 @@ _DEFAULTS = {"reference_distance_m": 1.0}
 
 BLOCKED_DB = 20.0
 """Loss of a link that a building blocks, where none is stated [dB]."""
+SHADOW_MARGIN_M = 0.5
+"""How far around the drone the line of sight counts, where it is not stated [m]."""
 
 
 class Channel(Section):
@@ -37,6 +39,7 @@ class Channel(Section):
         a, b, los_loss_db, nlos_loss_db: its numbers [deg, 1/deg, dB, dB].
         average: power, db or guaranteed.
         blocked_loss_db: loss of a link that a building blocks [dB].
+        shadow_margin_m: distance from the drone within which the worst line of sight counts [m].
     """
 
     ways: ClassVar[tuple[Ways, ...]] = (Ways((("environment",), _NUMBERS), fewest=0),)
@@ -101,13 +104,24 @@ class Channel(Section):
         "losses with and without line of sight count.",
         BLOCKED_DB,
     )
+    shadow_margin_m: (
+        Annotated[
+            float, Quantity("a length in m", 0.0, 1000.0, "0 counts the line of sight of the pose alone")
+        ]
+        | None
+    ) = optional(
+        "Distance in metres: a link to a node counts as clear of buildings only if it is so for the drone "
+        "anywhere within it, and one to a jammer or an eavesdropper as blocked likewise. Only in the "
+        f"scenario's [channel]. Left out: {SHADOW_MARGIN_M:g}.",
+        SHADOW_MARGIN_M,
+    )
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return keys that have no meaning for the model, what it lacks, and losses that are exchanged."""
         if self.model is None:
             return
         present, named = {key for key in raw if raw[key] is not None}, f'model = "{self.model}"'
-        for key in sorted(present - {"model", "blocked_loss_db", *_keys_of(self.model)}):
+        for key in sorted(present - {"model", "blocked_loss_db", "shadow_margin_m", *_keys_of(self.model)}):
             others = " or ".join(f'model = "{name}"' for name in CHANNELS if key in _keys_of(name))
             yield (key,), f"has no meaning with {named}; remove it, or write {others}"
         for key in CHANNELS[self.model].keys:

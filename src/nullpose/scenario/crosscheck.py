@@ -143,6 +143,10 @@ def _channel_faults(
     receiver: Receiver | None = scenario.receiver
     keep_out_m = getattr(scenario.airspace, "keep_out_m", None)
     channels = {place: table.channel for place, table in tables.items() if table.channel is not None}
+    for place in [
+        place for place, channel in channels.items() if place and channel.shadow_margin_m is not None
+    ]:
+        yield (*place, "channel", "shadow_margin_m"), "counts for all points; write it in the table [channel]"
     for place in [place for place, channel in channels.items() if channel.model == "power-law"]:
         d0_m = channels[place].gain_distance_m
         key = (*place, "channel", "reference_distance_m")

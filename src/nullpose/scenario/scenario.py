@@ -21,7 +21,7 @@ from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.arrays import PointArrays, rows_of_points
 from nullpose.scenario.buildings import MOST_BUILDINGS, Building
-from nullpose.scenario.channel import NamedChannel
+from nullpose.scenario.channel import SHADOW_MARGIN_M, NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
@@ -231,11 +231,13 @@ class Scenario(Section, PointArrays):
         """The buildings in convex pieces; None without any that is higher than its base."""
         if all(building.heights_m[1] <= building.base_m for building in self.buildings):
             return None
+        margin_m = None if self.channel is None else self.channel.shadow_margin_m
         return prisms_of(
             [building.outline_m for building in self.buildings],
             [building.courtyard_outlines_m for building in self.buildings],
             [building.floor_m for building in self.buildings],
             [building.heights_m for building in self.buildings],
+            SHADOW_MARGIN_M if margin_m is None else margin_m,
         )
 
     @property

@@ -51,6 +51,7 @@ _STREAMS = {
     "los_loss_db": 12,
     "nlos_loss_db": 13,
     "blocked_loss_db": 14,
+    "shadow_margin_m": 15,
 }
 
 

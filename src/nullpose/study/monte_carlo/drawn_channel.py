@@ -67,7 +67,7 @@ class DrawnChannel(Section):
         environment: a name, or a choice of several.
         a, b, los_loss_db, nlos_loss_db: numbers, or how they are drawn.
         average: power, db or guaranteed.
-        blocked_loss_db: a number, or how it is drawn.
+        blocked_loss_db, shadow_margin_m: numbers, or how they are drawn.
     """
 
     ways: ClassVar[tuple[Ways, ...]] = Channel.ways
@@ -84,6 +84,7 @@ class DrawnChannel(Section):
     nlos_loss_db: Annotated[Distribution, _number("nlos_loss_db")] | None = _key("nlos_loss_db")
     average: str | None = _key("average")
     blocked_loss_db: Annotated[Distribution, _number("blocked_loss_db")] | None = _key("blocked_loss_db")
+    shadow_margin_m: Annotated[Distribution, _number("shadow_margin_m")] | None = _key("shadow_margin_m")
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield the faults of a channel with the first number and name of each key."""
