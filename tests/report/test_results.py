@@ -111,8 +111,9 @@ def on_earth(paper: Scenario) -> Result:
 
 def test_the_lines_of_a_round_pose(on_earth: Result, paper: Scenario) -> None:
     """Straight above the origin, pitched by a quarter turn: all is known; nothing without an origin."""
+    place = "lat 0.0000000000 deg, lon 0.0000000000 deg, alt 20.00000 m over the WGS-84 ellipsoid"
     assert frame_rows(on_earth.scenario, on_earth.pose, 0) == [
-        ("on the Earth", "lat 0.0000000000 deg, lon 0.0000000000 deg, alt 20.00000 m over the WGS-84 ellipsoid"),
+        ("on the Earth", place),
         ("NED, body FRD", "north 0.0000 m, east 0.0000 m, down -20.0000 m"),
         ("", "roll 0.000 deg, pitch -90.000 deg, yaw 90.000 deg"),
         ("quaternion wxyz", "(0.707107, 0.000000, 0.707107, 0.000000) in ENU, body FLU"),
