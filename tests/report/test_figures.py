@@ -7,13 +7,15 @@ import pytest
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from nullpose import Pose, Scenario
+from nullpose import Pose, Scenario, solve
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.report.figures.pattern import pattern_surface_m
 from nullpose.report.figures.style import CURVES
 from nullpose.report.figures.sweep import draw_sweep
+from nullpose.report.figures.vehicle import draw_least_tilt
 from nullpose.solver import Scheme
 from nullpose.study import ResultTable, sweep
+from nullpose.study.least_tilt import LeastTilt, MountTilt
 
 SIDES = ("least_tilt_deg", "too_little_deg")
 
@@ -99,3 +101,20 @@ def test_pattern_is_sine_squared(axis: tuple[float, float, float]) -> None:
     assert radii[far] == pytest.approx(7.5 * (1.0 - cosines**2), abs=1e-9)
     assert radii.max() == pytest.approx(7.5)
     assert radii.min() == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.3, 0.9])
+def test_a_vehicle_that_loses_little_can_be_drawn(paper: Scenario, loss: float) -> None:
+    """Of the losses that have a line, only those that occur are drawn: none, three of four, or all."""
+    best = solve(paper, certify=False)
+    mount = MountTilt(mount_deg=90.0, suffices_deg=8.0, fails_deg=7.9)
+    found = LeastTilt(
+        share=0.99, omnidirectional=best, mounts=(mount,), best=None, rigour=best.rigour, seconds=1.0
+    )
+    angles_deg = np.linspace(0.0, 90.0, 46)
+    values = best.objective.value * (1.0 - loss * np.cos(np.radians(angles_deg)) ** 2)
+    figure = draw_least_tilt(found, (angles_deg, values))
+    figure.draw_without_rendering()
+    lines = [text.get_text() for text in figure.axes[1].texts if text.get_text().endswith("dB")]
+    assert len(lines) <= {0.0: 0, 0.3: 3, 0.9: 4}[loss]
+    assert bool(lines) == (loss > 0.0)

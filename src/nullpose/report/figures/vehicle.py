@@ -15,8 +15,7 @@ from nullpose.study.least_tilt import LeastTilt
 
 _TILTS_DEG, _MOUNTS_DEG = np.linspace(0.0, 90.0, 181), np.linspace(0.0, 90.0, 91)
 _FINE_DEG, _HALF_STEP_DEG = np.linspace(0.0, 90.0, 361), 0.126  # every quarter of a degree
-_LOSSES_DB = (0.05, 0.5, 1.0, 3.0)
-_LINES = (INK, INK, INK, "white")  # the last is on dark ground
+_LINES = {0.05: INK, 0.5: INK, 1.0: INK, 3.0: "white"}  # the last loss, in dB, is on dark ground
 MOUNT_CURVES = tuple(
     VEHICLES[name]
     for name in ("level-vertical", "stated", "level-horizontal", "tilt-10-horizontal", "tilt-30-horizontal")
@@ -84,11 +83,15 @@ def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None
     shown = axes.pcolormesh(
         _TILTS_DEG, _MOUNTS_DEG, loss_db, cmap="viridis_r", vmin=0.0, vmax=3.0, rasterized=True
     )
-    lines = axes.contour(_TILTS_DEG, _MOUNTS_DEG, loss_db, levels=_LOSSES_DB, colors=_LINES, linewidths=0.9)
-    longest = [max(parts, key=len) for parts in lines.allsegs if parts]
-    middles = [tuple(part[len(part) // 2]) for part in longest]
-    inside = [middle for middle in middles if min(middle) > _EDGE_DEG]
-    axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=inside)
+    seen = {db: look for db, look in _LINES.items() if loss_db.min() < db < loss_db.max()}
+    if seen:
+        lines = axes.contour(
+            _TILTS_DEG, _MOUNTS_DEG, loss_db, levels=[*seen], colors=[*seen.values()], linewidths=0.9
+        )
+        longest = (max(parts, key=len) for parts in lines.allsegs)
+        middles = [tuple(part[len(part) // 2]) for part in longest]
+        inside = [middle for middle in middles if min(middle) > _EDGE_DEG]
+        axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=inside)
     axes.set(xlabel="Largest tilt (deg)", ylabel="Mount of the antenna (deg)")
     axes.set_title("Loss against an omnidirectional vehicle", fontsize="small", wrap=True)
     axes.figure.colorbar(shown, ax=axes, label="dB", extend="max")
