@@ -9,8 +9,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from benchmarks.soundness.ends import channel_ends, narrow_airframe, quiet, rescaled, with_depths
 from benchmarks.soundness.scenes import Scene
 from nullpose.channel import ENVIRONMENTS
+from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario
 
 FloatArray = NDArray[np.float64]
@@ -335,6 +337,39 @@ def _channels(rng: np.random.Generator) -> Table:
     return table
 
 
+def _channel_ends(rng: np.random.Generator) -> Table:
+    """Channels at the ends of what may be stated, in the paper's cases and with other features."""
+    makers = (_plain, _plain, _airframe, _secrecy, _margins)
+    table = quiet(rng, makers[int(rng.integers(len(makers)))](rng) | {"channel": channel_ends(rng)})
+    return table | {"scheme": str(rng.choice(["optimum", "optimum", "vertical"]))}
+
+
+def _narrow(rng: np.random.Generator) -> Table:
+    """Airframes that tilt by a hair, with strong jammers, eavesdroppers and channels."""
+    makers = (_plain, _secrecy, _margins, _channel_ends, _extremes)
+    table = makers[int(rng.integers(len(makers)))](rng)
+    return table | {"airframe": narrow_airframe(rng), "scheme": "optimum"}
+
+
+def _depths(rng: np.random.Generator) -> Table:
+    """Nulls of every depth on the drone and on the ground."""
+    makers = (_plain, _airframe, _secrecy, _extremes)
+    return with_depths(rng, makers[int(rng.integers(len(makers)))](rng))
+
+
+def _scales(rng: np.random.Generator) -> Table:
+    """Scenes from some metres to hundreds of kilometres."""
+    makers = (_plain, _airframe, _secrecy, _margins)
+    return rescaled(rng, makers[int(rng.integers(len(makers)))](rng))
+
+
+def _one_element(rng: np.random.Generator) -> Table:
+    """Arrays of one element, which are a vertical dipole on a level vehicle, with strong jammers."""
+    makers = (_plain, _margins, _extremes)
+    table = makers[int(rng.integers(len(makers)))](rng)
+    return table | {"array": {"elements": 1, "layout": "linear", "spacing_wavelengths": 0.5}}
+
+
 _SIDES = ("x_m", "y_m", "altitude_m")
 
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
@@ -357,20 +392,38 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "level": _level,
     "gaps": _gaps,
     "channels": _channels,
+    "channel-ends": _channel_ends,
+    "narrow": _narrow,
+    "depths": _depths,
+    "scales": _scales,
+    "one-element": _one_element,
 }
+
+ENDS = ("channel-ends", "narrow", "depths", "scales", "one-element")
+"""Features whose numbers go to the ends of what may be stated, and together sometimes beyond."""
 
 _CELLS = 15_000  # of the proofs at given gaps: what is left then is promised too, and quickly verified
 
 
 def make_feature_scene(feature: str, number: int) -> Scene:
-    """Return the scene of a number with something that scenarios can ask for."""
+    """Return the scene of a number with something that scenarios can ask for; the first that is allowed."""
     rng = np.random.default_rng([20261, list(FEATURES).index(feature), number])
-    table, has_gap = FEATURES[feature](rng), feature in ("gaps", "channels")
+    has_gap = feature in ("gaps", "channels", "channel-ends")
+    while True:
+        table = FEATURES[feature](rng)
+        scheme = table.pop("scheme", "optimum")
+        try:
+            scenario = Scenario.from_dict(table | {"name": f"{feature} {number}"})
+        except ScenarioError:
+            if feature not in ENDS:
+                raise
+            continue
+        break
     return Scene(
         number=number,
         kind=feature,
-        scheme=table.pop("scheme", "optimum"),
-        scenario=Scenario.from_dict(table | {"name": f"{feature} {number}"}),
+        scheme=scheme,
+        scenario=scenario,
         gap=GAPS[number % len(GAPS)] if has_gap else None,
         cells=_CELLS if has_gap else None,
     )
