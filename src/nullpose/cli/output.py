@@ -28,7 +28,7 @@ class Plain(Protocol):
 
 
 Found = TypeVar("Found", bound=Plain)
-_COMPILING = "Compiling kernels, once for this machine ..."
+_COMPILING = "Compiling kernels for this machine, once for each kind of scene ..."
 
 
 def tell(
