@@ -6,6 +6,7 @@ from numba.core.compiler_machinery import PassManager
 from numba.core.typed_passes import (
     AnnotateTypes,
     IRLegalization,
+    NativeLowering,
     NoPythonBackend,
     NopythonTypeInference,
     PreLowerStripPhis,
@@ -20,8 +21,6 @@ from numba.core.untyped_passes import (
     TranslateByteCode,
 )
 
-from nullpose.solver.kernels.compiler.lowering import KernelLowering
-
 _PASSES = (
     TranslateByteCode,
     FixupArgs,
@@ -34,7 +33,7 @@ _PASSES = (
     PreLowerStripPhis,
     IRLegalization,
     AnnotateTypes,
-    KernelLowering,
+    NativeLowering,
     NoPythonBackend,
 )
 

@@ -22,16 +22,19 @@ _MOST = 4096  # of them in one array: a thread's stack is small
 
 def _allocate(context, builder, kind, shape: list[int], fill: bool):
     """Return the value of an array in the calling kernel's own frame."""
-    from nullpose.solver.kernels.compiler.lowering import array_value  # imports a part of the compiler
-
     count = math.prod(shape)
     # in the entry block: one place however often the line is passed
     data = cgutils.alloca_once(builder, context.get_value_type(kind.dtype), size=count)
     if fill:
         cgutils.memset(builder, data, context.get_constant(types.intp, _ITEM * count), 0)
-    lengths = [context.get_constant(types.intp, n) for n in shape]
-    strides = [context.get_constant(types.intp, _ITEM * math.prod(shape[i + 1 :])) for i in range(len(shape))]
-    return array_value(builder, data, lengths, strides)
+    steps = [_ITEM * math.prod(shape[i + 1 :]) for i in range(len(shape))]
+    none, counts = cgutils.get_null_value(cgutils.voidptr_t), (count, _ITEM)
+    numbers = [context.get_constant(types.intp, n) for n in counts]
+    ends = [
+        cgutils.pack_array(builder, [context.get_constant(types.intp, n) for n in each])
+        for each in (shape, steps)
+    ]
+    return cgutils.pack_struct(builder, [none, none, *numbers, data, *ends])
 
 
 def _maker(plain, item, fill: bool):
