@@ -15,8 +15,6 @@ from nullpose.study.evaluation import pose_faults
 
 METRES, DEGREES, COMPONENTS = 4, 3, 6
 """The fewest decimals of a position in metres, of angles in degrees, and of components of unit length."""
-VALUE_DIGITS = 7
-"""Significant digits of a printed value, of which no more than so many are decimals."""
 _MOST = 10
 
 
@@ -44,7 +42,7 @@ def more_decimals(scenario: Scenario, pose: Pose) -> int:
         return quantity.in_unit(quantity.least(evaluate(scenario, typed)))
 
     exact = value(pose)
-    last_digit = 10.0 ** (math.floor(math.log10(min(max(abs(exact), 0.1), 1e9))) + 1 - VALUE_DIGITS)
+    last_digit = 10.0 ** (math.floor(math.log10(min(max(abs(exact), 0.1), 1e9))) - 6)  # of seven
     for more in range(_MOST):
         attitude, *axes = _typed(scenario, pose, more)
         is_off = any(abs(value(each) - exact) > 0.5 * last_digit for each in (attitude, *axes))
@@ -64,5 +62,7 @@ def _typed(scenario: Scenario, pose: Pose, more: int) -> Iterator[Pose]:
     yield Pose(position_m, roll, pitch, yaw, pose.mount_rad)
     if scenario.antenna_record.is_quadratic:
         yield Pose.from_axis(position_m, axis)
-        level = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
-        yield Pose.from_axis(position_m, math.sin(tilt) * level + [0.0, 0.0, math.cos(tilt)])
+        level = math.sin(tilt)
+        yield Pose.from_axis(
+            position_m, (level * math.cos(azimuth), level * math.sin(azimuth), math.cos(tilt))
+        )
