@@ -78,6 +78,23 @@ def test_one_element_is_the_vertical_case(ratio: float, paper: Callable) -> None
     assert alone.status is Status.CERTIFIED
 
 
+@pytest.mark.parametrize("elements", [1, 2])
+def test_the_null_above_a_strong_jammer_is_found(elements: int, scene: Callable) -> None:
+    """Where the best place of a vertical dipole is a needle above a strong jammer, an array has no less."""
+    field = scene(
+        [(-18.8, -36.8, 0.0), (7.6, 24.8, 1.9)],
+        [(-33.6, 17.0, 0.0), (28.8, -32.3, 4.7), (29.6, -48.9, 0.0)],
+        node_powers_w=(0.6, 1.5),
+        jammer_powers_w=(0.088, 27830.0, 20.8),
+        altitude_m=(12.0, 21.0),
+        noise_w=4.7e-4,
+        keep_out_m=5.0,
+    )
+    vertical, array = solve(field, "vertical"), solve(with_array(field, elements))
+    assert array.objective.value >= vertical.objective.value * (1.0 - 1e-9)
+    assert elements > 1 or array.status is vertical.status is Status.CERTIFIED
+
+
 def test_without_jammers_the_elements_add_up(paper: Callable) -> None:
     """K elements and no jammer give K times the vertical case, which is the bound."""
     silent = paper(1.0).model_copy(update={"jammers": ()})

@@ -64,12 +64,12 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
 
     Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Every
     node has weights of its own, which follow from position and yaw (:func:`nullpose.physics.digital_sinr`).
-    The bound comes from a branch and bound over positions and yaws.
+    The bound comes from a branch and bound over positions and yaws. One element is the vertical case.
 
     Args:
         scenario: its airframe and its uncertainty are not consulted.
         array: what the vehicle carries.
-        options: those of the scenario; limits of time and boxes are not consulted.
+        options: those of the scenario; limits of time and boxes count for one element alone.
 
     Raises:
         UsageError: the objective is another than min-sinr.
@@ -96,7 +96,7 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
         links=links,
         value=Quantity.of(scenario).least(links),
         upper_bound=None if bound is None else bound.value,
-        reason="" if reached else "box limit reached",
+        reason="" if reached or bound is None else bound.reason,
         settings=options.settings,
         stats=Stats(
             starts=search.starts,
@@ -113,8 +113,13 @@ def _search_and_prove(search: ArraySearch, options: SolveOptions) -> ArrayBound 
     """Search, and prove what is found if that is asked for.
 
     One search and a proof, then more searches, and another proof, where that does not get there; what turns
-    up in the first proof is taken up.
+    up in the first proof is taken up. One element is the vertical case, with its search and its proof.
     """
+    if search.elements == 1:
+        outcome = solve_and_prove(search.family, [AxisField.vertical()], options)
+        search.start_from(outcome.incumbent)
+        value = outcome.upper_bound
+        return None if value is None else ArrayBound(value=value, boxes=outcome.nodes, reason=outcome.reason)
     if not options.certify:
         search.search_on()
         return None
@@ -139,11 +144,13 @@ class ArrayBound:
         value: nothing exceeds this.
         boxes: boxes examined.
         state: (4,) a promising place that turned up on the way; None if none did.
+        reason: why the gap was not reached, where it was not.
     """
 
     value: float
     boxes: int
     state: FloatArray | None = None
+    reason: str = "box limit reached"
 
 
 def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
@@ -152,8 +159,7 @@ def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
     A branch and bound over positions and yaws, the best first
     (:mod:`nullpose.solver.kernels.bounds.array_enclosure` bounds a box): it stops at the gap asked for or
     at a number of boxes, with the bound reached. Turning the vehicle by half a turn, or a circle by one of
-    its elements, changes nothing; so that much yaw is looked at. One element is the vertical case, whose own
-    branch and bound is used.
+    its elements, changes nothing; so that much yaw is looked at.
 
     Args:
         search: the array, its scene and the best state found.
@@ -161,7 +167,7 @@ def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
     """
     value, nodes = math.exp(search.best), search.problem.nodes
     upright = _vertical_bound(search, gap)
-    if search.elements == 1 or upright.value <= value * (1.0 + gap):
+    if upright.value <= value * (1.0 + gap):
         return upright
     from nullpose.solver.kernels.bounds.array_branch import branch_array
 
@@ -180,19 +186,18 @@ def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
 
 
 def _vertical_bound(search: ArraySearch, gap: float) -> ArrayBound:
-    """Bound by K times one vertical dipole with the jammers silent; for K = 1, not silent.
+    """Bound by K times one vertical dipole with the jammers silent.
 
     With ``R >= sigma^2 I``, ``h_k^H R^-1 h_k <= |h_k|^2 / sigma^2``, and ``|h_k|^2`` is K times what one
     vertical dipole receives at the same position. Where the jammers can be nulled for nothing, the optimum
     is a flat ridge, along which a branch and bound is slow, and this bound is met.
     """
-    family = search.family
-    if search.elements > 1:  # only noise is left in the denominators; interferers are still kept clear of
-        family = family.changed(
-            denominator_start=np.zeros_like(family.denominator_start),
-            denominator_point=np.zeros(0, dtype=np.int64),
-            denominator_weight=np.zeros(0),
-        )
+    family = search.family  # only noise is left in the denominators; interferers are still kept clear of
+    family = family.changed(
+        denominator_start=np.zeros_like(family.denominator_start),
+        denominator_point=np.zeros(0, dtype=np.int64),
+        denominator_weight=np.zeros(0),
+    )
     options = SolveOptions(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
     outcome = solve_and_prove(family, [AxisField.vertical()], options)
     assert outcome.upper_bound is not None, "a proof was asked for"

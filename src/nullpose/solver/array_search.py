@@ -9,13 +9,15 @@ import numpy as np
 from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
 from nullpose.physics.array import element_positions
+from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.records import ArrayProblem
 from nullpose.scenario import Array, Scenario
 from nullpose.solver.local_search import EpigraphSearch
-from nullpose.solver.multistart import NOT_RECEIVED
+from nullpose.solver.multistart import NOT_RECEIVED, Incumbent, multistart
 
 _DRAWN, _CLIMBED = 2000, 40  # states of a search, each time
+_YAWS = 16  # of a start
 _SAME_VALUE = 1e-4
 _MOST = 6  # searches
 _ENOUGH = 3  # searches with the same end
@@ -45,18 +47,32 @@ class ArraySearch(EpigraphSearch):
         # by how many equal rotations the elements come to lie on each other
         self.symmetry = max(2, array.elements) if array.layout == "circular" else 2
         self.ends: list[float] = []
+        self.seed = seed
 
     @property
     def agreeing(self) -> int:
         """How many searches ended at the best value."""
         return sum(end > self.best - _SAME_VALUE for end in self.ends)
 
+    def start_from(self, upright: Incumbent) -> None:
+        """Climb from the best of some yaws where one vertical dipole is best; no combining is worse.
+
+        Args:
+            upright: the dipole's pose, and the work to find it.
+        """
+        yaws = np.linspace(0.0, 2.0 * math.pi / self.symmetry, _YAWS)
+        states = np.column_stack([np.tile(upright.position_m, (_YAWS, 1)), yaws])
+        self.climb(states[np.argmax(self.judge(states))])
+        self.starts, self.evaluations = self.starts + upright.starts, self.evaluations + upright.evaluations
+
     def search(self) -> None:
-        """Make one more search.
+        """Make one more search; the first starts from the pose of a vertical dipole, too.
 
         Raises:
             SolveError: nothing was found by any search yet.
         """
+        if not self.ends:
+            self.start_from(multistart(self.family, AxisField.vertical(), seed=self.seed))
         self.ends.append(self.run(_DRAWN, _CLIMBED))
         if not self.best > -math.inf:
             raise SolveError(NOT_RECEIVED)
