@@ -52,5 +52,5 @@ def test_robust_takes_these_errors_where_none_are_stated(run, paper):
     found = json.loads(run("solve", paper, "--robust", "--fast", "--off", "position_m=2", "--json").stdout)
     assert found["scenario"]["receiver"]["position_error_m"] == 2.0
     assert found["scenario"]["jammers"][0]["uncertainty_m"] == [10.0, 10.0, 0.0]
-    assert "states no errors" in found["note"]
+    assert "file states no errors" in found["note"]
     assert found["robust"]["guaranteed"] <= found["sensitivity"]["all"]["value"]

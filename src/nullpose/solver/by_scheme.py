@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
@@ -22,6 +23,8 @@ from nullpose.solver.position_search import PositionSearch
 from nullpose.solver.result import Answer, Stats
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
+
+_WIDE = 1.1  # bound over value, beyond which a proof that met a limit was not about to close
 
 
 def solve_by_scheme(
@@ -64,8 +67,23 @@ def solve_by_scheme(
             boxes=outcome.nodes,
         ),
         rigour=Rigour.VERIFIABLE if is_verifiable else None,
-        note=record.note(scenario, tuple(fields or ()), outcome.chosen),
+        note=record.note(scenario, tuple(fields or ()), outcome.chosen) or _note_on_nulls(scenario, outcome),
         proofs=outcome.proofs,
+    )
+
+
+def _note_on_nulls(scenario: Scenario, outcome: Outcome) -> str:
+    """Name whips whose perfect nulls keep a wide gap from closing, and what to state; empty if none do."""
+    name, value = scenario.objective_record.interferers, math.exp(outcome.incumbent.log_value)
+    whips = [f"{name}[{at}]" for at, point in enumerate(getattr(scenario, name)) if point.leak == 0.0]
+    is_wide = outcome.reason and (outcome.upper_bound or 0.0) > _WIDE * value
+    if not (whips and is_wide) or getattr(scenario.antenna_record, "leak", 1.0) > 0.0:
+        return ""
+    return (
+        f"polarisation lets the {name} with perfect whips vanish together with those in the drone's null, on "
+        "a whole surface of positions; around it the proof hardly closes, whatever the limit. State how deep "
+        f"a whip's null is, 15 to 35 dB beside a mast or a body ({', '.join(whips)}: null_depth_db = 20), or "
+        "ask for the robust pose (--robust)"
     )
 
 
