@@ -27,6 +27,10 @@ FUNCTIONS = {
 def test_examples_are_true(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Typed in the repository's folder, each example of a module prints what its docstring shows."""
     monkeypatch.chdir(ROOT)
+    is_of = doctest.DocTestFinder._from_module  # of what a function is that refuses wrong arguments
+    monkeypatch.setattr(
+        doctest.DocTestFinder, "_from_module", lambda self, of, found: is_of(self, of, inspect.unwrap(found))
+    )
     found = doctest.testmod(import_module(module), optionflags=doctest.NORMALIZE_WHITESPACE)
     pyplot.close("all")
     assert found.attempted

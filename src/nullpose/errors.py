@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import wraps
+from inspect import Parameter, signature
+from numbers import Integral, Real
+from reprlib import repr as shortened
+from types import NoneType, UnionType
+from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 _MOST_TOLD = 20  # faults in a message
+_NUMBERS = ("ArrayLike", "FloatArray")  # in the annotation of what becomes an array of numbers
+_KINDS: dict[object, object] = {float: Real, int: Integral, None: NoneType}
+_Called = TypeVar("_Called", bound=Callable[..., Any])
 
 
 class NullposeError(Exception):
@@ -69,6 +81,15 @@ def require_usage(holds: object, message: str) -> None:
         raise UsageError(message)
 
 
+def install_command(extra: str) -> str:
+    """Return where to run which command to install what an extra needs; no package index has nullpose.
+
+    Args:
+        extra: of ``pyproject.toml``, as in ``gis``.
+    """
+    return f"in a clone of nullpose run {sys.executable} -m pip install -e '.[{extra}]'"
+
+
 class WrongTypeError(UsageError, TypeError):
     """A value of a type that does not belong there, such as a path where a scenario is asked for."""
 
@@ -87,3 +108,90 @@ class OutputError(NullposeError, OSError):
 
 class SolveError(NullposeError, RuntimeError):
     """A solve that ended without a pose that can be reported."""
+
+
+def checked(called: _Called) -> _Called:
+    """Have a function, or the making of a class, refuse arguments that it cannot use.
+
+    They are looked at where a call fails, so this costs nothing elsewhere, and a failure whose arguments all
+    fit stays what it is: a fault of the program.
+
+    Args:
+        called: with annotations of its parameters, which messages repeat.
+
+    Example:
+        >>> @checked
+        ... def half(number: float) -> float:
+        ...     return number / 2.0
+        >>> half("three")
+        Traceback (most recent call last):
+        nullpose.errors.WrongTypeError: number: given 'three'; allowed: float
+    """
+    if isinstance(called, type):
+        setattr(called, "__init__", checked(vars(called)["__init__"]))  # noqa: B010  mypy knows no other
+        return called
+
+    @wraps(called)
+    def call(*args: Any, **options: Any) -> Any:
+        try:
+            return called(*args, **options)
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            if not isinstance(error, NullposeError):
+                _refuse_arguments(called, args, options)
+            raise
+
+    return cast(_Called, call)
+
+
+def _refuse_arguments(
+    called: Callable[..., Any], args: Sequence[object], options: Mapping[str, object]
+) -> None:
+    """Raise the fault of arguments that do not fit, if there is any."""
+    parameters, names = signature(called).parameters, vars(sys.modules[called.__module__])
+    allowed = {name: each.annotation for name, each in parameters.items() if name not in ("self", "cls")}
+    for name, parameter in parameters.items():
+        if parameter.kind is Parameter.VAR_KEYWORD:  # those of a typed dictionary, or any
+            more = get_args(_hint(allowed.pop(name), names))
+            allowed |= get_type_hints(more[0]) if more else dict.fromkeys(options, "")
+    for name in [name for name in options if name not in allowed]:
+        guess = get_close_matches(name, allowed, 1)
+        meant = f"; did you mean {guess[0]}?" if guess else ";"
+        raise UsageError(f"{name}: unknown option{meant} allowed: {', '.join(allowed)}") from None
+    try:
+        signature(called).bind(*args, **options)
+    except TypeError as error:
+        raise UsageError(f"{called.__qualname__}: {error}; allowed: {', '.join(allowed)}") from None
+    first = len(parameters.keys() & {"self", "cls"})
+    for name, value in {**dict(zip(allowed, args[first:], strict=False)), **options}.items():
+        if not _fits(value, _hint(allowed[name], names), str(allowed[name])):
+            words = getattr(allowed[name], "__name__", allowed[name])
+            path = isinstance(value, str | os.PathLike) and words == "Scenario"
+            tried = f"; try Scenario.from_file({value!r})" if path else ""
+            raise WrongTypeError(f"{name}: given {shortened(value)}; allowed: {words}{tried}") from None
+
+
+def _hint(annotation: Any, names: dict[str, Any]) -> Any:
+    """Return the type that an annotation states; Any for one that only a type checker knows."""
+    try:
+        return eval(annotation, names) if isinstance(annotation, str) and annotation else annotation
+    except NameError:
+        return Any
+
+
+def _fits(value: object, hint: Any, words: str = "") -> bool:
+    """Tell whether a value is of a type; of what is not known here it is taken to be."""
+    kind, parts = get_origin(hint), get_args(hint)
+    if any(word in words for word in _NUMBERS):
+        from numpy import asarray
+
+        try:
+            return asarray(value, dtype=float) is not None
+        except (TypeError, ValueError):
+            return False
+    if kind in (Union, UnionType):
+        return any(_fits(value, part) for part in parts)
+    if isinstance(kind, type):  # with members
+        members: Any = value if hasattr(value, "__len__") else ()
+        is_kind = isinstance(value, kind) and not isinstance(value, str)
+        return is_kind and all(_fits(each, parts[0]) for each in members)
+    return not isinstance(hint := _KINDS.get(hint, hint), type) or isinstance(value, hint)

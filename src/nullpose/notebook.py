@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import ModuleType
 
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, install_command
 
 _MOST_ROWS = 40
 
@@ -20,7 +20,7 @@ def imported(package: str) -> ModuleType:
     try:
         return import_module(package)
     except ImportError:
-        remedy = f"pip install {package}, or pip install 'nullpose[study]'"
+        remedy = f"pip install {package}, or {install_command('study')}"
         raise UsageError(f"{package}: not installed here; try: {remedy}") from None
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, checked
 from nullpose.report.figures.dots import draw_dots
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_field, draw_plan
@@ -54,6 +54,7 @@ def _axes(ax: Axes | None, size_inch: tuple[float, float], *, solid: bool = Fals
     matplotlib.interactive(shows_by_itself)
 
 
+@checked
 def pose(result: Result, ax: Axes | None = None) -> Axes:
     """Draw a scene in 3-D, the best pose and the antenna's pattern.
 
@@ -78,6 +79,7 @@ def pose(result: Result, ax: Axes | None = None) -> Axes:
     return axes
 
 
+@checked
 def plan(result: Result, ax: Axes | None = None) -> Axes:
     """Draw a scene from above: points, zones, the drone and its antenna's axis.
 
@@ -99,6 +101,7 @@ def plan(result: Result, ax: Axes | None = None) -> Axes:
     return axes
 
 
+@checked
 def heat_map(result: Result, ax: Axes | None = None, *, field: Field | None = None) -> Axes:
     """Draw a map of what each place gives with the best axis there, and the scene on it.
 
@@ -122,6 +125,7 @@ def heat_map(result: Result, ax: Axes | None = None, *, field: Field | None = No
     return axes
 
 
+@checked
 def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False, bounds: bool = False) -> Axes:
     """Draw a curve for each scheme of a sweep.
 
@@ -148,6 +152,7 @@ def sweep(table: ResultTable, ax: Axes | None = None, *, log: bool = False, boun
     return axes
 
 
+@checked
 def comparison(found: ResultTable | Sequence[Result], ax: Axes | None = None) -> Axes:
     """Draw a dot for each case or vehicle, and a tick at its bound.
 

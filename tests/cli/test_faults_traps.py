@@ -86,7 +86,7 @@ def test_heights_that_look_wrong(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize("verb", ["solve", "compare"])
 def test_a_path_given_to_a_function(paper: str, verb: str) -> None:
     """A function that takes a scenario says how to read one from a path."""
-    with pytest.raises(TypeError, match=r"must be a Scenario; try Scenario\.from_file\('"):
+    with pytest.raises(TypeError, match=r"allowed: Scenario; try Scenario\.from_file\('"):
         getattr(nullpose, verb)(paper)
 
 

@@ -15,7 +15,7 @@ def test_a_missing_extra_ends_with_code_2(monkeypatch: pytest.MonkeyPatch) -> No
     result = CliRunner().invoke(app, ["studio", str(Path(__file__).parents[2] / "examples" / "paper.toml")])
     assert result.exit_code == 2
     assert result.stderr.count("\n") == 1
-    assert "nullpose[studio]" in result.stderr
+    assert "pip install -e '.[studio]'" in result.stderr
 
 
 def test_a_faulty_file_ends_with_code_2(tmp_path: Path) -> None:

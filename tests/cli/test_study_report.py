@@ -80,4 +80,4 @@ def test_a_missing_extra(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(folder_module, "find_spec", lambda name: None)
     result = run("study", verb, tmp_path, *(("--out", tmp_path) if verb == "run" else ()))
     assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
-    assert f"{sys.executable} -m pip install 'nullpose[study]'" in result.stderr
+    assert f"{sys.executable} -m pip install -e '.[study]'" in result.stderr

@@ -45,7 +45,7 @@ def test_powers_and_other_tables() -> None:
         ({"nodes_m": [0, 0, 0]}, r"nodes_m: given shape \(3,\).*\(n, 3\).*try .*\[\[east, north, up\]\]"),
         ({"nodes_m": np.zeros((4, 2))}, r"nodes_m: given shape \(4, 2\).*zeros for heights"),
         ({"nodes_m": np.zeros((3, 5))}, r"nodes_m: given shape \(3, 5\).*\.T"),
-        ({"nodes_m": [[0, 0, 0], [1, 2]]}, "nodes_m, node_power_w: .*rows of equal length"),
+        ({"nodes_m": [[0, 0, 0], [1, 2]]}, "nodes_m: .*rows of equal length"),
         ({"jammers_m": np.zeros((2, 2, 3))}, r"jammers_m: given shape \(2, 2, 3\)"),
         ({"node_power_w": [1.0, 2.0, 3.0]}, r"node_power_w: given shape \(3,\) with 2 nodes.*\(2,\)"),
     ],

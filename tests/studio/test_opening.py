@@ -18,7 +18,7 @@ def test_without_the_extra_one_line_says_what_to_do(
 ) -> None:
     """Where viser is missing, the message is one line with the command that installs it."""
     monkeypatch.setitem(sys.modules, "viser", None)
-    with pytest.raises(UsageError, match=r"-m pip install 'nullpose\[studio\]'") as raised:
+    with pytest.raises(UsageError, match=r"-m pip install -e '\.\[studio\]'") as raised:
         act()
     assert "\n" not in str(raised.value)
 

@@ -30,6 +30,7 @@ from nullpose.certificate.plain_tests import far_holds, kept_out_holds, off_band
 from nullpose.certificate.profile import ProfileField, loudest
 from nullpose.certificate.profile_test import profile_holds
 from nullpose.certificate.subject import sentence
+from nullpose.errors import checked
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -87,6 +88,7 @@ _TESTS = {
 }
 
 
+@checked
 def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | None = None) -> Verdict:
     """Check whether a certificate proves its claim, by code that imports nothing from the solver.
 

@@ -12,7 +12,7 @@ from nullpose.cli.antenna import antenna
 from nullpose.cli.check import check, schema
 from nullpose.cli.compare import compare
 from nullpose.cli.evaluate import evaluate
-from nullpose.cli.faults import FaultReportingGroup
+from nullpose.cli.faults import FaultReportingGroup, streams_checked
 from nullpose.cli.map import best_map
 from nullpose.cli.printing import replace_lacking_letters, say
 from nullpose.cli.reproduce import reproduce
@@ -23,6 +23,8 @@ from nullpose.cli.study_report import report
 from nullpose.cli.sweep import sweep
 from nullpose.cli.vehicle import vehicle
 from nullpose.cli.verify import verify
+
+_NARROWEST = 20  # columns that are set at least
 
 app = typer.Typer(
     name="nullpose",
@@ -75,5 +77,9 @@ def main() -> None:
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     # loading the libraries makes much that stays: to look through it for garbage takes a tenth of the start
     gc.set_threshold(100_000)
-    replace_lacking_letters()
-    app(prog_name="nullpose")
+    columns = os.environ.get("COLUMNS", "")
+    if columns.isdecimal() and int(columns) < _NARROWEST:
+        os.environ["COLUMNS"] = str(_NARROWEST)
+    with streams_checked():
+        replace_lacking_letters()
+        app(prog_name="nullpose")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import os
@@ -10,7 +11,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from types import FrameType
 from typing import Any
@@ -70,6 +71,23 @@ class FaultReportingGroup(TyperGroup):
                     error.add_note("This is a fault of nullpose, not of your input: please report it.")
                 raise
         return result
+
+
+@contextmanager
+def streams_checked() -> Iterator[None]:
+    """End the process with a line and a code where standard output is closed or full."""
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    try:
+        if sys.stdout is None:
+            raise OSError(errno.EBADF, "it is closed")
+        yield
+    except OSError as error:
+        if error.filename is not None or isinstance(error, NullposeError | BrokenPipeError):
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # the interpreter flushes at exit
+        with suppress(OSError):
+            say(f"error: standard output cannot be written: {error.strerror or error}", err=True)
+        sys.exit(BAD_INPUT)
 
 
 def _as_json(error: NullposeError, code: int) -> str:

@@ -215,10 +215,11 @@ def error_sizes(text: str | None) -> ErrorSizes:
     for part in [] if text is None else text.split(","):
         name, _, number = part.partition("=")
         try:
-            sizes[(names | {"eavesdroppers_m": "jammers_m"})[name.strip()]] = float(number)
+            size = (names | {"eavesdroppers_m": "jammers_m"})[name.strip()]
+            sizes[size] = float(number) if size not in sizes else float("twice")
         except (KeyError, ValueError):
             raise UsageError(
-                f"--off: given {part.strip()!r}; allowed: {', '.join(names)}, each with a number, as in "
+                f"--off: given {part.strip()!r}; allowed: {', '.join(names)}, each once with a number, as in "
                 "attitude_deg=2,jammers_m=200"
             ) from None
     return ErrorSizes(**sizes)

@@ -9,12 +9,13 @@ from typing import overload
 
 import numpy as np
 
+from nullpose.errors import checked
 from nullpose.physics.decibel import to_db
 from nullpose.physics.pose import Pose
 from nullpose.physics.poses import Poses
 from nullpose.physics.reception import Reception
 from nullpose.physics.types import FloatArray
-from nullpose.scenario import Scenario, require_scenario
+from nullpose.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,7 @@ def evaluate(scenario: Scenario, pose: Pose) -> tuple[Link, ...]: ...
 def evaluate(scenario: Scenario, pose: Poses) -> dict[str, FloatArray]: ...
 
 
+@checked
 def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[str, FloatArray]:
     """Evaluate every node's link at a pose, in the scenario's order (paper eqs. 1.1 to 2.1).
 
@@ -89,7 +91,6 @@ def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[
         >>> [(link.node, round(link.sinr_db, 3)) for link in nullpose.evaluate(scenario, pose)]
         [('S1', -4.084), ('S2', -4.084)]
     """
-    require_scenario(scenario)
     evaluation = scenario.objective_record.evaluate
     if isinstance(pose, Pose):
         return links_of(scenario, evaluation(_reception(scenario, pose)))
@@ -130,6 +131,7 @@ def min_sinr(scenario: Scenario, pose: Pose) -> float: ...
 def min_sinr(scenario: Scenario, pose: Poses) -> FloatArray: ...
 
 
+@checked
 def min_sinr(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
     """Evaluate the smallest SINR over the nodes at a pose, the paper's objective (eq. 2.2).
 
@@ -160,6 +162,7 @@ def min_margin(scenario: Scenario, pose: Pose) -> float: ...
 def min_margin(scenario: Scenario, pose: Poses) -> FloatArray: ...
 
 
+@checked
 def min_margin(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
     """Evaluate the smallest margin over the nodes at a pose: at least 1 where every requirement is met.
 
@@ -187,6 +190,7 @@ def min_secrecy_rate(scenario: Scenario, pose: Pose) -> float: ...
 def min_secrecy_rate(scenario: Scenario, pose: Poses) -> FloatArray: ...
 
 
+@checked
 def min_secrecy_rate(scenario: Scenario, pose: Pose | Poses) -> float | FloatArray:
     """Evaluate the smallest secrecy rate over the nodes at a pose, bits/s/Hz, at least 0.
 
@@ -211,7 +215,6 @@ def _smallest(
     of_nodes: Callable[[Reception], FloatArray], scenario: Scenario, pose: Pose | Poses
 ) -> float | FloatArray:
     """Evaluate the smallest number over the nodes, at a pose or at each of many."""
-    require_scenario(scenario)
     if isinstance(pose, Pose):
         return float(np.min(of_nodes(_reception(scenario, pose))))
     blocks = (of_nodes(_reception(scenario, block)) for block in pose.blocks())

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.errors import checked
 from nullpose.physics.pose import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -92,6 +93,7 @@ class PoseFrames:
         return frames if self.geodetic is None else frames | {"geodetic": self.geodetic.to_dict()}
 
 
+@checked
 def pose_frames(scenario: Scenario, pose: Pose) -> PoseFrames:
     """Convert a pose to east-north-up, to north-east-down and, if the scenario has an origin, on the Earth.
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import Antenna
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, checked
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
@@ -19,6 +19,9 @@ from nullpose.physics.rotation import (
 )
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
+
+FARTHEST_M = 1e8
+"""How far from the origin a pose may be, along each axis [m]."""
 
 
 def as_position(position_m: ArrayLike) -> FloatArray:
@@ -37,11 +40,14 @@ def as_position(position_m: ArrayLike) -> FloatArray:
             f"position_m: given an array of shape {position.shape}; allowed: three finite numbers, metres, "
             "an array of shape (3,); of several positions give one at a time, as in positions_m[0]"
         )
-    if not all(map(math.isfinite, position.tolist())):
-        raise UsageError(f"position_m: given {position.tolist()}; allowed: three finite numbers, metres")
+    if not np.all(np.abs(position) <= FARTHEST_M):
+        raise UsageError(
+            f"position_m: given {position.tolist()}; allowed: three finite numbers, metres, up to {FARTHEST_M:g}"
+        )
     return position
 
 
+@checked
 @dataclass(frozen=True, slots=True, eq=False)
 class Pose:
     """A position and an attitude, in the world frame (ENU).
@@ -82,6 +88,7 @@ class Pose:
             object.__setattr__(self, name, angle)
 
     @classmethod
+    @checked
     def from_axis(cls, position_m: ArrayLike, axis: ArrayLike, yaw_rad: float = 0.0) -> Pose:
         """Return the pose at a position whose dipole lies along an axis.
 
@@ -94,6 +101,7 @@ class Pose:
         return cls(np.asarray(position_m, dtype=float), float(roll_rad), float(pitch_rad), yaw_rad)
 
     @classmethod
+    @checked
     def of_airframe(cls, scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Pose:
         """Turn the scenario's vehicle so that its antenna lies along an axis, by the least tilt and then yaw.
 

@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import Antenna
-from nullpose.errors import UsageError
-from nullpose.physics.pose import Pose
+from nullpose.errors import UsageError, checked
+from nullpose.physics.pose import FARTHEST_M, Pose
 from nullpose.physics.rotation import antenna_axis, attitude_from_axis, rotation_world_from_body
 from nullpose.physics.types import FloatArray
 
 _BLOCK = 8192  # poses worked out together: their arrays stay in the processor's cache
 
 
+@checked
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
     """Many positions and attitudes in the world frame (ENU), as arrays; ``poses[i]`` is one :class:`Pose`.
@@ -51,21 +52,29 @@ class Poses:
         angles = [np.asarray(getattr(self, name), dtype=float) for name in names]
         shapes = {"position_m": position_m.shape} | dict(zip(names, (a.shape for a in angles), strict=True))
         counts = {shape[0] for shape in (position_m.shape[:-1], *(a.shape for a in angles)) if shape} or {1}
-        if position_m.shape[-1:] != (3,) or position_m.ndim > 2 or max(a.ndim for a in angles) > 1:
+        mount = np.asarray(self.mount_rad, dtype=float)
+        if (
+            position_m.shape[-1:] != (3,)
+            or position_m.ndim > 2
+            or max(a.ndim for a in angles) > 1
+            or mount.ndim
+        ):
             counts = set()
         if len(counts) != 1:
             raise UsageError(
                 f"poses: given {', '.join(f'{name} of shape {shape}' for name, shape in shapes.items())}; "
                 "allowed: position_m of shape (n, 3) or (3,), and angles of shape (n,) or one number"
             )
-        if not all(np.all(np.isfinite(each)) for each in (position_m, *angles, np.asarray(self.mount_rad))):
-            raise UsageError("poses: a number is not finite; allowed: finite metres and radians")
+        finite = all(np.all(np.isfinite(each)) for each in (*angles, mount))
+        if not finite or not np.all(np.abs(position_m) <= FARTHEST_M):
+            raise UsageError(f"poses: a number is not finite or beyond {FARTHEST_M:g} m")
         count = counts.pop()
         object.__setattr__(self, "position_m", np.broadcast_to(position_m, (count, 3)))
         for name, angle in zip(names, angles, strict=True):
             object.__setattr__(self, name, np.broadcast_to(angle, (count,)))
 
     @classmethod
+    @checked
     def from_axis(cls, position_m: ArrayLike, axis: ArrayLike) -> Poses:
         """Return the poses at yaw 0 whose dipoles lie along axes.
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.errors import UsageError
 from nullpose.physics.types import FloatArray
 
 
@@ -151,6 +152,10 @@ def attitude_from_axis(axis: ArrayLike, yaw_rad: ArrayLike = 0.0) -> tuple[Float
         Roll and pitch, each of the leading shape, radians.
     """
     u = np.asarray(axis, dtype=float)
+    if u.shape[-1:] != (3,) or not np.all(np.any(u, axis=-1)):
+        raise UsageError(
+            f"axis: given {np.array2string(u, threshold=9)}; allowed: three numbers, not all zero"
+        )
     cy, sy = np.cos(np.asarray(yaw_rad, dtype=float)), np.sin(np.asarray(yaw_rad, dtype=float))
     forward = cy * u[..., 0] + sy * u[..., 1]
     left = cy * u[..., 1] - sy * u[..., 0]

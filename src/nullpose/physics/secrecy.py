@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.antenna import GroundAntennas
 from nullpose.channel import PointChannels
+from nullpose.errors import UsageError
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -22,7 +23,7 @@ def _snr(
     noise_w: FloatArray,
 ) -> FloatArray:
     if scenario.transmitter is None:
-        raise ValueError("this scenario states no power of the drone; it needs a [transmitter]")
+        raise UsageError("scenario: it states no power of the drone; add a [transmitter]")
     # The channel is reciprocal: a point receives from the drone what the drone would receive from it.
     powers_w = np.full(points_m.shape[-2], scenario.transmitter.transmit_power_w)
     link = (scenario.reference_gain, scenario.antenna_record)

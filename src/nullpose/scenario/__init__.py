@@ -13,7 +13,7 @@ from nullpose.scenario.origin import Origin
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
 from nullpose.scenario.plausibility import doubts
 from nullpose.scenario.radio import Receiver, Transmitter
-from nullpose.scenario.scenario import Scenario, require_scenario
+from nullpose.scenario.scenario import Scenario
 
 __all__ = [
     "Airframe",
@@ -37,5 +37,4 @@ __all__ = [
     "json_schema",
     "load",
     "parse_override",
-    "require_scenario",
 ]

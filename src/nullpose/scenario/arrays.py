@@ -202,34 +202,48 @@ class PointArrays:
         return float(np.sum(powers_w / distance_squared))
 
 
-def rows_of_points(kind: str, points_m: ArrayLike, power_w: ArrayLike) -> list[dict[str, object]]:
+def rows_of_points(
+    kind: str, points_m: ArrayLike, power_w: ArrayLike | None, power_dbm: ArrayLike | None
+) -> list[dict[str, object]]:
     """Return the tables of points that are given as arrays.
 
     Args:
         kind: ``"node"`` or ``"jammer"``, for messages.
         points_m: positions east, north, up [m], shape (n, 3), or an empty list.
-        power_w: transmit powers [W], shape (n,) or one for all.
+        power_w: transmit powers [W], shape (n,) or one for all; 1 if neither these are given nor
+        power_dbm: the same in dBm.
 
     Raises:
         UsageError: shapes that do not go together.
     """
-    try:
-        places, powers = np.asarray(points_m, dtype=np.float64), np.asarray(power_w, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise UsageError(
-            f"{kind}s_m, {kind}_power_w: given values that make no array of numbers; allowed: numbers in "
-            "rows of equal length"
-        ) from None
+    places = _numbers(f"{kind}s_m", points_m)
     require_usage(
         places.size == 0 or places.shape[1:] == (3,),
         f"{kind}s_m: given shape {places.shape}; allowed: (n, 3), a row of east, north and up in metres "
         "for each; try its transpose .T, [[east, north, up]] for one point, or zeros for heights",
     )
-    places = places.reshape(-1, 3)
-    require_usage(
-        powers.shape in ((), (len(places),)),
-        f"{kind}_power_w: given shape {powers.shape} with {len(places)} {kind}s; "
-        f"allowed: one number in watts, or shape ({len(places)},)",
-    )
-    rows = zip(places.tolist(), np.broadcast_to(powers, len(places)).tolist(), strict=True)
-    return [{"position_m": place, "power_w": power} for place, power in rows]
+    columns = {"position_m": places.reshape(-1, 3)}
+    powers = {"power_w": 1.0 if power_w is None and power_dbm is None else power_w, "power_dbm": power_dbm}
+    count = len(columns["position_m"])
+    for key, values in powers.items():
+        if values is not None:
+            power = _numbers(f"{kind}_{key}", values)
+            require_usage(
+                power.shape in ((), (count,)),
+                f"{kind}_{key}: given shape {power.shape} with {count} {kind}s; allowed: one number, or "
+                f"shape ({count},)",
+            )
+            columns[key] = np.broadcast_to(power, count)
+    return [
+        dict(zip(columns, row, strict=True))
+        for row in zip(*map(np.ndarray.tolist, columns.values()), strict=True)
+    ]
+
+
+def _numbers(name: str, values: ArrayLike) -> Floats:
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"{name}: given values that make no array of numbers; allowed: numbers, in rows of equal length"
+        ) from None

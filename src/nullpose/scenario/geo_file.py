@@ -21,6 +21,7 @@ import shapely.geometry
 from shapely.errors import ShapelyError
 from shapely.geometry.base import BaseGeometry
 
+from nullpose.errors import install_command
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, refusal, require
 from nullpose.scenario.geo_json import members_of, require_wgs84, value_of
@@ -154,7 +155,7 @@ def _layers_of_gdal(source: Path | bytes) -> list[tuple[str, Any]]:
     try:
         import pyogrio
     except ImportError:
-        raise refusal("", "this kind of file needs pyogrio; in a clone: pip install -e '.[gis]'") from None
+        raise refusal("", "this kind of file needs pyogrio; " + install_command("gis")) from None
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         try:

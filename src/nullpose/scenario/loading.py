@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from nullpose.errors import ScenarioError
+from nullpose.errors import ScenarioError, checked
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import ONLY_LOCAL, refusal, require
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
@@ -23,6 +23,7 @@ _EARLY = re.compile(
 _LOG = logging.getLogger("nullpose")
 
 
+@checked
 def load(
     path: str | os.PathLike[str],
     *,

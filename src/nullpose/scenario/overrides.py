@@ -10,7 +10,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
-from nullpose.errors import Fault, ScenarioError
+from nullpose.errors import Fault, ScenarioError, checked
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import call_each, path_of, raise_all, refusal, require
 from nullpose.scenario.origin import POINT_LISTS
@@ -63,6 +63,7 @@ def parse_override(text: str) -> Override:
     return Override(path, _value(path, value))
 
 
+@checked
 def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> Scenario:
     """Return the scenario with the given values in place of its own, validated anew.
 

@@ -118,11 +118,15 @@ class Scenario(Section, PointArrays):
         nodes_m: ArrayLike,
         jammers_m: ArrayLike = (),
         *,
-        node_power_w: ArrayLike = 1.0,
-        jammer_power_w: ArrayLike = 1.0,
-        noise_w: float,
+        node_power_w: ArrayLike | None = None,
+        jammer_power_w: ArrayLike | None = None,
+        node_power_dbm: ArrayLike | None = None,
+        jammer_power_dbm: ArrayLike | None = None,
+        noise_w: float | None = None,
+        noise_dbm: float | None = None,
         altitude_m: tuple[float, float],
         reference_gain_db: float | None = None,
+        frequency_hz: float | None = None,
         **more: object,
     ) -> Scenario:
         """Make the scenario of nodes and jammers that are given as arrays.
@@ -133,12 +137,16 @@ class Scenario(Section, PointArrays):
         Args:
             nodes_m: positions east, north, up [m], shape (n, 3).
             jammers_m: likewise, (m, 3); none if left out.
-            node_power_w: transmit powers [W], (n,) or one for all.
+            node_power_w: transmit powers [W], (n,) or one for all; 1 if none are given.
             jammer_power_w: likewise, (m,) or one for all.
-            noise_w: noise power of the drone's receiver [W].
+            node_power_dbm: in place of node_power_w, the same in dBm.
+            jammer_power_dbm: likewise.
+            noise_w: noise power of the drone's receiver [W]; or else
+            noise_dbm: the same in dBm, unless ``receiver`` states it.
             altitude_m: lowest and highest altitude of the vehicle [m].
-            reference_gain_db: path gain between isotropic antennas 1 m apart [dB]. If None, it is 0 as in
-                the paper, unless ``receiver`` states it or ``frequency_hz``.
+            reference_gain_db: path gain between isotropic antennas 1 m apart [dB]; or else
+            frequency_hz: carrier frequency [Hz], from which it follows. If neither is given, it is 0 dB as in
+                the paper, unless ``receiver`` states one.
             more: other keys of a scenario, such as ``name`` or ``airframe``, with their tables; of
                 ``airspace`` and ``receiver`` what is not given above.
 
@@ -154,18 +162,23 @@ class Scenario(Section, PointArrays):
             Scenario('paper': 2 nodes, 1 jammer, min-sinr, altitude 8 to 30 m)
         """
         points = {
-            "nodes": rows_of_points("node", nodes_m, node_power_w),
-            "jammers": rows_of_points("jammer", jammers_m, jammer_power_w),
+            "nodes": rows_of_points("node", nodes_m, node_power_w, node_power_dbm),
+            "jammers": rows_of_points("jammer", jammers_m, jammer_power_w, jammer_power_dbm),
         }
+        receiver = {"noise_w": noise_w, "noise_dbm": noise_dbm, "frequency_hz": frequency_hz}
+        receiver |= {"reference_gain_db": reference_gain_db}
         tables: dict[str, dict[str, object]] = {
-            "airspace": {"altitude_m": list(altitude_m)},
-            "receiver": {"noise_w": noise_w},
+            "airspace": {"altitude_m": altitude_m},
+            "receiver": {key: value for key, value in receiver.items() if value is not None},
         }
         for key, table in tables.items():
-            added = more.get(key)
-            table |= dict(added) if isinstance(added, Mapping) else {}
-        if reference_gain_db is not None or "frequency_hz" not in tables["receiver"]:
-            tables["receiver"].setdefault("reference_gain_db", reference_gain_db or 0.0)
+            added = more.pop(key, {})
+            added = added.to_dict() if isinstance(added, Section) else added
+            if not isinstance(added, Mapping):
+                raise WrongTypeError(f"{key}: given {described(added)}; allowed: a table of its other keys")
+            table |= added
+        if not tables["receiver"].keys() & {"frequency_hz", "reference_gain_db"}:
+            tables["receiver"]["reference_gain_db"] = 0.0
         return cls.from_dict({**points, **more, **tables})
 
     @classmethod
@@ -262,18 +275,3 @@ class Scenario(Section, PointArrays):
     def axis_band(self) -> tuple[float, float]:
         """Least and greatest ``u_z^2`` of the axes that the airframe reaches; (0, 1) for all of them."""
         return (0.0, 1.0) if self.airframe is None else self.airframe.axis_band
-
-
-def require_scenario(value: object) -> None:
-    """Refuse what is no scenario, such as the path of its file, with advice.
-
-    Args:
-        value: what was given for a scenario.
-
-    Raises:
-        WrongTypeError: it is none.
-    """
-    if not isinstance(value, Scenario):
-        is_path = isinstance(value, str | os.PathLike)
-        call = f"from_file({value!r})" if is_path else "from_dict(...) or Scenario.from_arrays(...)"
-        raise WrongTypeError(f"scenario: got {described(value)}; must be a Scenario; try Scenario.{call}")

@@ -20,6 +20,7 @@ from pydantic import (
 )
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
+from nullpose.errors import WrongTypeError
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place, collected, rejection, reworded, scenario_error
 from nullpose.scenario.rules import MOST_MEMBERS
@@ -43,7 +44,10 @@ class Section(BaseModel):
     unstated: ClassVar[frozenset[str]] = frozenset()
     """Keys that ``to_dict`` leaves out while they have their default."""
 
-    def __init__(self, /, **data: object) -> None:
+    def __init__(self, /, *nameless: object, **data: object) -> None:
+        if nameless:
+            name = type(self).__name__
+            raise WrongTypeError(f"{name}: given a value without its key; allowed: keys, or {name}.from_dict")
         try:
             super().__init__(**data)
         except ValidationError as error:

@@ -9,13 +9,13 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, checked
 from nullpose.physics import Pose
 from nullpose.physics.pose import as_position
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.schemes import Scheme, as_scheme
-from nullpose.scenario import Scenario, require_scenario
+from nullpose.scenario import Scenario
 from nullpose.solver.array import solve_array
 from nullpose.solver.by_scheme import solve_by_scheme
 from nullpose.solver.compiling import working_clock
@@ -26,6 +26,7 @@ from nullpose.solver.robust.exchange import ROBUST_GAP, solve_robust
 from nullpose.solver.solve_and_prove import solve_and_prove
 
 
+@checked
 def solve(
     scenario: Scenario,
     scheme: Scheme | str = Scheme.OPTIMUM,
@@ -75,7 +76,6 @@ def solve(
         >>> nullpose.solve(unsure, robust=True, gap=0.1).objective.value < result.objective.value
         True
     """
-    require_scenario(scenario)
     scheme, limits = as_scheme(scheme), SolveOptions(**options, on_progress=on_progress)
     if (robust or scenario.array is not None) and (scheme is not Scheme.OPTIMUM or null_jammer is not None):
         refused = f"scheme {scheme.value}" if null_jammer is None else f"null jammer {null_jammer!r}"
@@ -107,6 +107,7 @@ def solve(
     )
 
 
+@checked
 def compare(
     scenario: Scenario,
     *,
@@ -139,7 +140,6 @@ def compare(
         Maximum gain      -0.700 dB
         Vertical          -2.160 dB
     """
-    require_scenario(scenario)
     scenario = scenario.without_array
     applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]
     solutions = []

@@ -14,7 +14,7 @@ from nullpose.certificate.certificate import AFFINE, OFF_BAND, PROFILE, TOWARDS,
 from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.certificate.profile import profiles_of
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, checked
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
@@ -171,6 +171,7 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     return fields
 
 
+@checked
 def certificate_of(solution: Result) -> Certificate:
     """Write the certificate of a result: everything that a verifier needs to check its bound.
 

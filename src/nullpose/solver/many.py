@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.errors import SolveError, UsageError
+from nullpose.errors import SolveError, UsageError, checked
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import FloatArray, IntArray, Quantity
 from nullpose.physics import Pose, evaluate, to_db
@@ -130,6 +130,7 @@ class ManySolutions:
         )
 
 
+@checked
 def solve_many(
     scenarios: Sequence[Scenario],
     *,

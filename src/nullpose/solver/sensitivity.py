@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, checked
 from nullpose.files import PlainTable
 from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import ErrorCase, ratios_under
@@ -32,6 +32,7 @@ _FLAT = 1e-2  # cosine between a step and the slope's change, below which nothin
 _LEAST = 1e-300  # ratio that counts for a node in a null, whose logarithm is finite
 
 
+@checked
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ErrorSizes:
     """The largest errors that are tried.
@@ -112,6 +113,7 @@ class Sensitivity:
         return table
 
 
+@checked
 def sensitivity(scenario: Scenario, pose: Pose, sizes: ErrorSizes | None = None) -> Sensitivity:
     """Search the worst value of a pose over errors of attitude, position and jammers.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import rich
 
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, install_command
 from nullpose.studio.guard import Guard
 
 if TYPE_CHECKING:
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 LOOPBACK = "127.0.0.1"
 """The address that only programs on this machine reach."""
 
-_PIP = f"{sys.executable} -m pip install"
-_INSTALL = f"the studio needs viser, which is not installed; run: {_PIP} 'nullpose[studio]'"
+_INSTALL = f"the studio needs viser, which is not installed; {install_command('studio')}"
 
 
 @contextmanager
@@ -66,7 +65,7 @@ def open_server(host: str, port: int) -> tuple[ViserServer, str]:
         server.stop()
         raise UsageError(
             f"viser {viser.__version__} opens its server in a way that nullpose cannot guard; any web page "
-            f"could use the studio; run: {_PIP} 'viser>=1.1,<2'"
+            f"could use the studio; run: {sys.executable} -m pip install 'viser>=1.1,<2'"
         )
     server.request_share_url = lambda verbose=True: None  # a page could ask for a tunnel from the internet
     # no shadows, nothing mirrored: without a graphics card those two took half of the time of a picture

@@ -8,8 +8,8 @@ from html import escape
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 
-from nullpose.errors import UsageError
-from nullpose.scenario import Scenario, require_scenario
+from nullpose.errors import UsageError, checked
+from nullpose.scenario import Scenario
 from nullpose.solver import Result, Scheme, solve
 from nullpose.solver.robust import RobustDetails
 from nullpose.studio.answer import answer_of, with_errors
@@ -20,6 +20,7 @@ from nullpose.studio.opening import require_viser
 from nullpose.studio.state import State
 
 
+@checked
 def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> Path | None:
     """Show a scene in 3-D with its best pose: in a notebook below the cell, otherwise in the browser.
 
@@ -45,7 +46,6 @@ def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> 
     """
     require_viser()
     if not isinstance(found, Result):
-        require_scenario(found)
         found = solve(OPTIMUM.on(found))
     page = _page(found, dark=dark)
     ipython = sys.modules.get("IPython")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nullpose.errors import require_usage
+from nullpose.errors import checked, require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, evaluate
@@ -79,6 +79,7 @@ class Evaluation:
         }
 
 
+@checked
 def evaluate_against(best: Result, poses: Iterable[Pose]) -> Evaluation:
     """Evaluate poses, each with the bound of a result.
 

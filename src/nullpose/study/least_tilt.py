@@ -15,11 +15,11 @@ from typing import Unpack
 
 import numpy as np
 
-from nullpose.errors import SolveError, require_usage
+from nullpose.errors import SolveError, checked, require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import FloatArray
 from nullpose.physics import Pose
-from nullpose.scenario import Airframe, Scenario, require_scenario
+from nullpose.scenario import Airframe, Scenario
 from nullpose.solver import Result, SolveKeywords, Status, solve
 from nullpose.solver.rigour import Rigour
 from nullpose.study.case import SHARE
@@ -118,6 +118,7 @@ class LeastTilt:
         }
 
 
+@checked
 def least_tilt(
     scenario: Scenario,
     *,
@@ -151,7 +152,6 @@ def least_tilt(
         >>> found.best.mount_deg, found.best.suffices_deg
         (80.0, 0.0)
     """
-    require_scenario(scenario)
     require_usage(0.0 < share <= 1.0, f"share (--reach): given {share!r}; allowed: above 0 to 1")
     for mount_deg in mounts_deg:
         require_usage(

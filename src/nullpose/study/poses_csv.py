@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import math
+import os
 from collections.abc import Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
-from nullpose.errors import Fault, ScenarioError, UsageError
+from nullpose.errors import Fault, ScenarioError, UsageError, checked
 from nullpose.physics import Poses
 from nullpose.scenario.faults import call_each, raise_all, refusal, require
 from nullpose.scenario.origin import Origin
@@ -24,7 +25,10 @@ _NO_ORIGIN = "lat_deg and lon_deg need the [origin] of a scenario; add it, or gi
 _KIND = FileKind("a file of poses", "poses.csv", (".csv",))
 
 
-def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = None) -> Poses:
+@checked
+def poses_from_csv(
+    path: str | os.PathLike[str], mount_rad: float = 0.0, origin: Origin | None = None
+) -> Poses:
     """Return the poses of a CSV file.
 
     Args:
@@ -48,7 +52,7 @@ def poses_from_csv(path: Path, mount_rad: float = 0.0, origin: Origin | None = N
         True
     """
     try:
-        rows = csv.DictReader(io.StringIO(file_text(path, _KIND), newline=""), skipinitialspace=True)
+        rows = csv.DictReader(io.StringIO(file_text(Path(path), _KIND), newline=""), skipinitialspace=True)
         header = rows.fieldnames or ()
         altitude = next((key for key in ALTITUDE_KEYS if key in header), ALTITUDE_KEYS[0])
         earthly = "x_m" not in header and ("lat_deg" in header or "lon_deg" in header)

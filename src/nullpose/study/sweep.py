@@ -15,10 +15,10 @@ from typing import Unpack
 
 import numpy as np
 
-from nullpose.errors import Fault, ScenarioError, UsageError, require_usage
+from nullpose.errors import Fault, ScenarioError, UsageError, checked, require_usage
 from nullpose.objectives import Quantity
 from nullpose.problem.schemes import Scheme
-from nullpose.scenario import Override, Scenario, apply_overrides, require_scenario
+from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.solver import Result, SolveKeywords, SolveOptions, Status, solve
 from nullpose.solver.objective import status_of
 from nullpose.solver.result import Stats
@@ -86,6 +86,7 @@ def from_freer(scenario: Scenario, freer: Sequence[Result], options: SolveOption
 _DIGITS = 12  # significant digits kept, so that a decade lands on 0.01 and not on 0.009999999999999998
 
 
+@checked
 def sweep(
     scenario: Scenario,
     path: str,
@@ -134,7 +135,6 @@ def sweep(
           100 W  optimum        0.815 dB
           100 W  maximum-gain  -1.116 dB
     """
-    require_scenario(scenario)
     chosen, sign = SolveOptions(**options), freedom(path, scenario)
     scenarios = _scenarios_along(scenario, path, values)
     if mounts_deg is not None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nullpose.errors import require_usage
+from nullpose.errors import checked, require_usage
 from nullpose.physics import objective_value, to_db
 from nullpose.physics.sinr import received_from_sources_w
 from nullpose.physics.types import FloatArray
@@ -47,6 +47,7 @@ def map_extent_m(scenario: Scenario, position_m: FloatArray) -> tuple[FloatArray
     return middle - half, middle + half
 
 
+@checked
 def value_map(
     result: Result,
     *,

@@ -8,11 +8,11 @@ from collections.abc import Callable, Sequence
 from types import MappingProxyType
 from typing import Unpack
 
-from nullpose.errors import SolveError
+from nullpose.errors import SolveError, checked
 from nullpose.files import PlainTable
 from nullpose.objectives import USUAL, Quantity
 from nullpose.problem.schemes import Scheme
-from nullpose.scenario import Airframe, Array, Scenario, require_scenario
+from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
 from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
@@ -70,7 +70,6 @@ def compare_schemes(
         UsageError: a bad seed or limit.
         SolveError: no pose reaches every node.
     """
-    require_scenario(scenario)
     scenario = scenario.without_array
     reasons = {scheme: scheme.not_applicable(scenario) for scheme in Scheme}
     cases = [Case(name=scheme.value, scheme=scheme) for scheme in Scheme if not reasons[scheme]]
@@ -83,6 +82,7 @@ def compare_schemes(
     return _table(scenario, cases, solve_case, options, on_progress, left_out)
 
 
+@checked
 def compare_airframes(
     scenario: Scenario,
     *,
@@ -116,7 +116,6 @@ def compare_airframes(
         >>> nullpose.study.least_sufficient(found).name
         'level-best'
     """
-    require_scenario(scenario)
     is_stated = options.get("gap") is not None
     options["gap"] = SolveOptions(**options).of(scenario).target
     whole = AIRFRAME_CASES[-1].on(scenario)

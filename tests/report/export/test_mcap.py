@@ -73,6 +73,6 @@ def test_without_the_library(placed: Placed, tmp_path: Path, monkeypatch: pytest
         lambda: require_foxglove(placed("alt_m").scenario),
         lambda: write_export(placed("alt_m"), path),
     ):
-        with pytest.raises(UsageError, match=r"pip install 'nullpose\[flight\]'"):
+        with pytest.raises(UsageError, match=r"pip install -e '\.\[flight\]'"):
             refused()
     assert not path.exists()

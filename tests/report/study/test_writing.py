@@ -220,6 +220,6 @@ def test_faults(make: Make, ladder: Ladder, tmp_path: Path, monkeypatch: pytest.
     assert not list((folder / "report").glob("*.csv"))
     monkeypatch.setattr(folder_module, "find_spec", lambda name: None if name == "pyarrow" else sys)
     with pytest.raises(
-        UsageError, match=r"^a study needs pyarrow, not installed here; run: .*python.* -m pip install"
+        UsageError, match=r"^a study needs pyarrow, not installed here; in a clone .*python.* -m pip install"
     ):
         report_study(folder)

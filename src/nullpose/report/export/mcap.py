@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.errors import require_usage
+from nullpose.errors import install_command, require_usage
 from nullpose.files import PlainTable
 from nullpose.physics import Pose, pose_frames
 from nullpose.report.export.places import marked_points
@@ -32,7 +32,8 @@ def require_foxglove(_: Scenario) -> None:
     Raises:
         UsageError: it is not installed.
     """
-    require_usage(find_spec("foxglove"), "--export: .mcap needs foxglove-sdk; pip install 'nullpose[flight]'")
+    need = "--export: .mcap needs foxglove-sdk; "
+    require_usage(find_spec("foxglove"), need + install_command("flight"))
 
 
 def mcap_file(result: Result) -> bytes:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.channel.model import BY_ELEVATION, CONSTANT
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, checked
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.physics import ErrorCase, ratios_under, rotation_between
 from nullpose.physics.gain import worst_polarised
@@ -31,6 +31,7 @@ _STAGE_CELLS = 100_000  # cells of a node after which the level is lowered
 _STAGE_CELLS_ELLIPSOIDS, _STAGE_CELLS_DIPOLES = 4_000, 1_000  # whose bounds take so much longer
 
 
+@checked
 def guarantee(
     scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, *, accuracy: float = ACCURACY
 ) -> Guarantee:

@@ -6,7 +6,6 @@ import json
 import os
 import re
 import socket
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import IO
 
-from nullpose.errors import OutputError, UsageError, require_usage
+from nullpose.errors import OutputError, UsageError, install_command, require_usage
 from nullpose.files import PlainTable, check_outputs, parse_json, read_bytes, refusals, replacing, write_text
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.study.monte_carlo.draw import quantity_of
@@ -248,8 +247,7 @@ def require_extra(*more: str) -> None:
     missing = [name for name in (*_PACKAGES, *more) if find_spec(name) is None]
     require_usage(
         not missing,
-        f"a study needs {', '.join(missing)}, not installed here; run: {sys.executable} -m pip install "
-        "'nullpose[study]'",
+        f"a study needs {', '.join(missing)}, not installed here; {install_command('study')}",
     )
 
 

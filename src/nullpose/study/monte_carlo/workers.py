@@ -101,7 +101,7 @@ class Workers:
         except Exception as error:
             raise ClusterError(
                 f"workers: those at {self._place} cannot do the work ({type(error).__name__}: {error}); they "
-                "need nullpose[study] as it is here: install it and start them again"
+                "need nullpose and its extra study as it is here: install it and start them again"
             ) from error
 
     def lost(self) -> ClusterError:
