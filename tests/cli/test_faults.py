@@ -224,3 +224,34 @@ def test_every_fault_is_there(run: Run, paper: str) -> None:
     settings = [word for i in range(30) for word in ("--set", f"jammers.M{i}.power_w=1")]
     told = json.loads(run("check", paper, "--json", *settings).stderr)
     assert (told["error"], len(told["faults"])) == ("ScenarioError", 30)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("verb", [("--version",), ("--help",), ("schema",), ("check", "examples/paper.toml")])
+@pytest.mark.parametrize("stream", [">/dev/full", ">&-"])
+def test_an_output_that_takes_nothing_is_one_line(verb: tuple[str, ...], stream: str) -> None:
+    """A full disk or a closed output ends with a line on standard error and the code of bad input."""
+    command = f'"$0" -m nullpose "$@" {stream}'
+    done = subprocess.run(["sh", "-c", command, sys.executable, *verb], capture_output=True, text=True)
+    assert done.returncode == BAD_INPUT
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("error: standard output cannot be written: ")
+
+
+def test_narrow_terminals_count_as_twenty_columns() -> None:
+    """Tables are still words then, not letters below each other."""
+    command = [sys.executable, "-m", "nullpose", "check", "examples/paper.toml"]
+    outputs = [
+        subprocess.run(command, capture_output=True, env=os.environ | {"COLUMNS": columns}).stdout
+        for columns in ("0", "20")
+    ]
+    assert outputs[0] == outputs[1]
+    assert b"Airspace" in outputs[0]
+
+
+def test_an_error_that_is_named_twice_is_refused(run: Run, good: Path) -> None:
+    """One size of each; jammers_m and its other name are the same one."""
+    for sizes in ("attitude_deg=1,attitude_deg=2", "jammers_m=1,eavesdroppers_m=2"):
+        assert_refused(
+            run("solve", good, "--fast", "--off", sizes), f"--off: given '{sizes.split(',')[1]}'", "once"
+        )

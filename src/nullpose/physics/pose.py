@@ -41,9 +41,8 @@ def as_position(position_m: ArrayLike) -> FloatArray:
             "an array of shape (3,); of several positions give one at a time, as in positions_m[0]"
         )
     if not np.all(np.abs(position) <= FARTHEST_M):
-        raise UsageError(
-            f"position_m: given {position.tolist()}; allowed: three finite numbers, metres, up to {FARTHEST_M:g}"
-        )
+        allowed = f"three finite numbers, metres, up to {FARTHEST_M:g}"
+        raise UsageError(f"position_m: given {position.tolist()}; allowed: {allowed}")
     return position
 
 
