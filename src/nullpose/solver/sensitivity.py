@@ -157,7 +157,9 @@ class _Search:
 
     def worst(self) -> FloatArray:
         """Search the smallest ratio without errors, then of each kind of error, (5,)."""
-        kind, samples = np.minimum(self.ball, 2), self._samples()
+        kind, samples = np.minimum(self.ball, 2), self.random.normal(size=(_SAMPLES, len(self.ball)))
+        samples /= self._lengths(samples)  # to the borders, and half of them inside
+        samples[::2] *= self.random.random((_SAMPLES // 2, len(self.first)))[:, self.ball] ** 0.4
         free = np.array([kind == 0, kind == 1, kind == 2, kind >= 0])
         drawn = np.where(free[:, None], samples, 0.0)
         order = np.argsort(self._logs(drawn), axis=1)
@@ -208,7 +210,8 @@ class _Search:
         steps = np.concatenate(
             [lengths[:, :, self.ball] * in_balls[:, None], _NEWTON[:, None] * newton], axis=1
         )
-        return self._projected(points[:, None] - steps)
+        ends = points[:, None] - steps
+        return np.asarray(ends / np.maximum(1.0, self._lengths(ends)))  # to the border if beyond
 
     def _slope(self, points: FloatArray, logs: FloatArray, free: NDArray[np.bool_]) -> FloatArray:
         """Evaluate the slope of the logarithm at each point, zero where nothing is free, (n, d)."""
@@ -229,17 +232,6 @@ class _Search:
             ratios = self.ratios_under(replace(self.unmoved, **errors)).reshape(*points.shape[:-1], -1)
         ratios = np.where(np.isnan(ratios), np.inf, ratios)
         return np.asarray(np.log(np.maximum(_LEAST, np.min(ratios, axis=-1))))
-
-    def _samples(self) -> FloatArray:
-        """Spread points over all balls, half of them on the borders, (n, d)."""
-        samples = self.random.normal(size=(_SAMPLES, len(self.ball)))
-        samples /= self._lengths(samples)
-        samples[::2] *= self.random.random((len(samples[::2]), len(self.first)))[:, self.ball] ** 0.4
-        return samples
-
-    def _projected(self, points: FloatArray) -> FloatArray:
-        """Move the part in each ball to its border if it is beyond."""
-        return np.asarray(points / np.maximum(1.0, self._lengths(points)))
 
     def _lengths(self, points: FloatArray) -> FloatArray:
         """Measure the part in each ball, at each of its coordinates, (..., d)."""
