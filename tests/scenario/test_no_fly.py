@@ -1,12 +1,14 @@
 """Zones that the vehicle stays out of."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.scenario import NoFlyZone
+from nullpose.errors import ScenarioError
+from nullpose.scenario import NoFlyZone, Scenario
 from scenes import require_fault
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -83,3 +85,11 @@ def test_a_box_is_a_polygon_too(seed: int) -> None:
 def test_what_is_no_zone(values: dict[str, object], path: str, words: str) -> None:
     """No shape, several, half of one, and numbers out of range are refused, once each."""
     require_fault(lambda: NoFlyZone.from_dict(values), path, words)
+
+
+def test_more_zones_than_corners_are_refused_by_their_number(paper: Callable) -> None:
+    """Each has a corner at least, so they are counted before any of them is read."""
+    data = paper().to_dict()
+    data["airspace"]["no_fly"] = [{"centre_m": "unread"}] * 10_000
+    with pytest.raises(ScenarioError, match="a list of 10000 values, must be a list of at most 5000 tables"):
+        Scenario.from_dict(data)

@@ -16,6 +16,7 @@ from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults
 from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
 from nullpose.scenario.polygon import (
+    MOST_CORNERS,
     EarthlyPolygon,
     Polygon,
     counter_clockwise_m,
@@ -122,7 +123,7 @@ class Airspace(Section):
         "are added to those in tables headed [[airspace.no_fly]].",
         "zones.kml",
     )
-    no_fly: Annotated[tuple[NoFlyZone, ...], list_of_tables("airspace.no_fly")] = Field(
+    no_fly: Annotated[tuple[NoFlyZone, ...], list_of_tables("airspace.no_fly", most=MOST_CORNERS)] = Field(
         default=(),
         description="Tables headed [[airspace.no_fly]], one for each zone that the vehicle stays out of; "
         "none if left out.",
