@@ -1,7 +1,11 @@
 """Which channel a scenario and its points state."""
 
+from collections.abc import Callable
+
+import numpy as np
 import pytest
 
+from nullpose.errors import ScenarioError
 from nullpose.scenario import Channel, Scenario, apply_overrides, json_schema, load
 from nullpose.scenario.toml_file import tables_of
 from scenes import NODE, faults_of, small
@@ -111,3 +115,15 @@ def test_schema_takes_a_name_or_a_table() -> None:
     assert word == {"type": "string", "enum": ["free-space"]}
     assert table == {"$ref": "#/$defs/Channel"}
     assert "oneOf" not in schema["$defs"]["Channel"]
+
+
+def test_no_average_is_asked_for_where_buildings_decide(paper: Callable) -> None:
+    """The losses with and without line of sight count there; without buildings the average is missing."""
+    data = paper().to_dict() | {"channel": {"model": "elevation", "environment": "urban"}}
+    with pytest.raises(ScenarioError, match=r"channel\.average: missing, .*unless buildings decide"):
+        Scenario.from_dict(data)
+    data["buildings"] = [{"polygon_m": [[5, 20], [9, 20], [9, 30], [5, 30]], "height_m": 6.0}]
+    asked = Scenario.from_dict(data | {"channel": data["channel"] | {"average": "db"}})
+    unasked = Scenario.from_dict(data)
+    np.testing.assert_array_equal(unasked.source_channels.rows, asked.source_channels.rows)
+    np.testing.assert_array_equal(unasked.source_channels.strengths, asked.source_channels.strengths)

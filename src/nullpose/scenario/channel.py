@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field, SkipValidation
 
@@ -19,7 +19,7 @@ from nullpose.scenario.ways import Ways
 EnvironmentName = Annotated[str, Choice("an environment", tuple(ENVIRONMENTS))]
 """The type of a key that names a built-up area."""
 _NUMBERS = ("a", "b", "los_loss_db", "nlos_loss_db")
-_DEFAULTS = {"reference_distance_m": 1.0}
+_DEFAULTS: dict[str, Any] = {"reference_distance_m": 1.0, "average": "power"}
 
 
 BLOCKED_DB = 20.0
@@ -94,7 +94,7 @@ class Channel(Section):
     average: Annotated[str, Choice("an average", AVERAGES)] | None = optional(
         'What counts of links with and without line of sight, for elevation: "power", the mean power; "db", '
         'the mean of the losses in dB, as published; or "guaranteed": nodes never have line of sight, and '
-        "jammers and eavesdroppers always have.",
+        "jammers and eavesdroppers always have. Without meaning among buildings, which decide.",
         "power",
     )
     blocked_loss_db: (
@@ -140,6 +140,11 @@ class Channel(Section):
             )
 
     @property
+    def is_by_sight(self) -> bool:
+        """Whether its loss depends on line of sight, which elevation or buildings decide."""
+        return not hasattr(self, "law") and "average" in CHANNELS[self.model].keys
+
+    @property
     def gain_distance_m(self) -> float:
         """The distance at which the reference gain holds [m]."""
         return self.reference_distance_m or _DEFAULTS["reference_distance_m"]
@@ -151,7 +156,7 @@ class Channel(Section):
             among_buildings: whether these decide on line of sight: then there is neither probability nor
                 average.
         """
-        sure = among_buildings and self.average is not None
+        sure = among_buildings and self.is_by_sight
         used = [key for key in _keys_of(self.model) if not (sure and key in ("a", "b", "average"))]
         keys = [key for key in used if getattr(self, key) is not None]
         numbers = [f"{key.replace('_', ' ')} {getattr(self, key)}" for key in keys]
@@ -178,7 +183,7 @@ class Channel(Section):
             is_interferer: whether it is that of a jammer or an eavesdropper.
             blocked_loss_db: of any other model, where a building blocks it.
         """
-        if self.average is None:
+        if not self.is_by_sight:
             return self.make(is_interferer).behind_buildings(ratio_from_db(-blocked_loss_db))
         sure = self.model_copy(update={"average": "guaranteed"})
         seen, hidden = sure.make(True), sure.make(False)

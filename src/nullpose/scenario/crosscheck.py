@@ -134,7 +134,7 @@ def _gain_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Ite
 def _channel_faults(
     scenario: Scenario, tables: Mapping[Place, Scenario | GroundPoint]
 ) -> Iterator[tuple[Place, str]]:
-    """Yield the reference distances that the drone comes closer than, or where the gain is not known.
+    """Yield averages that are missing, and reference distances that do not go with the rest.
 
     Args:
         scenario: as for ``scenario_faults``.
@@ -147,6 +147,13 @@ def _channel_faults(
         place for place, channel in channels.items() if place and channel.shadow_margin_m is not None
     ]:
         yield (*place, "channel", "shadow_margin_m"), "counts for all points; write it in the table [channel]"
+    for place, channel in {} if scenario.buildings else channels.items():
+        if channel.model == "elevation" and channel.is_by_sight and channel.average is None:
+            words = "power, db or guaranteed, unless buildings decide on line of sight"
+            yield (
+                (*place, "channel", "average"),
+                f'missing, but model = "elevation" needs it: {words}; add it',
+            )
     for place in [place for place, channel in channels.items() if channel.model == "power-law"]:
         d0_m = channels[place].gain_distance_m
         key = (*place, "channel", "reference_distance_m")
