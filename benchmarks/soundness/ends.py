@@ -22,7 +22,7 @@ def channel_ends(rng: np.random.Generator) -> Table:
         return {
             "model": "power-law",
             "exponent": exponent,
-            "reference_distance_m": float(rng.choice([1e-3, 1.0])),
+            "reference_distance_m": float(rng.choice([1e-3, 0.9])),
         }
     seen = float(rng.choice(_LOSSES_DB[:4])) if rng.uniform() < 0.3 else 0.0
     return {
