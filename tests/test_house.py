@@ -38,7 +38,7 @@ def _tracked_files() -> list[Path]:
 
 
 def _tracked_text() -> dict[Path, str]:
-    binary = {".png", ".jpg", ".gif", ".webp", ".pdf", ".npz", ".gz"}
+    binary = {".png", ".jpg", ".gif", ".webp", ".pdf", ".npz", ".gz", ".shp", ".shx", ".dbf"}
     files = [path for path in _tracked_files() if path.suffix not in binary and path.name != "LICENSE"]
     return {path: path.read_text(encoding="utf-8") for path in files}
 
