@@ -249,13 +249,14 @@ def _profile(rng: np.random.Generator) -> Table:
     rows[0] = [float(rng.uniform(0.5, 2.0))]
     if rng.uniform() < 0.3:  # the same upside down
         rows = [[row[0] * (1 - n % 2), *row[1:]] for n, row in enumerate(rows)]
+    rows = [[0.5 * each for each in row] for row in rows]  # no more on average than it is fed
     return {"kind": "pattern", "harmonics": rows, "normalise": str(rng.choice(["none", "peak"]))}
 
 
 def _pattern(rng: np.random.Generator) -> Table:
     degree = int(rng.integers(1, 5))
-    rows = [(rng.normal(size=2 * n + 1) / (1.0 + n)).tolist() for n in range(degree + 1)]
-    return {"kind": "pattern", "harmonics": [[2.0], *rows[1:]]}
+    rows = [(0.5 * rng.normal(size=2 * n + 1) / (1.0 + n)).tolist() for n in range(degree + 1)]
+    return {"kind": "pattern", "harmonics": [[1.0], *rows[1:]]}
 
 
 # a short dipole, one that leaks, a half-wave dipole, a profile, any pattern

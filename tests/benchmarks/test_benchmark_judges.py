@@ -81,7 +81,11 @@ def test_a_link_near_an_edge_is_left_out(beside_m: float, is_near: bool) -> None
     """Within a millimetre of a corner it may be clear for one and blocked for the other."""
     corner = {"polygon_m": [[0.0, 0.0], [5.0, 5.0], [-5.0, 5.0]], "height_m": 20.0}
     scene = Scenario.from_arrays(
-        [[-50.0, beside_m, 1.0]], noise_w=1e-3, altitude_m=(1, 30), buildings=[corner]
+        [[-50.0, beside_m, 1.0]],
+        noise_w=1e-3,
+        altitude_m=(1, 30),
+        buildings=[corner],
+        channel={"shadow_margin_m": 0.0},
     )
     found = ray_tracer.lines_of_sight(scene, np.array([[50.0, beside_m, 1.0]]))
     assert [answer.item() for answer in found] == [beside_m < 0.0, is_near]
