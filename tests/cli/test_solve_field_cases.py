@@ -183,7 +183,7 @@ def test_a_whip_at_a_jammer_that_hides_the_bound(run: Run, solution: Solve) -> N
     """Where a limit ends the proof, the answer names the cause, the key that mends it, and --robust."""
     result = run("solve", CASES / "double-null.toml", "--node-limit", "2000")
     shown = result.stdout + result.stderr
-    assert [word for word in ("jammers[1].null_depth_db", "--robust") if word not in shown] == []
+    assert [word for word in ("jammers[1]: null_depth_db", "--robust") if word not in shown] == []
     mended = solution("double-null.toml", "--set", "jammers.hut.null_depth_db=20", "--gap", "1e-2")
     assert mended["status"] == "certified"
     assert mended["objective"]["value_db"] == pytest.approx(-6.54, abs=0.05)
