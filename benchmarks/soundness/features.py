@@ -212,8 +212,8 @@ def _patterns(rng: np.random.Generator) -> Table:
     for point in [*table["nodes"], *table["jammers"]]:
         point["antenna"] = str(rng.choice(["isotropic", "circular"]))
     degree = int(rng.integers(1, 7))
-    rows = [(rng.normal(size=2 * n + 1) / (1.0 + n)).tolist() for n in range(degree + 1)]
-    rows[0] = [2.0]
+    rows = [(0.5 * rng.normal(size=2 * n + 1) / (1.0 + n)).tolist() for n in range(degree + 1)]
+    rows[0] = [1.0]
     if rng.uniform() < 0.3:
         rows = [[row[0], *(0.0 for _ in row[1:])] for row in rows]
     table["antenna"] = {"kind": "pattern", "harmonics": rows, "normalise": str(rng.choice(["none", "peak"]))}

@@ -20,8 +20,8 @@ from nullpose.physics.rotation import (
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
-FARTHEST_M = 1e8
-"""How far from the origin a pose may be, along each axis [m]."""
+FARTHEST_M = 1e100
+"""How far from the origin a pose may be, along each axis [m]: the square of a distance is still a number."""
 
 
 def as_position(position_m: ArrayLike) -> FloatArray:
