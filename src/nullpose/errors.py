@@ -82,7 +82,7 @@ def require_usage(holds: object, message: str) -> None:
 
 
 def install_command(extra: str) -> str:
-    """Return where to run which command to install what an extra needs; no package index has nullpose.
+    """Write the command that installs what an extra needs, and where; no package index has nullpose.
 
     Args:
         extra: of ``pyproject.toml``, as in ``gis``.

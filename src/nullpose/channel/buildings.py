@@ -192,20 +192,21 @@ def _planes(
     of_walls, of_roofs, of_floors = np.split(is_front, [count, count + len(pieces)], axis=1)
     is_outside = np.logical_or.reduceat(of_walls, prisms.start[:-1], axis=1) | of_roofs | of_floors
     # edges of each wall: with the next, with the roof and with the floor
-    one, other = np.tile(np.arange(count), 3), np.hstack([onward, count + piece, count + len(pieces) + piece])
+    first = np.tile(np.arange(count), 3)
+    other = np.hstack([onward, count + piece, count + len(pieces) + piece])
     heights_m = np.hstack([0.0 * walls_m, roofs_m[:, piece], floors_m[:, piece]])
     corners_m = np.tile(_corners(walls, walls[onward]), (len(points_m), 3, 1))
     to_edges_m = np.dstack([corners_m, heights_m]) - points_m[:, None]
-    away = np.where(is_front[:, one], -1.0, 1.0)[..., None]
-    tangent = away * np.cross(np.cross(faces[one], faces[other]), to_edges_m)
+    away = np.where(is_front[:, first], -1.0, 1.0)[..., None]
+    tangent = away * np.cross(np.cross(faces[first], faces[other]), to_edges_m)
     planes = np.hstack([faces + 0.0 * faces_m[..., None], 0.0 * (up + roofs_m[..., None]), tangent])
     offsets_m = np.hstack([faces_m, 0.0 * roofs_m, np.einsum("mki,mi->mk", tangent, points_m)])
-    is_side = np.hstack([is_front, ~is_outside, is_front[:, one] != is_front[:, other]])
-    return np.hstack([piece, pieces, pieces, pieces, piece[one]]), planes, offsets_m, is_side
+    is_side = np.hstack([is_front, ~is_outside, is_front[:, first] != is_front[:, other]])
+    return np.hstack([piece, pieces, pieces, pieces, piece[first]]), planes, offsets_m, is_side
 
 
 def _corners(walls: FloatArray, onward: FloatArray) -> FloatArray:
-    """Return where walls meet others, (w, 2)."""
+    """List the corners in which walls meet others, (w, 2)."""
     det = walls[:, 0] * onward[:, 1] - onward[:, 0] * walls[:, 1]
     east = (walls[:, 2] * onward[:, 1] - onward[:, 2] * walls[:, 1]) / det
     north = (walls[:, 0] * onward[:, 2] - onward[:, 0] * walls[:, 2]) / det

@@ -216,7 +216,9 @@ def error_sizes(text: str | None) -> ErrorSizes:
         name, _, number = part.partition("=")
         try:
             size = (names | {"eavesdroppers_m": "jammers_m"})[name.strip()]
-            sizes[size] = float(number) if size not in sizes else float("twice")
+            if size in sizes:
+                raise ValueError(part)
+            sizes[size] = float(number)
         except (KeyError, ValueError):
             raise UsageError(
                 f"--off: given {part.strip()!r}; allowed: {', '.join(names)}, each once with a number, as in "

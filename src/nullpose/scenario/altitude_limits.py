@@ -86,15 +86,15 @@ def altitude_limits(
         found, unread_heights = _of_corners(feature, ground_m, is_fence)
         likely |= unread_heights
     unread = [path for path in likely if path not in read]
-    stated = [
+    numbers = [
         path
         for path in unread
         if any(letter.isdigit() for letter in str(likely[path])) and (_is_limit(path) or not found)
     ]
     require(
-        not (is_fence and stated and not is_ours),
+        not (is_fence and numbers and not is_ours),
         feature.place,
-        f"it is a fence and may bound the altitude by what is not read: {', '.join(stated)}; write "
+        f"it is a fence and may bound the altitude by what is not read: {', '.join(numbers)}; write "
         "altitude_m = [low, high] beside it (or altitude_msl_m), which then counts alone, or remove it",
     )
     times = [key for key in properties if _LIKE_TIMES.search(key)]

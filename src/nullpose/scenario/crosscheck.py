@@ -112,9 +112,9 @@ def _gain_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Ite
     drone_db = drone_dbi + 10.0 * np.log10(max(drone.mean, 1e-30))
     whip = (
         ", a quarter wave over a large ground plane. A collinear whip has more in a narrow beam alone: write "
-        'antenna = "profile" with its gain by elevation'
+        'antenna = "isotropic" with the least gain_dbi that it has towards the drone, or of a jammer the most'
     )
-    stated = {("antenna",): (drone.label, drone_dbi, drone_db, MOST_OVER_FED_DB, "")} | {
+    gains = {("antenna",): (drone.label, drone_dbi, drone_db, MOST_OVER_FED_DB, "")} | {
         place: ("short dipole", point.gain_dbi, point.over_fed_db, MOST_OVER_FED_DB + HALF_DB, whip)
         for place, point in points.items()
         if point.antenna == "dipole"
@@ -126,7 +126,7 @@ def _gain_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Ite
             f"must be at most {gain_dbi - excess_db + most_db:.2f} (1.76 for a short dipole, 2.15 for a "
             f"half-wave dipole){advice}",
         )
-        for place, (label, gain_dbi, excess_db, most_db, advice) in stated.items()
+        for place, (label, gain_dbi, excess_db, most_db, advice) in gains.items()
         if excess_db > most_db
     )
 

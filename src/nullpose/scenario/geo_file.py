@@ -123,7 +123,7 @@ def _features_of_member(placed: tuple[str, Any]) -> list[Feature]:
 
 
 def _beside(table: object) -> PlainTable:
-    """Return what a feature or a geometry of GeoJSON states beside what the standard names."""
+    """List the members of a feature or a geometry of GeoJSON beside those that the standard names."""
     return {key: table[key] for key in table if key not in _OF_GEOJSON} if isinstance(table, dict) else {}
 
 

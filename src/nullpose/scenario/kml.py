@@ -17,7 +17,7 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PLACE = re.compile(rf"{_NUMBER},{_NUMBER}(?:,(?:{_NUMBER})?)?")
 _SIDES = ("outerBoundaryIs", "innerBoundaryIs")
 _CHAINS = ("Point", "LineString", "LinearRing", "Track")
-_HERE = ("{*}name", "{*}description", "{*}TimeSpan/*", "{*}TimeStamp/*")
+_OF_PLACEMARK = ("{*}name", "{*}description", "{*}TimeSpan/*", "{*}TimeStamp/*")
 _DATA = ("{*}ExtendedData/*", "{*}ExtendedData/{*}SchemaData/*")
 
 
@@ -78,7 +78,7 @@ def placemarks_of(root: Element) -> Iterator[tuple[str, PlainTable | None, Plain
     for number, placemark in enumerate(root.iterfind(".//{*}Placemark")):
         name = placemark.findtext("{*}name", "").strip()
         place = f'Placemark "{name}"' if name else f"Placemark[{number}]"
-        texts = {_kind(each): each.text for path in _HERE for each in placemark.iterfind(path)} | {
+        texts = {_kind(each): each.text for path in _OF_PLACEMARK for each in placemark.iterfind(path)} | {
             each.get("name", _kind(each)): each.findtext("{*}value", each.text)
             for path in _DATA
             for each in placemark.iterfind(path)

@@ -167,8 +167,8 @@ def _gains(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:
             f'{point.gain_dbi:g} dBi with antenna = "{point.antenna}" is true only {only}: all round '
             f"it is {point.over_fed_db:.1f} dB more than the antenna is fed",
         )
-        for only, most_db, some in ((ground, 0.0, whips), (turned, HALF_DB, others))
-        for place, point in some.items()
+        for only, most_db, antennas in ((ground, 0.0, whips), (turned, HALF_DB, others))
+        for place, point in antennas.items()
         if point.over_fed_db > MOST_OVER_FED_DB + most_db
     )
 

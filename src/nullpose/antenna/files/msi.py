@@ -27,7 +27,7 @@ _WEAK_DB = 20.0  # below the peak; what is weaker may differ
 _LIKE_ZENITH_DEG = 30.0  # a beam is taken for one measured from the zenith so near to straight down
 _WIDEST_DEG = 10.0  # between two rows of a cut
 _NEGATIVE_DB = 0.05
-_STATED = re.compile(r"(?!GAIN|FREQ|HORIZ|VERT|MECH)[A-Z].* ([-+]?\d+\.?\d*)", re.IGNORECASE)  # a number
+_NUMBER = re.compile(r"(?!GAIN|FREQ|HORIZ|VERT|MECH)[A-Z].* ([-+]?\d+\.?\d*)", re.IGNORECASE)
 _CLOCKWISE = "The file's azimuths grow clockwise seen from above; they are turned the other way round."
 _CAVEAT = (
     "it is an estimate by the sum of losses: its horizontal cut changes by {:.1f} dB, and two cuts do not "
@@ -65,7 +65,7 @@ def read_msi(lines: Lines) -> Iterator[Block]:
         least_db <= _CROSSING_DB,
         f"no direction has a loss below {least_db:g} dB; GAIN is that of the direction with a loss of 0",
     )
-    more = {key: found[1] for key, (_, text) in keys.items() if (found := _STATED.fullmatch(f"{key} {text}"))}
+    more = {key: found[1] for key, (_, text) in keys.items() if (found := _NUMBER.fullmatch(f"{key} {text}"))}
     tilts_deg = {key: round(float(number)) for key, number in more.items() if "TILT" in key}
     for key, tilt_deg in tilts_deg.items():
         below_db = float(down[tilt_deg % 360] - np.min(down))
