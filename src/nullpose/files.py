@@ -41,8 +41,7 @@ def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
         OSError: it cannot be read, or may not be.
         ValueError: no file can have that name.
     """
-    status = path.stat()
-    if not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
+    if not stat.S_ISREG((status := path.stat()).st_mode) and not stat.S_ISDIR(status.st_mode):
         raise OSError(errno.EINVAL, "it is a device or a pipe, must be a regular file")
     if status.st_size <= most:
         with path.open("rb") as file:
@@ -63,11 +62,9 @@ def parse_json(text: str, **options: Any) -> Any:
     def table_of(pairs: list[tuple[str, object]]) -> PlainTable:
         nonlocal closed
         closed += 1
-        table = dict(pairs)
-        if len(table) < len(pairs):
+        if len(table := dict(pairs)) < len(pairs):
             counts = Counter(key for key, _ in pairs)
-            key = next(key for key in counts if counts[key] > 1)
-            name = json.dumps(key[:_LONGEST_KEY])
+            name = json.dumps(next(key for key in counts if counts[key] > 1)[:_LONGEST_KEY])
             raise _DoubledKeyError(f"the key {name} is given twice in one object; keep one")
         return table
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from nullpose.errors import UsageError, checked
+from nullpose.errors import UsageError, checked, require_usage
 from nullpose.report.figures.dots import draw_dots
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_field, draw_plan
@@ -71,8 +71,10 @@ def pose(result: Result, ax: Axes | None = None) -> Axes:
         >>> axes.name
         '3d'
     """
-    if hasattr(result.details, "weights"):
-        raise UsageError("pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
+    require_usage(
+        not hasattr(result.details, "weights"),
+        "pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)",
+    )
     with _axes(ax, ALONE.inches, solid=True) as axes:
         draw_panel(axes, Stage.of(result), result.pose, draw_dipole)
         place_names(axes)

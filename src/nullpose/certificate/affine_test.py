@@ -57,8 +57,7 @@ def link_jet(
         axes: (b, 3) the axes of the dipoles there, zero where there is none.
         gain: the excess gains of their channels.
     """
-    has = np.any(axes != 0.0, axis=1)
-    if not np.any(has):
+    if not np.any(has := np.any(axes != 0.0, axis=1)):
         return _isotropic_jet(field, boxes, points, leak, gain)
     jets = _dipole_jet(field, boxes, points, axes, gain)
     if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
@@ -114,9 +113,7 @@ def _jet(centre: Interval3, over: Interval3, r: Interval, gain: Excess | None) -
     # the gain is at most 1, and never below zero
     most = np.fmin(over[0].high, (1.0 / r.squared().total()).high)
     ranged = Interval(np.maximum(over[0].low, 0.0), most)
-    if gain is not None:
-        return gain.times(centre, (ranged, *over[1:]))
-    return Jet(*centre[:2], over[2], ranged)
+    return gain.times(centre, (ranged, *over[1:])) if gain is not None else Jet(*centre[:2], over[2], ranged)
 
 
 def _isotropic_jet(
@@ -232,8 +229,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
     holds = (ranged.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, slopes.middle)
-    counts = np.any([scale.high > 0.0 for _, scale in above], axis=0)
-    return np.asarray(counts & holds)
+    return np.asarray(np.any([scale.high > 0.0 for _, scale in above], axis=0) & holds)
 
 
 def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hessian: Interval) -> np.ndarray:
@@ -262,5 +258,4 @@ def _dual_negative(rest: Interval, g: Interval, middle: FloatArray, mu: FloatArr
     a = Interval(mu[ROW] * IDENTITY[:, None]) - middle
     _, positive, det = definite(a)
     form = (squares(g) * adjugate(a) * COUNTED[:, None]).total()
-    bound = (rest + Interval(mu).total() * 0.5) * det + form * 0.5
-    return np.asarray(positive & (bound.high < 0.0))
+    return np.asarray(positive & (((rest + Interval(mu).total() * 0.5) * det + form * 0.5).high < 0.0))

@@ -46,8 +46,7 @@ def negative_where_allowed(
         away = Interval(boxes.centre) - family.keep_out_points_m[np.where(of_ball, leaves.ball, 0)]
         weighted = [(weight, Constraint.outside(away.T, family.keep_out_m, np.ones(3)))]
     holds = test(rows, weighted)
-    left = rows[(leaves.ball >= balls) & ~holds]
-    if not len(left):
+    if not len(left := rows[(leaves.ball >= balls) & ~holds]):
         return holds
     steep = gradient()
     holds[left] = True

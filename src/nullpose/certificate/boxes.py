@@ -108,8 +108,7 @@ def uncovered(leaves: Leaves) -> str:
             if not is_profile or len(charts) == 1:
                 todo += [(members[face[members] == f], depth, f, f"{path}/face{f}") for f in charts]
                 continue
-        finer = [i for i in range(5 if on_face >= 0 else 3) if least[i] > depth[i]]
-        if not finer:
+        if not (finer := [i for i in range(5 if on_face >= 0 else 3) if least[i] > depth[i]]):
             as_large = np.all(depths[members] <= depth, axis=1)
             if not np.any(as_large & ((face[members] < 0) | (on_face >= 0))):
                 return f"the leaves do not cover the root: no leaf holds {path}, and no cut parts those in it"

@@ -158,11 +158,9 @@ def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Ma
         scheme: the case.
         null_jammer: for a scheme that nulls a jammer: which, or None for any.
     """
-    record = RECORDS.get(scheme)
-    if record is None or (null_jammer is not None and not record.nulls_a_jammer):
+    if (record := RECORDS.get(scheme)) is None or (null_jammer is not None and not record.nulls_a_jammer):
         return None
-    antenna = scenario.antenna_record
-    if antenna.is_quadratic:
+    if (antenna := scenario.antenna_record).is_quadratic:
         return record.fields(scenario, null_jammer)
     if not (record.any_antenna and antenna.is_axisymmetric):
         return None

@@ -81,9 +81,7 @@ def dipole_sum(
 def _excess_end(family: Family, boxes: Boxes, point: IntArray, sign: float) -> Interval | float:
     """Return the largest excess gain in each box, or the least: what a link's form is bounded with."""
     gain = excess(family, boxes, point, sign > 0.0)
-    if gain is None:
-        return 1.0
-    return Interval(gain.over.high if sign > 0.0 else gain.over.low)
+    return 1.0 if gain is None else Interval(gain.over.high if sign > 0.0 else gain.over.low)
 
 
 def _vectors(family: Family, shear: Shear, boxes: Boxes, point: IntArray) -> list[Jet]:
@@ -115,8 +113,7 @@ def square_over(jet: Jet, boxes: Boxes, top: FloatArray, scale: Interval, sign: 
     steps = Interval(half)[ROW] * half[COLUMN] * np.where(IDENTITY > 0.0, 0.25, 1.0)[:, None]
     parts = jet.bends * steps
     value = jet.value + parts[:, 0] + parts[:, 1] + parts[:, 2]
-    reach = boxes.half2.sqrt()
-    ball = (jet.over * boxes.half2 * reach / 6.0).most()
+    ball = (jet.over * boxes.half2 * boxes.half2.sqrt() / 6.0).most()
     middle = parts.middle()
     weight = np.abs(np.einsum("ksb,kb->sb", middle, top)) + 1e-2 * np.linalg.norm(middle, axis=0)
     weight = weight + 1e-3 * ball.high + _TINY

@@ -175,8 +175,7 @@ def parse_certificate(text: str) -> Certificate:
 
 
 def _finite(digits: str) -> float:
-    number = float(digits)
-    if not math.isfinite(number):
+    if not math.isfinite(number := float(digits)):
         raise ValueError(f"{digits} is no number, or too large")
     return number
 
@@ -212,8 +211,7 @@ def _numbers(value: Any, path: str, shape: tuple[int, ...] = (), kind: type = fl
         flat = [item for row in flat for item in row] if fits else []
     if fits and {type(item) for item in flat} <= {int, kind}:
         with suppress(OverflowError):
-            array = np.array(flat, dtype=np.int64 if kind is int else float)
-            if np.all(np.isfinite(array)):
+            if np.all(np.isfinite(array := np.array(flat, dtype=np.int64 if kind is int else float))):
                 return array.reshape(shape) if shape else array.item()
     sizes = "".join("a list, each " if n < 0 else f"a list of {n}, each " for n in shape)
     raise _refusal(value, path, f"{sizes}a {'whole' if kind is int else 'finite'} number")

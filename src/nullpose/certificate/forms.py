@@ -40,8 +40,7 @@ def matrices(form: FloatArray) -> FloatArray:
 
 def quadratic(form: FloatArray, vector: FloatArray) -> FloatArray:
     """Return ``v^T Q v``; both have their components along the first axis."""
-    counted = (form.T * COUNTED).T
-    return np.asarray(np.sum(counted * vector[ROW] * vector[COLUMN], axis=0))
+    return np.asarray(np.sum((form.T * COUNTED).T * vector[ROW] * vector[COLUMN], axis=0))
 
 
 def adjugate(a: Interval) -> Interval:

@@ -49,8 +49,7 @@ def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxe
     holds, in_ball = np.zeros(len(boxes), dtype=bool), which < balls
     farthest2 = boxes.chosen(in_ball).farthest2(family.keep_out_points_m[which[in_ball]])
     holds[in_ball] = farthest2 < Interval(family.keep_out_m).squared().low
-    in_zone = ~in_ball & (which < balls + len(family.zone_kind))
-    if np.any(in_zone):
+    if np.any(in_zone := ~in_ball & (which < balls + len(family.zone_kind))):
         holds[in_zone] = forbidden(family, which[in_zone] - balls, boxes.chosen(in_zone))
     return holds
 

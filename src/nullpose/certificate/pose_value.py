@@ -188,8 +188,7 @@ def field_offset(axis_field: AxisField, position: Exact, axis: Exact) -> Fractio
         axis: the axis, of any length but zero.
     """
     matrix = exact(axis_field.matrix)
-    wanted = exact(axis_field.offset) + matrix @ position
-    if np.any(wanted != 0):
+    if np.any((wanted := exact(axis_field.offset) + matrix @ position) != 0):
         return sine2(wanted, axis)
     rotated = matrix @ axis
     # u -> w x u: |w x u|^2 = |w|^2 |u|^2 for u across w, and half the squares of the matrix sum to |w|^2

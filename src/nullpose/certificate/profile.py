@@ -162,8 +162,7 @@ def _profile(terms: bytes) -> Profile:
 
 def _ends(scenario: Scenario) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return sine and cosine of the least and of the greatest angle from the vertical that an axis has."""
-    airframe = scenario.airframe
-    if airframe is None or airframe.tilt_max_rad >= math.pi:
+    if (airframe := scenario.airframe) is None or airframe.tilt_max_rad >= math.pi:
         return (0.0, 1.0), (0.0, -1.0)
     least, most = airframe.mount_rad - airframe.tilt_max_rad, airframe.mount_rad + airframe.tilt_max_rad
     low, high = (sine_cosine(Fraction(min(max(end, 0.0), math.pi))) for end in (least, most))
@@ -191,8 +190,7 @@ def _values(powers: list[Fraction], order: int, at: np.ndarray) -> Interval:
     for n in range(len(powers) - 1, order - 1, -1):
         term = powers[n] * math.comb(n, order)
         total = (total * at >> _BITS) + (term.numerator << _BITS) // term.denominator
-    found = Interval((total / (1 << _BITS)).astype(float))
-    return found + Interval(-_PAD, _PAD)
+    return Interval((total / (1 << _BITS)).astype(float)) + Interval(-_PAD, _PAD)
 
 
 def _most(weights: FloatArray, order: int) -> Fraction:

@@ -41,8 +41,7 @@ def links_of(
     both = level * length
     found = []
     for j, d in enumerate(apart[j] for j in range(len(apart.low))):
-        to = offset + d[:, None]
-        near = _square(to, (0, 1, 2)).inverse_root()
+        near = _square(offset + d[:, None], (0, 1, 2)).inverse_root()
         if j == anchor:
             found.append((along, near * near))
             continue

@@ -132,8 +132,7 @@ def _negative(
     span = np.array([[0.5 if field.even else 1.0], [2.0]])  # of both angles, in multiples of pi
     half = np.vstack([cells.boxes.half.T[order], (PI * (span * np.ldexp(0.5, -depth))).high])
     turns = [sine_cosine(x) for x in span * np.ldexp(index + 0.5, -depth) - [[0.0], [1.0]]]
-    missed = _out_of_reach(field, offset, turns, half, (2 - chart) % 3)
-    if np.any(missed):
+    if np.any(missed := _out_of_reach(field, offset, turns, half, (2 - chart) % 3)):
         side, left = np.zeros(len(missed), dtype=np.int64), ~missed
         if np.any(left):
             missed[left], side[left] = _negative(family, field, leaves.chosen(left), cells.chosen(left))

@@ -162,8 +162,7 @@ def _basis(on: np.ndarray, is_dipole: np.ndarray, d0: Interval) -> tuple[Interva
     axes[:, 2, on] = third[:, on]
     plain = Interval(axes)
     # across the dipole's vector for certain, so that its form has no first and second row
-    square = d0.squared().total()
-    tilted = plain - d0[:, None] * (dot(plain, d0[:, None]) / square)[None]
+    tilted = plain - d0[:, None] * (dot(plain, d0[:, None]) / d0.squared().total())[None]
     straight = where(on & is_dipole, tilted, plain)
     exact = where(on & ~is_dipole, d0, plain[:, 2])  # the direction itself, not a rounded one
     basis = swapped(stack([straight[:, 0], straight[:, 1], exact]))

@@ -144,8 +144,7 @@ def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[
     """Find the first leaf that its test does not exclude, or an empty string."""
     leaves, boxes = tree.leaves, boxes_of(tree.root_m, tree.leaves)
     for start in range(0, len(leaves), _CHUNK):
-        leaf = _failing(family, field, leaves, boxes.chosen(slice(start, start + _CHUNK)))
-        if leaf is not None:
+        if (leaf := _failing(family, field, leaves, boxes.chosen(slice(start, start + _CHUNK)))) is not None:
             hull = boxes.hull[:, leaf]
             where = ", ".join(
                 f"{low:.6g} to {high:.6g}" for low, high in zip(hull.low, hull.high, strict=True)
@@ -218,8 +217,7 @@ def _holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np
     """Check which boxes their leaves exclude."""
     holds, kinds = np.zeros(len(boxes), dtype=bool), leaves.test[boxes.leaf]
     for check in dict.fromkeys(test.holds for test in _TESTS.values()):
-        mask = np.isin(kinds, [kind for kind, test in _TESTS.items() if test.holds is check])
-        if np.any(mask):
+        if np.any(mask := np.isin(kinds, [kind for kind, test in _TESTS.items() if test.holds is check])):
             tested = boxes.chosen(mask)
             holds[mask] = check(family, field, leaves.chosen(tested.leaf), tested)
     return holds

@@ -45,8 +45,7 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
 
     def parts(point: IntArray, scale: Interval) -> list[Multiple]:
         leak = leaks[point]
-        split = (leak > 0.0) & (scale.high > 0.0)
-        if not np.any(split):
+        if not np.any(split := (leak > 0.0) & (scale.high > 0.0)):
             return [(point, scale)]
         dipole = where(split, scale * (1.0 - Interval(leak)), scale)
         return [(point, dipole), (np.where(split, twin[point], point), where(split, scale * leak, 0.0))]

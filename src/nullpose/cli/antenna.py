@@ -18,8 +18,7 @@ class _FileOrVerb(TyperGroup):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the arguments after putting a verb first."""
-        if args and args[0] not in {*self.commands, *ctx.help_option_names}:
-            args = ["show", *args]
+        args = ["show", *args] if args and args[0] not in {*self.commands, *ctx.help_option_names} else args
         return super().parse_args(ctx, args)
 
 

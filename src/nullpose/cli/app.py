@@ -77,8 +77,7 @@ def main() -> None:
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     # loading the libraries makes much that stays: to look through it for garbage takes a tenth of the start
     gc.set_threshold(100_000)
-    columns = os.environ.get("COLUMNS", "")
-    if columns.isdecimal() and int(columns) < _NARROWEST:
+    if (columns := os.environ.get("COLUMNS", "")).isdecimal() and int(columns) < _NARROWEST:
         os.environ["COLUMNS"] = str(_NARROWEST)
     with streams_checked():
         replace_lacking_letters()

@@ -243,14 +243,16 @@ def numbers_of(option: str, text: str, allowed: str, count: int | None = None) -
     Raises:
         UsageError: they are not.
     """
-    from nullpose.errors import UsageError
+    from nullpose.errors import require_usage
 
     try:
         numbers = [float(part) for part in text.split(",")]
     except ValueError:
         numbers = []
-    if not numbers or not all(map(math.isfinite, numbers)) or count not in (None, len(numbers)):
-        raise UsageError(f"{option}: given {text!r}; allowed: {allowed}")
+    require_usage(
+        numbers and all(map(math.isfinite, numbers)) and count in (None, len(numbers)),
+        f"{option}: given {text!r}; allowed: {allowed}",
+    )
     return numbers
 
 

@@ -40,8 +40,7 @@ class ProgressBar:
 
     def show(self, share: float, words: str) -> None:
         """Show which share of the work is done, and what there is to say of it."""
-        now = time.monotonic()
-        if now - self._began < _QUIET_S:
+        if (now := time.monotonic()) - self._began < _QUIET_S:
             return
         if self._bar is not None or sys.stderr.isatty():  # a drawn bar stands in for it, and may deny that
             self._bar = self._bar or self._new_bar()

@@ -64,9 +64,7 @@ class Quantity:
 
     def in_unit(self, value: float) -> float:
         """Convert a number to the quantity's unit: to dB, or leave it as it is if it is a rate."""
-        if self.is_rate:
-            return value
-        return 10.0 * math.log10(value) if value > 0.0 else -math.inf
+        return value if self.is_rate else 10.0 * math.log10(value) if value > 0.0 else -math.inf
 
     def at(self, link: Link) -> float:
         """Return a node's number: a power ratio, or bits/s/Hz."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import Antenna
-from nullpose.errors import UsageError, checked
+from nullpose.errors import UsageError, checked, require_usage
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
@@ -35,11 +35,11 @@ def as_position(position_m: ArrayLike) -> FloatArray:
         array([0., 0., 8.])
     """
     position = np.array(position_m, dtype=float)
-    if position.shape != (3,):
-        raise UsageError(
-            f"position_m: given an array of shape {position.shape}; allowed: three finite numbers, metres, "
-            "an array of shape (3,); of several positions give one at a time, as in positions_m[0]"
-        )
+    require_usage(
+        position.shape == (3,),
+        f"position_m: given an array of shape {position.shape}; allowed: three finite numbers, metres, "
+        "an array of shape (3,); of several positions give one at a time, as in positions_m[0]",
+    )
     if not np.all(np.abs(position) <= FARTHEST_M):
         allowed = f"three finite numbers, metres, up to {FARTHEST_M:g}"
         raise UsageError(f"position_m: given {position.tolist()}; allowed: {allowed}")
@@ -79,8 +79,10 @@ class Pose:
         position_m = as_position(self.position_m)
         names = ("roll_rad", "pitch_rad", "yaw_rad", "mount_rad")
         angles = tuple(float(getattr(self, name)) for name in names)
-        if not all(map(math.isfinite, angles)):
-            raise UsageError(f"{', '.join(names)}: given {angles}; allowed: finite angles, radians")
+        require_usage(
+            all(map(math.isfinite, angles)),
+            f"{', '.join(names)}: given {angles}; allowed: finite angles, radians",
+        )
         position_m.flags.writeable = False
         object.__setattr__(self, "position_m", position_m)
         for name, angle in zip(names, angles, strict=True):
@@ -118,8 +120,7 @@ class Pose:
         tilt_max_rad, mount_rad = (
             (math.pi, 0.0) if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
         )
-        axis = np.asarray(axis, dtype=float)
-        if axis.ndim == 2 and not antenna.is_axisymmetric:
+        if (axis := np.asarray(axis, dtype=float)).ndim == 2 and not antenna.is_axisymmetric:
             angles = attitude_of(axis @ rotation_world_from_body(0.0, mount_rad, 0.0).T, tilt_max_rad)
         else:
             along = axis[:, 2] if axis.ndim == 2 else axis
@@ -148,8 +149,7 @@ class Pose:
         """Angle between the body's vertical and the world's, radians."""
         if self.roll_rad == 0.0 and abs(self.pitch_rad) <= math.pi:
             return abs(self.pitch_rad)  # to the last digit
-        forward = np.cos(self.roll_rad) * np.sin(self.pitch_rad)
-        across = np.hypot(np.sin(self.roll_rad), forward)
+        across = np.hypot(np.sin(self.roll_rad), np.cos(self.roll_rad) * np.sin(self.pitch_rad))
         return float(np.arctan2(across, np.cos(self.roll_rad) * np.cos(self.pitch_rad)))
 
     def to_dict(self) -> dict[str, object]:
@@ -162,9 +162,7 @@ class Pose:
         }
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Pose):
-            return NotImplemented
-        return self._key() == other._key()
+        return NotImplemented if not isinstance(other, Pose) else self._key() == other._key()
 
     def __hash__(self) -> int:
         return hash(self._key())

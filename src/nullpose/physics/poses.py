@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import Antenna
-from nullpose.errors import UsageError, checked
+from nullpose.errors import checked, require_usage
 from nullpose.physics.pose import FARTHEST_M, Pose
 from nullpose.physics.rotation import antenna_axis, attitude_from_axis, rotation_world_from_body
 from nullpose.physics.types import FloatArray
@@ -60,14 +60,16 @@ class Poses:
             or mount.ndim
         ):
             counts = set()
-        if len(counts) != 1:
-            raise UsageError(
-                f"poses: given {', '.join(f'{name} of shape {shape}' for name, shape in shapes.items())}; "
-                "allowed: position_m of shape (n, 3) or (3,), and angles of shape (n,) or one number"
-            )
+        require_usage(
+            len(counts) == 1,
+            f"poses: given {', '.join(f'{name} of shape {shape}' for name, shape in shapes.items())}; "
+            "allowed: position_m of shape (n, 3) or (3,), and angles of shape (n,) or one number",
+        )
         finite = all(np.all(np.isfinite(each)) for each in (*angles, mount))
-        if not finite or not np.all(np.abs(position_m) <= FARTHEST_M):
-            raise UsageError(f"poses: a number is not finite or beyond {FARTHEST_M:g} m")
+        require_usage(
+            finite and np.all(np.abs(position_m) <= FARTHEST_M),
+            f"poses: a number is not finite or beyond {FARTHEST_M:g} m",
+        )
         count = counts.pop()
         object.__setattr__(self, "position_m", np.broadcast_to(position_m, (count, 3)))
         for name, angle in zip(names, angles, strict=True):

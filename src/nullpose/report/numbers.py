@@ -79,8 +79,7 @@ def bound_text(objective: Objective, digits: int = 0) -> str:
     if objective.upper_bound is None:
         return "-"
     quantity = objective.quantity
-    bound = quantity.in_unit(objective.upper_bound)
-    if not math.isfinite(bound):
+    if not math.isfinite(bound := quantity.in_unit(objective.upper_bound)):
         return number(bound, quantity)
     if not digits:
         apart = min(max(bound - quantity.in_unit(objective.value), 1e-12), 1.0)

@@ -204,8 +204,7 @@ def _in_brackets(numbers: Iterable[float], more: int) -> str:
 
 def frame_rows(scenario: Scenario, pose: Pose, more: int) -> list[tuple[str, str | None]]:
     """Write a pose on the Earth, in NED and as quaternions; nothing without an origin."""
-    frames = pose_frames(scenario, pose)
-    if frames.geodetic is None:
+    if (frames := pose_frames(scenario, pose)).geodetic is None:
         return []
     north, east, down = _metres(frames.ned.position_m, more)
     return [

@@ -19,8 +19,7 @@ _NULL_GAIN = 0.1  # of the largest gain of a link: below it an interferer counts
 
 def sensitivity_view(result: Result) -> View | None:
     """Set the smallest values found under errors as a table, with a sentence on a large loss."""
-    found = result.sensitivity
-    if found is None:
+    if (found := result.sensitivity) is None:
         return None
     quantity, sizes = found.quantity, found.sizes
     point = result.scenario.objective_record.interferers.removesuffix("s")
@@ -45,8 +44,7 @@ def sensitivity_view(result: Result) -> View | None:
 
 def sensitivity_caption(result: Result) -> str:
     """Write the smallest value found under all errors together, as a line for a figure."""
-    found = result.sensitivity
-    if found is None:
+    if (found := result.sensitivity) is None:
         return ""
     value = with_unit(found.quantity.in_unit(found.all), found.quantity)
     return f"as low as {value} with errors up to {sizes_words(result, found.sizes)}"
@@ -61,8 +59,7 @@ def sizes_words(result: Result, sizes: ErrorSizes) -> str:
 
 def sensitivity_words(result: Result) -> str | None:
     """Say that a pose loses much under errors, and towards whom its null is; None if it does not."""
-    found = result.sensitivity
-    if found is None or not found.loss_db() > NULL_LOSS_DB:
+    if (found := result.sensitivity) is None or not found.loss_db() > NULL_LOSS_DB:
         return None
     names = ", ".join(_nulled_names(result))
     pose = f"The pose stands on a null (towards {names})" if names else "The value depends on these errors"

@@ -161,8 +161,7 @@ class Airspace(Section):
     @cached_property
     def box_m(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Lower and upper corner of the smallest box about what the ranges and the fence allow, (3,) in m."""
-        fence_m = self.geofence_outline_m
-        if not len(fence_m):
+        if not len(fence_m := self.geofence_outline_m):
             return self.lower_m, self.upper_m
         low_m, high_m = [*fence_m.min(axis=0), -math.inf], [*fence_m.max(axis=0), math.inf]
         return np.maximum(self.lower_m, low_m), np.minimum(self.upper_m, high_m)

@@ -123,8 +123,7 @@ def _is_limit(key: str) -> bool:
 def _limits(feature: Feature) -> list[tuple[str, object, object, object]]:
     """Return place, value, unit and datum of the lower and the upper limit; nothing where none is stated."""
     properties, place = feature.properties, feature.place
-    layer = properties.get("layer")
-    if isinstance(layer, dict) and {"lower", "upper"} & layer.keys():  # of ED-318
+    if isinstance(layer := properties.get("layer"), dict) and {"lower", "upper"} & layer.keys():  # of ED-318
         return [
             (
                 f"{place}.layer.{word}",
@@ -164,8 +163,7 @@ def _joined(
     feature: Feature, low: _End | None, high: _End | None, ground_m: Ground, outwards: float
 ) -> PlainTable:
     """Return both ends over one thing; the ground is a lower end for every upper one."""
-    if low and low[:2] == (0.0, "altitude_m"):
-        low = None
+    low = None if low and low[:2] == (0.0, "altitude_m") else low
     if not (low or high):
         return {}
     key, ends_m = (high or low or ("", "altitude_m"))[1], [-_FAR_M, _FAR_M]

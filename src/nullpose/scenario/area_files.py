@@ -138,8 +138,7 @@ def _outline(fence: Area, ground_m: Ground) -> tuple[Polygon, list[str]]:
     """Return the polygon of a fence, or one in its circle, and what is said of the circle."""
     alt_m = ground_m["altitude_ellipsoid_m"] or ground_m["altitude_msl_m"] or 0.0  # of the local frame
     for lon_deg, lat_deg, stated_m in fence.cylinders:
-        radius_m = NoFlyZone._sound_part({"radius_m": stated_m}).radius_m
-        if radius_m is None:
+        if (radius_m := NoFlyZone._sound_part({"radius_m": stated_m}).radius_m) is None:
             raise refusal(f"{fence.place}.radius_m", f"got {described(stated_m)}, must be a radius in m")
         less_m = radius_m * (1.0 - np.cos(np.pi / DISC_SIDES))
         sides = f"a polygon of {DISC_SIDES} sides in it, up to {less_m:.2g} m smaller"
@@ -152,8 +151,7 @@ def _altitudes(airspace: PlainTable, fence: Area, ground_m: Ground) -> dict[str,
     bounds, limits = _bounds(airspace), NoFlyZone._sound_part(fence.limits)
     found = {key: list(ends_m) for key in RANGES if (ends_m := getattr(bounds, key)) is not None}
     for key, over in product(list(found), fence.limits):
-        limits_m = getattr(limits, over)
-        if limits_m is None:
+        if (limits_m := getattr(limits, over)) is None:
             raise refusal(f"{fence.place}.{over}", f"got {fence.limits[over]!r}, must be [low, high] in m")
         over_m = shift_m(fence.place, over, key, ground_m)
         found[key] = [max(found[key][0], limits_m[0] + over_m), min(found[key][1], limits_m[1] + over_m)]
@@ -189,8 +187,7 @@ def _box_m(airspace: PlainTable, half_m: float, place: Floats) -> Floats:
     fence: ArrayLike | None = bounds.geofence_m
     if bounds.geofence_lat_lon_deg:
         fence = enu_from_geodetic(np.insert(bounds.geofence_lat_lon_deg, 2, 0.0, axis=-1), place)[:, :2]
-    if fence is not None:
-        ends_m = np.clip(ends_m, np.min(fence, axis=0), np.max(fence, axis=0))
+    ends_m = np.clip(ends_m, np.min(fence, axis=0), np.max(fence, axis=0)) if fence is not None else ends_m
     sides_m = np.array([bounds.x_m or (-np.inf, np.inf), bounds.y_m or (-np.inf, np.inf)])
     return np.asarray(np.clip(ends_m, *sides_m.T))
 

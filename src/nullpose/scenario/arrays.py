@@ -191,8 +191,7 @@ class PointArrays:
         return point.noise_power_w or self.receiver.noise_power_w
 
     def _jamming_w(self, node: Node) -> float:
-        jamming_w = power_w(node.jamming_w, node.jamming_dbm)
-        if jamming_w > 0.0:
+        if (jamming_w := power_w(node.jamming_w, node.jamming_dbm)) > 0.0:
             return jamming_w
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
         gains = [ratio_from_db(node.gain_dbi + jammer.gain_dbi) for jammer in self.jammers]

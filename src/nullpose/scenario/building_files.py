@@ -125,6 +125,5 @@ def _notes(
         f"out of reach: {away}": away,
     }
     yield account(f"buildings: {sources.total()}{f': {shares}' if shares else ''}", counts, parts)
-    unread = Counter(key for _, height in found for key in height.unread)
-    if unread:
+    if unread := Counter(key for _, height in found for key in height.unread):
         yield f"not read: {', '.join(f'{key} (of {number})' for key, number in unread.items())}"

@@ -156,8 +156,7 @@ class Building(Section):
         if self.polygon_m and self.courtyards_m:
             import shapely
 
-            shape = shapely.Polygon(self.polygon_m, self.courtyards_m)
-            if not shape.is_valid:
+            if not (shape := shapely.Polygon(self.polygon_m, self.courtyards_m)).is_valid:
                 yield (
                     ("courtyards_m" if raw.get("courtyards_m") is not None else "courtyards_lat_lon_deg",),
                     "they must lie inside the outline, apart from each other, but do not "

@@ -174,8 +174,7 @@ def _channel_faults(
 
 def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
     """Yield what the objective needs and is not given, and what is given and has no meaning under it."""
-    record = RECORDS.get(scenario.objective)
-    if record is None:
+    if (record := RECORDS.get(scenario.objective)) is None:
         return
     for need in record.needs:
         for place, keys, present in _places_of(need, scenario, points):

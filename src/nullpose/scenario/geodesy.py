@@ -56,8 +56,7 @@ def wrapped(lon_deg: ArrayLike, about_deg: ArrayLike = 0.0) -> NDArray[np.float6
         lon_deg: longitudes [degrees], of any shape.
         about_deg: the one [degrees].
     """
-    turns = np.round(np.subtract(lon_deg, about_deg) / 360.0)
-    return np.asarray(np.subtract(lon_deg, 360.0 * turns))
+    return np.asarray(np.subtract(lon_deg, 360.0 * np.round(np.subtract(lon_deg, about_deg) / 360.0)))
 
 
 def ned_from_enu(vector: ArrayLike) -> NDArray[np.float64]:

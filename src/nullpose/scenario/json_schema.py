@@ -48,8 +48,7 @@ class _TomlSchema(GenerateJsonSchema):
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
         described = super().model_schema(schema)
         described.pop("title", None)
-        kind = schema["cls"]
-        if issubclass(kind, Section):
+        if issubclass(kind := schema["cls"], Section):
             # The class docstring speaks of Python; the fields describe themselves.
             described["description"] = str(described.get("description", "")).split("\n", 1)[0]
             either = {key for ways in kind.ways for group in ways.groups for key in group}

@@ -115,9 +115,7 @@ class NoFlyZone(Section):
     @property
     def shape(self) -> Literal["box", "cylinder", "polygon"]:
         """Which of the three shapes it has."""
-        if self.polygon_m is not None:
-            return "polygon"
-        return "box" if self.centre_m is None else "cylinder"
+        return "polygon" if self.polygon_m is not None else "box" if self.centre_m is None else "cylinder"
 
     @cached_property
     def outline_m(self) -> NDArray[np.float64]:

@@ -152,8 +152,7 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
     kinds: dict[str, type[Section]] = dict.fromkeys(POINT_LISTS, GroundPoint)
     kinds |= {"buildings": Building, "airspace": Airspace}
     whole = {**data} | {key: _located(kinds[key], data[key], origin) for key in kinds if key in data}
-    airspace = whole.get("airspace")
-    if isinstance(airspace, Mapping) and "no_fly" in airspace:
+    if isinstance(airspace := whole.get("airspace"), Mapping) and "no_fly" in airspace:
         whole["airspace"] = {**airspace, "no_fly": _located(NoFlyZone, airspace["no_fly"], origin)}
     return whole
 
@@ -165,8 +164,7 @@ def _located(kind: type[Section], raw: object, origin: Origin | None) -> Any:
     if not isinstance(raw, Mapping):
         return raw
     earthly = {key: raw[key] for key in EARTHLY if raw.get(key) is not None}
-    wanted = [EARTHLY[key] for key in earthly if raw.get(EARTHLY[key]) is None]
-    if not wanted:
+    if not (wanted := [EARTHLY[key] for key in earthly if raw.get(EARTHLY[key]) is None]):
         return raw
     sound = kind._sound_part(earthly)
     found = {} if origin is None else in_metres(sound, origin)
@@ -200,8 +198,7 @@ def in_metres(table: object, origin: Origin) -> dict[str, Floats]:
         if (value := getattr(table, key, None)) is not None
         and (zero_m := 0.0 if key == "alt_agl_m" else getattr(origin, key)) is not None
     ]
-    place = [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]
-    if heights_m and None not in place:
+    if heights_m and None not in (place := [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]):
         found["position_m"] = enu_from_geodetic([*place, heights_m[0]], origin.geodetic)
     for key, of_origin in EARTHLY_RANGES.items():
         ends_m, zero_m = getattr(table, key, None), getattr(origin, of_origin)

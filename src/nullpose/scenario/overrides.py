@@ -144,8 +144,7 @@ def _apply(raw: str | Override, data: PlainTable) -> None:
 
 def _value(path: str, text: str) -> object:
     with suppress(ValueError, RecursionError):  # it may be a bare word
-        tables = tomllib.loads(f"value = {text}")
-        if tables.keys() == {"value"}:
+        if (tables := tomllib.loads(f"value = {text}")).keys() == {"value"}:
             return tables["value"]
     with suppress(ValueError):
         return float(text)  # .5 and 5. are numbers to everyone but TOML

@@ -124,8 +124,7 @@ def _powers(scenario: Scenario, points: Mapping[str, GroundPoint]) -> Iterator[F
     }
     in_dbm = [emitter.power_dbm for emitter in powers.values()]
     for place, emitter in powers.items() if any(dbm is not None for dbm in in_dbm) else ():
-        power = emitter.power_w
-        if power is not None and _DBM[0] <= power <= _DBM[1]:
+        if (power := emitter.power_w) is not None and _DBM[0] <= power <= _DBM[1]:
             yield Fault(
                 f"{place}.power_w",
                 f"{power:g} W is {10.0 * math.log10(power) + 30.0:.1f} dBm, and other transmit powers are "
@@ -147,8 +146,7 @@ def _noises(scenario: Scenario, points: Mapping[str, GroundPoint]) -> Iterator[F
         for place, noise_w in noises_w.items()
         if 0.0 < noise_w < watts_from_dbm(_FAINTEST_DBM)
     )
-    hz = scenario.receiver.frequency_hz or math.inf
-    if hz < _LOWEST_HZ:
+    if (hz := scenario.receiver.frequency_hz or math.inf) < _LOWEST_HZ:
         words = f"{hz:g} Hz is below 1 MHz, as if it were in kHz or MHz; {hz:g} MHz is written {1e6 * hz:g}"
         yield Fault("receiver.frequency_hz", words)
 

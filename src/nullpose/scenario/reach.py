@@ -93,8 +93,7 @@ def find_position(
 def _halved(parts: Floats) -> Floats:
     """Return both halves of each part, cut across its longest side."""
     middles, halves = parts[:, 0], parts[:, 1]
-    is_longest = np.arange(3) == halves.argmax(axis=1)[:, None]
-    steps = np.where(is_longest, 0.5 * halves, 0.0)
+    steps = np.where(np.arange(3) == halves.argmax(axis=1)[:, None], 0.5 * halves, 0.0)
     return np.concatenate([np.stack([middles + s * steps, halves - steps], axis=1) for s in (-1.0, 1.0)])
 
 
@@ -166,8 +165,7 @@ def _reach_faults(
         reach_m, matrix_m = 0.0, np.zeros((3, 3))
         if isinstance(point, Uncertain):
             reach_m, matrix_m = point.uncertainty_reach_m, point.uncertainty_matrix_m
-        total_m = reach_m + error_m
-        if total_m == 0.0 or total_m < airspace.keep_out_m:
+        if (total_m := reach_m + error_m) == 0.0 or total_m < airspace.keep_out_m:
             continue
         half_m = np.sqrt(np.diag(matrix_m @ matrix_m.T)) + error_m
         centre_m = np.asarray(point.position_m)

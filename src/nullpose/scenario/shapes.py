@@ -57,8 +57,7 @@ def sound(polygon: Polygon, place: str, is_fence: bool) -> tuple[Polygon, bool]:
         polygon = shapely.remove_repeated_points(polygon, _SAME_CORNER_DEG)
     valid = polygon if polygon.is_valid else _valid(polygon)
     # GEOS has the area inside the rings, which spikes do not change and crossings do
-    is_crossing = abs(valid.area - polygon.area) > _SAME_CORNER_DEG * polygon.length
-    if is_crossing:
+    if is_crossing := abs(valid.area - polygon.area) > _SAME_CORNER_DEG * polygon.length:
         rings = [shapely.Polygon(ring) for ring in (polygon.exterior, *polygon.interiors)]
         wholes = [_valid(ring) for ring in rings]
         has_loops = np.any(shapely.area(rings) < (1.0 - _LOOPS) * shapely.area(wholes))

@@ -148,9 +148,7 @@ RollPitchYaw = Annotated[
 
 def power_w(watts: float | None, dbm: float | None) -> float:
     """Return a power however it was stated [W]; 0 where neither unit is given."""
-    if dbm is not None:
-        return watts_from_dbm(dbm)
-    return watts or 0.0
+    return watts_from_dbm(dbm) if dbm is not None else watts or 0.0
 
 
 def watts_from_dbm(power_dbm: float) -> float:

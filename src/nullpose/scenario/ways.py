@@ -47,8 +47,7 @@ class Ways:
 
     def _missing(self, group: tuple[str, ...], begin: str, present: Collection[str]) -> Iterator[str]:
         """Yield the fault that only a part of a group is present."""
-        missing = [key for key in group if not any(alike in present for alike in self.alike(key))]
-        if missing:
+        if missing := [key for key in group if not any(alike in present for alike in self.alike(key))]:
             others = ", or ".join(" and ".join(other) for other in self.groups if other != group)
             needed = " and ".join(" or ".join(self.alike(key)) for key in missing)
             yield f"{begin} given without {needed}; add it, or {others}"
@@ -59,8 +58,7 @@ class Ways:
 
     def others(self, key: str) -> Iterator[str]:
         """Yield the keys that a key takes the place of: those of the other ways."""
-        taken = self.taken([key])
-        if taken:
+        if taken := self.taken([key]):
             yield from chain.from_iterable(self._all(group) for group in self.groups if group not in taken)
 
     def schema(self) -> PlainTable:

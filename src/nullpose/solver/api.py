@@ -9,7 +9,7 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.errors import UsageError, checked
+from nullpose.errors import UsageError, checked, require_usage
 from nullpose.physics import Pose
 from nullpose.physics.pose import as_position
 from nullpose.problem.axis_field import AxisField
@@ -173,11 +173,11 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     position = as_position(position_m)
     family = build_family(scenario, any_channel=True)
     nearest_m = float(np.min(np.linalg.norm(family.points_m - position, axis=1)))
-    if nearest_m < family.keep_out_m:
-        raise UsageError(
-            f"position_m: {nearest_m:.3g} m from a ground point; "
-            f"allowed: at least keep_out_m = {family.keep_out_m:g} m"
-        )
+    require_usage(
+        nearest_m >= family.keep_out_m,
+        f"position_m: {nearest_m:.3g} m from a ground point; "
+        f"allowed: at least keep_out_m = {family.keep_out_m:g} m",
+    )
     band = scenario.axis_band
     axis = np.empty(3)
     if band == (0.0, 1.0):

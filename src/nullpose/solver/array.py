@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import USUAL, FloatArray, Quantity
 from nullpose.physics import Pose
@@ -75,11 +75,11 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
         UsageError: the objective is another than min-sinr.
         SolveError: no position reaches every node.
     """
-    if scenario.objective != USUAL:
-        raise UsageError(
-            f"array: given a scenario with objective {scenario.objective!r}; allowed: one "
-            "under which the drone receives; arrays are not there for others"
-        )
+    require_usage(
+        scenario.objective == USUAL,
+        f"array: given a scenario with objective {scenario.objective!r}; allowed: one "
+        "under which the drone receives; arrays are not there for others",
+    )
     search = ArraySearch(scenario, array, options.seed)
     bound = _search_and_prove(search, options)
     yaw_rad = math.remainder(search.state[3], 2.0 * math.pi)
@@ -166,8 +166,7 @@ def array_bound(search: ArraySearch, *, gap: float) -> ArrayBound:
         gap: relative gap to its value at which it is done.
     """
     value, nodes = math.exp(search.best), search.problem.nodes
-    upright = _vertical_bound(search, gap)
-    if upright.value <= value * (1.0 + gap):
+    if (upright := _vertical_bound(search, gap)).value <= value * (1.0 + gap):
         return upright
     from nullpose.solver.kernels.bounds.array_branch import branch_array
 

@@ -84,8 +84,7 @@ class ArraySearch(EpigraphSearch):
 
     def orient(self, positions_m: FloatArray) -> FloatArray:
         """Draw a state at each of some positions."""
-        yaws = self.rng.uniform(-math.pi, math.pi, (len(positions_m), 1))
-        return np.hstack([positions_m, yaws])
+        return np.hstack([positions_m, self.rng.uniform(-math.pi, math.pi, (len(positions_m), 1))])
 
     def judge(self, states: FloatArray) -> FloatArray:
         """Evaluate the smallest log ratio of states."""

@@ -102,8 +102,7 @@ def solve_scheme(
         UsageError: no jammer has that name.
         SolveError: no pose reaches every node.
     """
-    names = scenario.jammer_names
-    if null_jammer is not None and null_jammer not in names:
+    if null_jammer is not None and null_jammer not in (names := scenario.jammer_names):
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
     is_dipole = scenario.antenna_record.is_quadratic
     family = build_family(scenario, any_antenna=True, any_channel=True, any_function=is_dipole)

@@ -14,7 +14,7 @@ from nullpose.certificate.certificate import AFFINE, OFF_BAND, PROFILE, TOWARDS,
 from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.certificate.profile import profiles_of
-from nullpose.errors import UsageError, checked
+from nullpose.errors import UsageError, checked, require_usage
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
@@ -118,8 +118,7 @@ def _mixes(
     mix = np.full(len(used), -1, dtype=np.int64)
     for i in np.flatnonzero(used):
         of, by = ratios[i, : used[i]].tolist(), weights[i, : used[i]].tolist()
-        key = (*of, *by)
-        if key not in table:
+        if (key := (*of, *by)) not in table:
             table[key] = len(mixes)
             mixes.append(dict(zip(of, by, strict=True)))
         mix[i] = table[key]
@@ -146,24 +145,23 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
     Raises:
         UsageError: the scheme has no certificate for this scenario.
     """
-    if scenario.prisms is not None or scenario.has_custom_channels:
-        raise UsageError(
-            "certificate: buildings and channels that are a function in Python have none: they are proved in "
-            "floating point; leave out --certificate and --verify"
-        )
+    require_usage(
+        scenario.prisms is None and not scenario.has_custom_channels,
+        "certificate: buildings and channels that are a function in Python have none: they are proved in "
+        "floating point; leave out --certificate and --verify",
+    )
     antenna = scenario.antenna_record
-    if scenario.has_channels and not antenna.is_quadratic:
-        raise UsageError(
-            f"certificate: a {antenna.label} has one in free space only: in other channels its bound is "
-            "proved in floating point; leave out --certificate and --verify"
-        )
-    if not antenna.is_axisymmetric:
-        raise UsageError(
-            f"certificate: a {antenna.label} has none: its gain changes round its axis, and its bound is "
-            "proved in floating point; leave out --certificate and --verify"
-        )
-    fields = claimed_axes(scenario, scheme, null_jammer)
-    if fields is None:
+    require_usage(
+        antenna.is_quadratic or not scenario.has_channels,
+        f"certificate: a {antenna.label} has one in free space only: in other channels its bound is "
+        "proved in floating point; leave out --certificate and --verify",
+    )
+    require_usage(
+        antenna.is_axisymmetric,
+        f"certificate: a {antenna.label} has none: its gain changes round its axis, and its bound is "
+        "proved in floating point; leave out --certificate and --verify",
+    )
+    if (fields := claimed_axes(scenario, scheme, null_jammer)) is None:
         raise UsageError(
             f"certificate: scheme {scheme} has none in this scenario: its bound is not a proof about its own "
             "axes; solve another scheme, or leave out --certificate and --verify"
@@ -188,8 +186,10 @@ def certificate_of(solution: Result) -> Certificate:
         True
     """
     fields = require_certificate(solution.scenario, solution.scheme, solution.null_jammer)
-    if solution.objective.upper_bound is None:
-        raise UsageError("certificate: nothing was proved; leave out --fast (certify=False)")
+    require_usage(
+        solution.objective.upper_bound is not None,
+        "certificate: nothing was proved; leave out --fast (certify=False)",
+    )
     if not solution.proofs:
         few = solution.stats.boxes <= MOST_LEAVES  # then it is not for their number that there are no leaves
         what = f"halves boxes more than {MOST_HALVINGS} times" if few else "has too many leaves for one"
@@ -240,8 +240,7 @@ def verified(solution: Result, on_progress: Callable[[int, int], None] | None = 
 
 def _ratios(solution: Result, fields: Mapping[str, AxisField]) -> tuple[float, float]:
     """Evaluate the smallest ratio of a result's family at its pose, and the bound on it."""
-    objective = solution.objective
-    if not objective.quantity.is_rate:
+    if not (objective := solution.objective).quantity.is_rate:
         assert objective.upper_bound is not None
         return objective.value, objective.upper_bound
     pose = solution.pose

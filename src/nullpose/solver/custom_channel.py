@@ -176,8 +176,7 @@ def _bounded(search: CustomSearch, options: SolveOptions, deadline: float) -> tu
     """Halve boxes until the gap is closed; return the bound, the boxes and why it stopped short."""
     if not all(law.is_bounded for law in search.laws.values()):
         return None, 0, UNBOUNDED
-    corners_m = search.root()
-    if not np.all(np.isfinite(corners_m)):
+    if not np.all(np.isfinite(corners_m := search.root())):
         return None, 0, NO_SIDES
     order = count()
     heap = [(-math.inf, next(order), *corners_m)]
@@ -207,8 +206,7 @@ def _bounded(search: CustomSearch, options: SolveOptions, deadline: float) -> tu
                 options.on_progress(-heap[0][0] / value - 1.0, boxes)
             if limit_clock() > deadline:
                 reason = f"the time limit of {options.time_limit_s:g} s"
-            elif boxes >= options.node_limit:
-                reason = f"the node limit of {options.node_limit}"
+            reason = f"the node limit of {options.node_limit}" if boxes >= options.node_limit else reason
     except KeyboardInterrupt:
         reason = INTERRUPT
     return (None if heap[0][0] == -math.inf else -heap[0][0]), boxes, reason

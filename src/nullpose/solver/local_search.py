@@ -87,12 +87,11 @@ class LocalSearch(ABC):
             positions_m[::2, 2] = low_m[2]  # the optimum is often on the floor
             positions_m[: len(places_m)] = places_m[:drawn] or positions_m[:0]
             states = self.orient(positions_m)
-            values = self.judge(states)
-            if not np.any(values > -math.inf):  # a narrow airspace: begin where a dipole would be
+            if not np.any((values := self.judge(states)) > -math.inf):
+                # a narrow airspace: begin where a dipole would be
                 positions_m[:] = multistart(self.family, AxisField.free(), seed=0).position_m
                 self.family = loosened(self.family, BORDER_M)
-                states = self.orient(positions_m)
-                values = self.judge(states)
+                values = self.judge(self.orient(positions_m))
             best = np.argsort(-values)[: min(climbed, np.count_nonzero(values > -math.inf))]
             ends += [self.climb(states[k]) for k in best]
         before = -math.inf
@@ -105,8 +104,7 @@ class LocalSearch(ABC):
         """Bring a state into the domain, and keep it if it is the best so far; return its value."""
         inside = state.copy()
         inside[:3] = self._repair(state[:3])
-        value = float(self.judge(inside[None])[0])
-        if value > self.best:
+        if (value := float(self.judge(inside[None])[0])) > self.best:
             self.best, self.state = value, inside
         return value
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.errors import SolveError, UsageError, checked
+from nullpose.errors import SolveError, UsageError, checked, require_usage
 from nullpose.notebook import html_table, imported
 from nullpose.objectives import FloatArray, IntArray, Quantity
 from nullpose.physics import Pose, evaluate, to_db
@@ -168,8 +168,7 @@ def solve_many(
     """
     limits = SolveOptions(**options)
     _check(scenarios)
-    if airframes is not None and not len(airframes):
-        raise UsageError("airframes: given none; allowed: one or more")
+    require_usage(airframes is None or len(airframes), "airframes: given none; allowed: one or more")
     results = ManySolutions.blank(len(scenarios), 1 if airframes is None else len(airframes))
     flown = [scenarios[0].model_copy(update={"airframe": each}) for each in airframes or ()]
     for row, scenario in enumerate(scenarios):
@@ -187,8 +186,7 @@ def solve_many(
 
 
 def _check(scenarios: Sequence[Scenario]) -> None:
-    if not len(scenarios):
-        raise UsageError("scenarios: given none; allowed: one or more")
+    require_usage(len(scenarios), "scenarios: given none; allowed: one or more")
     for index, scenario in enumerate(scenarios):
         if scenario.objective_record.transmits or scenario.array is not None:
             kind = "an array" if scenario.array is not None else "a secrecy rate"

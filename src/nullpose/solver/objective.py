@@ -96,8 +96,7 @@ def status_of(objective: Objective, requested_gap: float, reason: str) -> tuple[
         SolveError: the solver says that the gap is reached and the reported numbers do not, by more than
             1e-6: a fault of nullpose.
     """
-    gap = objective.relative_gap
-    if gap is None:
+    if (gap := objective.relative_gap) is None:
         return Status.BEST_FOUND, reason
     if gap <= requested_gap:
         return Status.CERTIFIED, reason if reason == INTERRUPT else ""

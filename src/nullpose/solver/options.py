@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.objectives import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.scenario import Scenario
 
@@ -21,9 +21,7 @@ def default_gap(n_nodes: int) -> float:
     Args:
         n_nodes: how many nodes the scenario has.
     """
-    if n_nodes <= 3:
-        return 1e-6
-    return 1e-4 if n_nodes <= 20 else 1e-3
+    return 1e-6 if n_nodes <= 3 else 1e-4 if n_nodes <= 20 else 1e-3
 
 
 def default_gap_of(scenario: Scenario) -> float:
@@ -81,10 +79,13 @@ class SolveOptions:
     of_rate: bool = False
 
     def __post_init__(self) -> None:
-        if self.gap is not None and not (math.isfinite(self.gap) and 1e-8 <= self.gap <= 10.0):
-            raise UsageError(f"gap: given {self.gap!r}; allowed: 1e-8 to 10, relative")
-        if math.isnan(self.time_limit_s) or not self.time_limit_s > 0.0:
-            raise UsageError(f"time limit: given {self.time_limit_s!r}; allowed: more than 0 seconds")
+        require_usage(
+            self.gap is None or 1e-8 <= self.gap <= 10.0,
+            f"gap: given {self.gap!r}; allowed: 1e-8 to 10, relative",
+        )
+        require_usage(
+            self.time_limit_s > 0.0, f"time limit: given {self.time_limit_s!r}; allowed: more than 0 seconds"
+        )
         _require_whole("node limit", self.node_limit, 1)
         _require_whole("seed", self.seed, 0)
         if self.threads is not None:
@@ -127,5 +128,7 @@ class SolveOptions:
 
 
 def _require_whole(name: str, value: object, least: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise UsageError(f"{name}: given {value!r}; allowed: a whole number of at least {least}")
+    require_usage(
+        not isinstance(value, bool) and isinstance(value, int) and value >= least,
+        f"{name}: given {value!r}; allowed: a whole number of at least {least}",
+    )

@@ -117,13 +117,11 @@ class PatternSearch(EpigraphSearch):
         np.add.at(weight, self.family.numerator_point, self.family.numerator_weight)
         weight /= len(self.family.numerator_point) * math.exp(self.best)
         np.add.at(weight, self.family.denominator_point, self.family.denominator_weight)
-        squares = np.sum((self.family.points_m - self.state[:3]) ** 2, axis=1)
-        return int(np.argmax(weight / squares))
+        return int(np.argmax(weight / np.sum((self.family.points_m - self.state[:3]) ** 2, axis=1)))
 
     def _draw_attitudes(self, count: int) -> FloatArray:
         """Draw rotations that the airframe reaches, (count, 3, 3)."""
-        tilt_max_rad = self.reach.tilt_max_rad
-        if tilt_max_rad >= math.pi:
+        if (tilt_max_rad := self.reach.tilt_max_rad) >= math.pi:
             return np.asarray(Rotation.random(count, random_state=self.rng).as_matrix())
         tilt = tilt_max_rad * self.rng.uniform(size=count) * self.rng.choice([0.0, 1.0], size=count)
         yaw, towards = self.rng.uniform(-math.pi, math.pi, (2, count))

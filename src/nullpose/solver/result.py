@@ -155,9 +155,7 @@ class Result:
     @property
     def sensitivity(self) -> Sensitivity | None:
         """The smallest values found when attitude, position or jammers are off, in milliseconds."""
-        if self.error_sizes is None:
-            return None
-        return sensitivity(self.scenario, self.pose, self.error_sizes)
+        return None if self.error_sizes is None else sensitivity(self.scenario, self.pose, self.error_sizes)
 
     @property
     def interrupted(self) -> bool:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.errors import UsageError, checked
+from nullpose.errors import checked, require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import ErrorCase, ratios_under
@@ -54,8 +54,7 @@ class ErrorSizes:
     def __post_init__(self) -> None:
         for name, most in (("attitude_deg", 180.0), ("position_m", 1e7), ("jammers_m", 1e7)):
             size = getattr(self, name)
-            if not 0.0 <= size <= most:
-                raise UsageError(f"{name}: given {size!r}; allowed: 0 to {most:g}")
+            require_usage(0.0 <= size <= most, f"{name}: given {size!r}; allowed: 0 to {most:g}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,7 @@ from io import BytesIO
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.studio.answer import Answer
 from nullpose.studio.camera import aim
 from nullpose.studio.card import card_html
@@ -44,8 +44,9 @@ def current_answers(state: State) -> list[Answer]:
         UsageError: the present scene is not solved yet.
     """
     current = [answer for answer in map(state.current, state.cases) if answer is not None]
-    if len(current) < len(state.cases):
-        raise UsageError("the scene is being solved; try again when its pose is there")
+    require_usage(
+        len(current) >= len(state.cases), "the scene is being solved; try again when its pose is there"
+    )
     return current
 
 

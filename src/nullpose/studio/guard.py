@@ -115,8 +115,7 @@ class Guard:
 def _page(viser: _Answer, connection: ServerConnection, request: Request) -> Response | None:
     """Return viser's page with what the studio adds to it; None for a websocket."""
     request.headers.pop("Accept-Encoding", None)
-    response = viser(connection, request)
-    if response is not None:
+    if (response := viser(connection, request)) is not None:
         response.body = framed(response.body)
         response.headers.pop("Content-Length")
         response.headers["Content-Length"] = str(len(response.body))

@@ -122,8 +122,7 @@ def scale_range(values: ArrayLike, *, is_rate: bool = False) -> tuple[float, flo
     """
     per_unit, least = (10.0, _LEAST_RATE_SPAN) if is_rate else (1.0, _LEAST_SPAN)
     finite = np.asarray(values, dtype=float).ravel()
-    finite = finite[np.isfinite(finite)]
-    if finite.size == 0:
+    if (finite := finite[np.isfinite(finite)]).size == 0:
         return -least, 0.0
     high = float(np.ceil(per_unit * finite.max())) / per_unit + 0.0  # no minus before a nought
     low = float(np.floor(per_unit * np.percentile(finite, 5.0))) / per_unit

@@ -145,8 +145,7 @@ class Page:
             self.aim()
 
     def _render_panel(self) -> None:
-        history = self.session.history
-        if history is not self._shown:
+        if (history := self.session.history) is not self._shown:
             self.panel.render(history)
             self._shown = history
 
@@ -238,8 +237,7 @@ class Page:
         self.change(lambda state: with_typed(state, entry, text), name="What was typed")
 
     def _delete(self) -> None:
-        key = self.session.state.selected
-        if key is not None:
+        if (key := self.session.state.selected) is not None:
             self.change(lambda state: without(state, key), name="Deleting")
 
     async def _clicked(self, event: SceneClickEvent) -> None:  # in order, since it runs in the loop

@@ -35,8 +35,7 @@ def clicked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike)
     """
     if not state.tool:
         return replace(state, selected=picked(state, size_m, eye_m, direction))
-    place_m = ground_place_m(size_m, eye_m, direction)
-    if place_m is None:
+    if (place_m := ground_place_m(size_m, eye_m, direction)) is None:
         return state
     if state.tool not in (FENCE, RULER):
         kind = ADDED[state.tool]
@@ -67,8 +66,7 @@ def picked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) 
     off_rad = np.where(along > 0.0, np.arctan2(aside, along), np.pi).min(axis=1)
     if off_rad.min() <= _NEAR_RAD:
         return list(points)[int(np.argmin(off_rad))]
-    ground_m = ground_place_m(size_m, eye_m, direction)
-    if ground_m is None:
+    if (ground_m := ground_place_m(size_m, eye_m, direction)) is None:
         return None
     for i, zone in enumerate(state.scenario.airspace.no_fly):
         if zone.depth_m([*ground_m, np.clip(0.0, zone.floor_m, zone.ceiling_m)]) >= 0.0:

@@ -84,8 +84,7 @@ def _lines(curve: PowerCurve) -> dict[str, _Points]:
     """Return each scheme's powers and values, in the order of the legend."""
     lines: dict[str, _Points] = {scheme: [] for scheme in CURVES}
     for row in curve.table.rows:
-        value = row.objective.quantity.in_unit(row.objective.value)
-        if math.isfinite(value):
+        if math.isfinite(value := row.objective.quantity.in_unit(row.objective.value)):
             lines.setdefault(row.scheme, []).append((row.value, value))
     return {scheme: points for scheme, points in lines.items() if points}
 

@@ -26,8 +26,7 @@ def reading(
         eye_m: (3,) where the camera is, metres.
         direction: (3,) of the ray.
     """
-    key = picked(state, size_m, eye_m, direction)
-    if key is not None and key[0] != "no_fly":
+    if (key := picked(state, size_m, eye_m, direction)) is not None and key[0] != "no_fly":
         point, answer = dict(state.points())[key], state.current(state.case)
         return key, [point.name, *([] if answer is None else _link_lines(answer, key, point.position_m))]
     field = None if state.scale is None else state.scale.field

@@ -87,8 +87,7 @@ class Studio:
 
     def _disconnect(self, client: ClientHandle) -> None:
         with self._lock:  # so that the studio's end waits for what a page is being sent
-            page = self.pages.pop(client.client_id, None)
-            if page is not None:
+            if (page := self.pages.pop(client.client_id, None)) is not None:
                 page.close()
                 self._places.release()
 

@@ -37,8 +37,7 @@ class History:
             gesture: a name that all steps of one gesture share, which are undone together; empty for a change
                 of its own.
         """
-        now = self.present
-        if state.scene == now.scene:
+        if state.scene == (now := self.present).scene:
             return replace(self, present=replace(state, version=now.version, events=now.events))
         if gesture and gesture == self.gesture:
             return replace(self, present=self._next(state), future=())

@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 
-from nullpose.errors import UsageError, checked
+from nullpose.errors import checked, require_usage
 from nullpose.scenario import Scenario
 from nullpose.solver import Result, Scheme, solve
 from nullpose.solver.robust import RobustDetails
@@ -45,8 +45,7 @@ def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> 
         >>> nullpose.show(result)  # doctest: +SKIP
     """
     require_viser()
-    if not isinstance(found, Result):
-        found = solve(OPTIMUM.on(found))
+    found = solve(OPTIMUM.on(found)) if not isinstance(found, Result) else found
     page = _page(found, dark=dark)
     ipython = sys.modules.get("IPython")
     if ipython is not None and hasattr(ipython.get_ipython(), "kernel"):  # IPython in a terminal has none
@@ -63,8 +62,10 @@ def _page(result: Result, *, dark: bool) -> str:
     """Write the scene of a result as HTML."""
     from nullpose.studio.exports import scene_html
 
-    if hasattr(result.details, "weights"):
-        raise UsageError("show: given the result of an array; allowed: of one antenna. Try plot.plan(result)")
+    require_usage(
+        not hasattr(result.details, "weights"),
+        "show: given the result of an array; allowed: of one antenna. Try plot.plan(result)",
+    )
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM
     case = Case(label=result.label, scheme=scheme, robust=isinstance(result.details, RobustDetails))
     state = State(scenario=result.scenario, case=case)

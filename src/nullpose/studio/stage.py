@@ -133,8 +133,7 @@ def _map_shapes(scale: Scale, map_alpha: int, contour: Rgb | None) -> Shapes:
     shapes = {"/map/colours": Shape("image", plane | FLAT)}
     if contour is None:
         return shapes
-    contours = _contours(field, low, high)
-    if contours:
+    if contours := _contours(field, low, high):
         segments = [np.stack([line[:-1], line[1:]], axis=1) for level in contours.values() for line in level]
         raised = np.insert(np.concatenate(segments), 2, altitude_m + 1e-3 * width, axis=-1)
         shapes["/map/contours"] = lines(raised, contour, 1.3)

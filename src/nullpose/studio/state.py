@@ -191,9 +191,7 @@ class State:
         heard = self.scenario.nodes if self.scenario.transmitter is None else (self.scenario.transmitter,)
         reference_w = max(source.transmit_power_w for source in heard)
         strongest_w = max((jammer.transmit_power_w for jammer in self.scenario.jammers), default=0.0)
-        if strongest_w <= 0.0 or reference_w <= 0.0:
-            return None
-        return float(to_db(strongest_w / reference_w))
+        return None if strongest_w <= 0.0 or reference_w <= 0.0 else float(to_db(strongest_w / reference_w))
 
     def with_power_db(self, power_db: float) -> State:
         """Return the state with all jammers' powers scaled alike, so that the strongest has this one.
@@ -201,8 +199,7 @@ class State:
         Raises:
             ScenarioError: the scenario would be faulty.
         """
-        now_db = self.power_db
-        if now_db is None or math.isclose(now_db, power_db, abs_tol=1e-9):
+        if (now_db := self.power_db) is None or math.isclose(now_db, power_db, abs_tol=1e-9):
             return self
         by_db = power_db - now_db
         powers = (  # each in the unit that it is stated in
@@ -232,8 +229,7 @@ class State:
         if typed == self.power_text:
             return self
         with suppress(ValueError):
-            power_db = round(float(typed), _ROUND_DB)
-            if low_db <= power_db <= high_db:
+            if low_db <= (power_db := round(float(typed), _ROUND_DB)) <= high_db:
                 return self.with_power_db(power_db)
         allowed = f"allowed: a number from {low_db:g} to {high_db:g}, as in 12.5 or 1e1"
         words = f"given {typed or 'nothing'}; {allowed}; it stays at {self.power_text or 'none'}"

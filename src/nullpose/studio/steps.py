@@ -44,8 +44,7 @@ def quick_answers(state: State, case: Case) -> Iterator[Answer]:
     Raises:
         NullposeError: there is no pose, or the case has no meaning here.
     """
-    scenario = case.on(state.scenario)
-    answer = answer_of(state.version, case, solve(scenario, case.scheme, certify=False))
+    answer = answer_of(state.version, case, solve(case.on(state.scenario), case.scheme, certify=False))
     yield replace(answer, note=_QUICK_ROBUST) if case.robust else answer
 
 

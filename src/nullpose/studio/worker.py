@@ -103,8 +103,7 @@ class Worker:
         ]
         self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
         self._publish_all(state, state.case, power_curves(state, self._go_on))
-        best = next(filter(None, proved), None)
-        if best is not None:
+        if (best := next(filter(None, proved), None)) is not None:
             while map_compiler().is_busy():
                 self._rest()
             self._publish_all(state, best.case, [field_map(best, self._go_on)])
@@ -136,8 +135,7 @@ class Worker:
             self._go_on()
             if not is_rate and math.isfinite(gap) and time.monotonic() - published_at > _PROGRESS_S:
                 published_at = time.monotonic()
-                progress = Progress(version=state.version, case=case, gap=gap, boxes=boxes)
-                self._publish(progress)
+                self._publish(Progress(version=state.version, case=case, gap=gap, boxes=boxes))
 
         return on_progress
 

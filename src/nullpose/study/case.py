@@ -122,10 +122,8 @@ class Case(Section):
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Drop ``robust = false``; add the share of a least tilt, and how many scenes choose a best mount."""
-        vehicle = data.get("airframe")
-        if isinstance(vehicle, Mapping) and vehicle.get("tilt_max_deg") == "least":
-            vehicle = {**vehicle, "tilt_max_deg": 180.0}
-            data = {"reach": SHARE, **data, "airframe": vehicle}
+        if isinstance(vehicle := data.get("airframe"), Mapping) and vehicle.get("tilt_max_deg") == "least":
+            data = {"reach": SHARE, **data, "airframe": {**vehicle, "tilt_max_deg": 180.0}}
         if isinstance(vehicle, Mapping) and vehicle.get("mount_deg") == "best":
             data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}
@@ -194,8 +192,7 @@ class Case(Section):
             if self.reach is not None:
                 vehicle = f"the least tilt for {100.0 * self.reach:.6g} %"
             phrase = f"{vehicle} with {dipole}"
-        if self.name == FILE_VEHICLE:
-            phrase = f"the file's vehicle ({phrase})"
+        phrase = f"the file's vehicle ({phrase})" if self.name == FILE_VEHICLE else phrase
         chosen = f" (the best mount tried, on up to {self.mount_scenes} scenes)" if self.mount_scenes else ""
         return f"{phrase}{chosen}{' in its robust pose' if self.robust else ''}"
 

@@ -261,8 +261,7 @@ class TiltSearch(VehicleSearch):
             except SolveError:  # which proves nothing
                 reason = "no pose was found that reaches every node"
                 continue
-            other = self._at_least_tilt(result, mount_deg)
-            if other is not None:
+            if (other := self._at_least_tilt(result, mount_deg)) is not None:
                 least, good = min(_steps(other), steps), other
             elif self.judge(result) is Verdict.FALLS_SHORT:
                 most, bad = steps, result

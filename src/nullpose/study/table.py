@@ -208,8 +208,7 @@ class ResultTable:
         Raises:
             KeyError: the table has no such case.
         """
-        rows = tuple(row for row in self.rows if row.name == name)
-        if not rows:
+        if not (rows := tuple(row for row in self.rows if row.name == name)):
             raise KeyError(f"no case {name!r} in this table; it has {', '.join(self.names)}")
         return rows
 

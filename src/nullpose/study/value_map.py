@@ -163,8 +163,7 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
         return objective_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM  # of a robust pose
     fields = scheme.record.fields(scenario, result.null_jammer)
-    fixed = [field for field in (fields or {}).values() if not field.is_free]
-    if fixed:
+    if fixed := [field for field in (fields or {}).values() if not field.is_free]:
         each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in fixed]
         return np.asarray(np.max(each, axis=0))
     is_rate = result.objective.quantity.is_rate

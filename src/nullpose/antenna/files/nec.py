@@ -81,8 +81,7 @@ def _tables(lines: Lines, title: str) -> Iterator[tuple[int, str, Lines, float |
         if found := _FREQUENCY.search(text):
             frequency_hz = 1e6 * float(numbers([(line, found[1])], 1, "a frequency in MHz")[0, 0])
         below = range(at + 1, min(at + _HEADINGS, len(lines))) if title in text else range(0)
-        start = next((i for i in below if _is_row(lines[i][1])), None)
-        if start is None:
+        if (start := next((i for i in below if _is_row(lines[i][1])), None)) is None:
             continue  # no title, or averages alone
         end = next((i for i in range(start, len(lines)) if not _is_row(lines[i][1])), len(lines))
         rows = [(number, _SENSE.sub(" ", row)) for number, row in lines[start:end]]

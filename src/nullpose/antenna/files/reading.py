@@ -122,8 +122,7 @@ def _lines_of(path: str | os.PathLike[str]) -> Iterator[Lines]:
 def _content(path: Path) -> bytes:
     unpacker = zlib.decompressobj(wbits=31)
     try:
-        content = read_bytes(path, _MOST_BYTES)
-        if not content.startswith(b"\x1f\x8b"):
+        if not (content := read_bytes(path, _MOST_BYTES)).startswith(b"\x1f\x8b"):
             return content
         content = unpacker.decompress(content, _MOST_BYTES)
     except (OSError, ValueError, zlib.error) as error:

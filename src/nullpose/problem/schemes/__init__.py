@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, require_usage
 from nullpose.problem.schemes.maximum_gain import MAXIMUM_GAIN
 from nullpose.problem.schemes.optimum import OPTIMUM
 from nullpose.problem.schemes.record import SchemeRecord
@@ -48,8 +48,7 @@ class Scheme(StrEnum):
     def require_applicable(self, scenario: Scenario) -> None:
         """Raise a UsageError if the scheme has no meaning for a scenario."""
         reason = self.not_applicable(scenario)
-        if reason is not None:
-            raise UsageError(f"scheme {self.value}: {reason}; try another scheme")
+        require_usage(reason is None, f"scheme {self.value}: {reason}; try another scheme")
 
 
 def as_scheme(name: str) -> Scheme:

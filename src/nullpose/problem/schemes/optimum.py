@@ -15,15 +15,13 @@ if TYPE_CHECKING:
 def _fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField]:
     from nullpose.problem.axis_field import AxisField
 
-    field = AxisField.within(*scenario.axis_band)
-    if not field.is_free:
+    if not (field := AxisField.within(*scenario.axis_band)).is_free:
         return {"vertical": field}
     return {"free" if field.band == (0.0, 1.0) else "band": field}
 
 
 def _sentence(scenario: Scenario, null_jammer: str | None) -> str:
-    airframe = scenario.airframe
-    if airframe is None or airframe.is_omnidirectional:
+    if (airframe := scenario.airframe) is None or airframe.is_omnidirectional:
         return "and no antenna axis"
     tilt, mount = math.degrees(airframe.tilt_max_rad), airframe.mount_deg
     return (

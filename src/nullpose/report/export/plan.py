@@ -125,5 +125,4 @@ def _corners(origin: Origin, east_north_m: ArrayLike) -> list[Any]:
 
 def _is_over_or_under(zone: NoFlyZone, pose: Pose) -> bool:
     """Check if a pose would be inside a zone that had all altitudes."""
-    unbounded = zone.model_copy(update={"altitude_m": None})
-    return float(unbounded.depth_m(pose.position_m)) > BORDER_M
+    return float(zone.model_copy(update={"altitude_m": None}).depth_m(pose.position_m)) > BORDER_M

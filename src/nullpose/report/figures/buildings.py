@@ -48,8 +48,7 @@ def draw_shadows(axes: Axes, stage: Stage, altitude_m: float, frame_m: FloatArra
 
 def _add(axes: Axes, rings: Iterable[FloatArray], **look: object) -> None:
     """Draw polygons as one, of which overlaps are drawn once."""
-    paths = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
-    if paths:
+    if paths := [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]:
         axes.add_patch(PathPatch(Path.make_compound_path(*paths), **look))
 
 

@@ -153,7 +153,6 @@ def _difference_words(value: float, whole: float, quantity: Quantity) -> str:
     """Write a value, and its difference from the omnidirectional vehicle's."""
     if math.isnan(value):
         return "no pose reaches every node"
-    difference = value - whole
-    if not math.isfinite(difference) or difference == 0.0:
+    if not math.isfinite(difference := value - whole) or difference == 0.0:
         return number(value, quantity)
     return f"{number(value, quantity)}  ({'+' if difference > 0.0 else ''}{number(difference, quantity)})"

@@ -93,13 +93,12 @@ class Stage:
             view: size, camera and lengths.
             is_narrow: whether long names and those of many nodes are to stand in a key.
         """
-        quantity, worst, key = result.objective.quantity, binding_nodes(result), {}
+        quantity, worst = result.objective.quantity, binding_nodes(result)
         numbers = {
             each.node: with_unit(quantity.in_unit(quantity.at(each)), quantity) for each in result.links
         }
         note = f"At nodes: {quantity.noun},\nthe smallest in bold"
-        if is_narrow:
-            key = _key_of(result.scenario)
+        key = _key_of(result.scenario) if is_narrow else {}
         if key:
             note = f"Nodes with their {quantity.noun} in {quantity.unit}, the smallest in bold"
             numbers = {name: text.removesuffix(f" {quantity.unit}") for name, text in numbers.items()}

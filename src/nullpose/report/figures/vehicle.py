@@ -83,8 +83,7 @@ def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None
     shown = axes.pcolormesh(
         _TILTS_DEG, _MOUNTS_DEG, loss_db, cmap="viridis_r", vmin=0.0, vmax=3.0, rasterized=True
     )
-    seen = {db: look for db, look in _LINES.items() if loss_db.min() < db < loss_db.max()}
-    if seen:
+    if seen := {db: look for db, look in _LINES.items() if loss_db.min() < db < loss_db.max()}:
         lines = axes.contour(
             _TILTS_DEG, _MOUNTS_DEG, loss_db, levels=[*seen], colors=[*seen.values()], linewidths=0.9
         )

@@ -61,8 +61,7 @@ def _distributions(summary: Summary, points: Sequence[int]) -> Figure:
 
     def draw(axes: Axes, point: int) -> None:
         for place, (look, column) in enumerate(zip(looks, summary.value[:, point].T, strict=True)):
-            column = column[~np.isnan(column)]
-            if len(column):
+            if len(column := column[~np.isnan(column)]):
                 across, heights = step_curve(np.clip(column, *ends))
                 half = band_half_width(len(column))
                 band = np.clip(heights - half, 0.0, 1.0), np.clip(heights + half, 0.0, 1.0)
@@ -83,8 +82,7 @@ def _distributions(summary: Summary, points: Sequence[int]) -> Figure:
 def _range(summary: Summary, points: Sequence[int]) -> tuple[float, float]:
     """Choose the ends of the horizontal axis: deep values, down to no signal, are outside."""
     numbers = summary.value[:, list(points)]
-    finite = numbers[np.isfinite(numbers)]
-    if not len(finite):
+    if not len(finite := numbers[np.isfinite(numbers)]):
         return -1.0, 1.0
     low, high = float(np.min(finite)), float(np.max(finite))
     if not summary.quantity.is_rate:

@@ -29,8 +29,7 @@ def quantile(values: FloatArray, share: float) -> float:
         values: numbers, shape ``(n,)``; NaN are left out.
         share: between 0 and 1.
     """
-    numbers = values[~np.isnan(values)]
-    if not len(numbers):
+    if not len(numbers := values[~np.isnan(values)]):
         return math.nan
     rank = min(len(numbers), max(1, math.ceil(share * len(numbers) - 1e-9))) - 1
     return float(np.partition(numbers, rank)[rank])
@@ -53,8 +52,7 @@ def quantile_interval(values: FloatArray, share: float) -> tuple[float, float]:
     """
     from scipy.stats import quantile_test
 
-    numbers = values[~np.isnan(values)]
-    if not len(numbers):
+    if not len(numbers := values[~np.isnan(values)]):
         return math.nan, math.nan
     found = quantile_test(numbers, p=share).confidence_interval(CONFIDENCE)
     return float(found.low), float(found.high)

@@ -50,14 +50,13 @@ class StudyReport:
     def to_dict(self) -> dict[str, object]:
         """Return the report as plain data."""
         frame = self.summary.table()
-        rows = frame.astype(object).where(frame.notna(), None).to_dict(orient="records")
         return {
             "study": self.summary.spec.name,
             "complete": self.summary.is_complete,
             "scenes_done": self.summary.scenes,
             "answer": self.answer,
             "notes": list(self.notes),
-            "summary": rows,
+            "summary": frame.astype(object).where(frame.notna(), None).to_dict(orient="records"),
             "files": [str(path) for path in self.files],
         }
 

@@ -168,8 +168,7 @@ class Exchange:
 
     def level(self, ratio: float, share: float = 1.0) -> float:
         """Raise a ratio, at least 1 for a rate, by a share of the gap."""
-        if self.limits.of_rate:
-            ratio = max(1.0, ratio)
+        ratio = max(1.0, ratio) if self.limits.of_rate else ratio
         return ratio * (1.0 + replace(self.limits, gap=share * self.limits.target).ratio_gap(ratio))
 
     @property
@@ -187,8 +186,7 @@ class Exchange:
         """
         unit = axis / np.linalg.norm(axis)
         worst = self.inner.worst(position_m, unit)
-        value = min(case.worst for case in worst)
-        if value > self.best.worst:
+        if (value := min(case.worst for case in worst)) > self.best.worst:
             self.best = Visited(position_m.copy(), unit, value)
         return [case.binding for case in worst if case.worst < level * (1.0 - _ROUNDING)]
 

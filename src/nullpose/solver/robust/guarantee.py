@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.channel.model import BY_ELEVATION, CONSTANT
-from nullpose.errors import UsageError, checked
+from nullpose.errors import checked, require_usage
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.physics import ErrorCase, ratios_under, rotation_between
 from nullpose.physics.gain import worst_polarised
@@ -76,10 +76,13 @@ def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy:
         UsageError: a pose or an accuracy that is none.
     """
     p, u = as_position(position_m), np.array(axis, dtype=float)
-    if u.shape != (3,) or not np.all(np.isfinite(u)) or not np.any(u):
-        raise UsageError(f"axis: given {axis!r}; allowed: three finite numbers, not all zero")
-    if not _FINEST <= accuracy <= 0.5:
-        raise UsageError(f"accuracy: given {accuracy!r}; allowed: {_FINEST:g} to 0.5, relative")
+    require_usage(
+        u.shape == (3,) and np.all(np.isfinite(u)) and np.any(u),
+        f"axis: given {axis!r}; allowed: three finite numbers, not all zero",
+    )
+    require_usage(
+        _FINEST <= accuracy <= 0.5, f"accuracy: given {accuracy!r}; allowed: {_FINEST:g} to 0.5, relative"
+    )
     u /= np.linalg.norm(u)
     found = inner.worst(p, u, accuracy)
     for array in (p, u):
@@ -101,13 +104,15 @@ def require_dipole(scenario: Scenario) -> Scenario:
     Raises:
         UsageError: it has an array or buildings.
     """
-    if scenario.prisms is not None:
-        raise UsageError(
-            "buildings: a guarantee would end at the edge of a shadow; remove [[buildings]], or solve "
-            "without robust"
-        )
-    if scenario.array is not None:
-        raise UsageError("array: guarantees are for one dipole; remove [array], or solve without robust")
+    require_usage(
+        scenario.prisms is None,
+        "buildings: a guarantee would end at the edge of a shadow; remove [[buildings]], or solve "
+        "without robust",
+    )
+    require_usage(
+        scenario.array is None,
+        "array: guarantees are for one dipole; remove [array], or solve without robust",
+    )
     return scenario
 
 
@@ -124,11 +129,11 @@ class Inner:
         self.reach_m = float(scenario.receiver.position_error_m)
         channels = self.family.channels
         by_elevation = channels is not None and bool(np.any(channels[:, 0] == BY_ELEVATION))
-        if by_elevation and self.reach_m > 0.0:
-            raise UsageError(
-                f"receiver.position_error_m: given {self.reach_m:g} with line of sight by elevation; allowed "
-                'there for guarantees: 0, or average = "guaranteed"'
-            )
+        require_usage(
+            not by_elevation or self.reach_m == 0.0,
+            f"receiver.position_error_m: given {self.reach_m:g} with line of sight by elevation; allowed "
+            'there for guarantees: 0, or average = "guaranteed"',
+        )
         self.angle_rad = math.radians(scenario.receiver.attitude_error_deg)
         self.none = ErrorCase.none(scenario)
         self.moved = interferer_field(scenario, "offsets")

@@ -224,8 +224,7 @@ def in_words(scenario: Scenario, axis: FloatArray, case: ErrorCase) -> str:
     moved += zip(scenario.jammer_names, case.jammer_offsets_m, strict=True)
     moved += zip(scenario.eavesdropper_names, case.eavesdropper_offsets_m, strict=True)
     for name, offset_m in moved:
-        distance_m = float(np.linalg.norm(offset_m))
-        if distance_m > _LEAST_M:
+        if (distance_m := float(np.linalg.norm(offset_m))) > _LEAST_M:
             parts.append(f"{name} {distance_m:.3g} m off, {_direction(offset_m)}")
     return "; ".join(parts) if parts else "everything as stated"
 

@@ -97,8 +97,7 @@ def seconds_per_scene(spec_json: str, expected: str) -> float:
     for scenes in _CALIBRATING:
         began = time.perf_counter()
         solve_chunk(spec_json, expected, 0, scenes - 1)
-        seconds = time.perf_counter() - began
-        if seconds >= _CALIBRATED_S:
+        if (seconds := time.perf_counter() - began) >= _CALIBRATED_S:
             break
     return seconds / scenes
 

@@ -91,8 +91,7 @@ class Drawn(Rule):
 
     def read(self, value: object) -> object:
         """Make the distribution of a number; leave the raw table of one."""
-        value = plain(value)
-        if isinstance(value, Mapping | Distribution):
+        if isinstance(value := plain(value), Mapping | Distribution):
             return value
         return Distribution(fixed=self.quantity.read(value))
 
@@ -117,9 +116,7 @@ class Drawn(Rule):
             return f"got {numbers.tolist()}, must be two numbers, the lower first"
         if key == "log_uniform" and numbers[0] <= 0.0:
             return f"got a lower end of {float(numbers[0])!r}, must be above 0, as its logarithm is taken"
-        if wrong:
-            return f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})"
-        return ""
+        return f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})" if wrong else ""
 
     def _normal_fault(self, deviation: float) -> str:
         if self.quantity.low >= 0.0:

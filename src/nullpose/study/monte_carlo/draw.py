@@ -177,8 +177,7 @@ def _scene(spec: StudySpec, index: int, drawn: _Tables) -> Scenario:
             # The kind to draw again: the last that a fault is about, or else the least often drawn.
             blamed = [kind for kind in attempts if any(each.path.startswith(kind) for each in error.faults)]
             rarest = min(attempts, key=lambda kind: attempts[kind], default=None)
-            again = blamed[-1] if blamed else rarest
-            if again is None or attempts[again] + 1 >= MOST_DRAWS:
+            if (again := blamed[-1] if blamed else rarest) is None or attempts[again] + 1 >= MOST_DRAWS:
                 if not any(attempts.values()):
                     raise
                 fault = error.faults[0]
@@ -189,8 +188,7 @@ def _scene(spec: StudySpec, index: int, drawn: _Tables) -> Scenario:
 
 def _scene_of(values: PlainTable) -> Scenario:
     """Validate a scene; a drawn block on which a ground point stands is left out."""
-    town = values.get("buildings")
-    if not isinstance(town, Town):
+    if not isinstance(town := values.get("buildings"), Town):
         return Scenario.from_dict(values)
     scene = Scenario.from_dict(values | {"buildings": ()})
     return scene.model_copy(update={"buildings": town.around(scene.point_positions_m)})
@@ -203,8 +201,7 @@ def _draw(spec: StudySpec, index: int, kind: str, drawn: _Tables, attempt: int) 
         key = (index, _KINDS[kind], _STREAMS[stream], attempt)
         return np.random.Generator(np.random.PCG64(np.random.SeedSequence(spec.seed, spawn_key=key)))
 
-    what = drawn[kind]
-    if isinstance(what, DrawnChannel):
+    if isinstance(what := drawn[kind], DrawnChannel):
         return what.draw(chance)
     if isinstance(what, Blocks):
         return what.draw(chance, [each.extent_m for each in drawn.values() if isinstance(each, Points)])

@@ -98,8 +98,10 @@ class Folder:
         )
         wrong = [key for key, kind in _KEYS.items() if not isinstance(content.get(key), kind)]
         wrong = wrong or [key for key in ("scenes", "chunk") if not 1 <= content[key] < 10**9]
-        if wrong or content["objective"] not in QUANTITIES:
-            raise UsageError(f"{path}: {[*wrong, 'objective'][0]} is missing or wrong; restore this manifest")
+        require_usage(
+            not wrong and content["objective"] in QUANTITIES,
+            f"{path}: {[*wrong, 'objective'][0]} is missing or wrong; restore this manifest",
+        )
         return dict(content)
 
     @property
@@ -145,8 +147,7 @@ class Folder:
         Raises:
             UsageError: the folder has another study.
         """
-        manifest = self.manifest()
-        if manifest["spec_sha256"] != spec.digest:
+        if (manifest := self.manifest())["spec_sha256"] != spec.digest:
             before, now = manifest["spec"], spec.to_dict()
             keys = sorted(key for key in {*before, *now} - {"name"} if before.get(key) != now.get(key))
             raise UsageError(

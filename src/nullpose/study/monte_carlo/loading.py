@@ -57,8 +57,7 @@ def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> S
 
 def _read_scenarios(tables: PlainTable, folder: Path, allow_outside: bool) -> list[Fault]:
     """Put what the named scenario files hold into the raw spec; return their faults."""
-    scene = tables.get("scene")
-    if not isinstance(scene, Mapping):
+    if not isinstance(scene := tables.get("scene"), Mapping):
         return []
     if "scenarios" in scene:
         return [Fault("scene.scenarios", "cannot be stated in a file; name scenario files by file or files")]
@@ -91,8 +90,7 @@ def require_sound(spec: StudySpec, source: str = "study") -> None:
     """
     draws = Draws(spec)
     unsound = {index: _faults_at(draws, index, {}) for index in range(min(_TRIED_SCENES, spec.n_scenes))}
-    sound = [index for index, found in unsound.items() if not found]
-    if sound:
+    if sound := [index for index, found in unsound.items() if not found]:
         faults = _sweep_faults(draws, spec, sound[0])
         faults = faults or _cases_faults(spec, [draws.at(sound[0], 0), draws.at(sound[0], -1)])
     else:

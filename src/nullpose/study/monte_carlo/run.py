@@ -135,13 +135,11 @@ def run_study(
         require_sound(spec)
     prepare_folder(folder.path)
     with folder.locked():
-        is_new = not folder.has_manifest
-        if is_new:
+        if is_new := not folder.has_manifest:
             spec = with_best_mounts(spec, tally.tell)
         else:
             folder.require_same(spec, version("nullpose"))
-            spec = study_spec(folder.path)
-            to_do = _resume(folder, spec, tally)
+            to_do = _resume(folder, study_spec(folder.path), tally)
             if tally.at.done == tally.at.scenes:
                 tally.tell()
                 return study_status(folder.path)

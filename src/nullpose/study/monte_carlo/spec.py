@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.errors import UsageError
+from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario.crosscheck import shared_names
@@ -180,6 +180,8 @@ def require_number(noun: str, number: int, least: int, most: int) -> int:
     Raises:
         UsageError: it is out of range.
     """
-    if isinstance(number, bool) or not isinstance(number, int) or not least <= number <= most:
-        raise UsageError(f"{noun}: given {number!r}; allowed: {least} to {most}")
+    require_usage(
+        not isinstance(number, bool) and isinstance(number, int) and least <= number <= most,
+        f"{noun}: given {number!r}; allowed: {least} to {most}",
+    )
     return number

@@ -29,8 +29,7 @@ class _Axes(Rule):
     """Swept values by path."""
 
     def read(self, value: object) -> tuple[Axis, ...]:
-        if isinstance(value, tuple):
-            value = dict(value)
+        value = dict(value) if isinstance(value, tuple) else value
         if not isinstance(value, Mapping):
             raise rejection(f"got {described(value)}, must be a table headed [sweep]")
         axes: list[Axis] = []
@@ -42,8 +41,7 @@ class _Axes(Rule):
                 faults.append(((path,), str(error).replace("\n  ", "; ")))
         if faults:
             raise collected("sweep", faults)
-        size = math.prod(len(values) for _, values in axes)
-        if size > MOST_POINTS:
+        if (size := math.prod(len(values) for _, values in axes)) > MOST_POINTS:
             raise rejection(f"the grid has {size} combinations of values, at most {MOST_POINTS} are allowed")
         return tuple(axes)
 
@@ -74,8 +72,7 @@ def _values(raw: object) -> tuple[float, ...]:
         )
     for key in [each for each in raw if each not in _KEYS]:
         raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
-    missing = [key for key in ("from", "to", "points") if key not in raw]
-    if missing:
+    if missing := [key for key in ("from", "to", "points") if key not in raw]:
         raise rejection(
             f"{', '.join(missing)} missing; a table here has from, to, points and perhaps spacing"
         )
