@@ -106,7 +106,7 @@ STRUCK = {
     "tilt",
     "reach",
 }
-STRUCK |= {"kept out", "pose outside"}
+STRUCK |= {"pose outside"}
 
 
 def test_false_certificates_are_rejected(sound: dict[str, Certificate]) -> None:
@@ -164,6 +164,24 @@ def test_leaves_are_needed_one_and_all(sound: dict[str, Certificate]) -> None:
             low = np.where(np.arange(len(leaves)) == row, 1e-9, 1.0) * leaves.level
             if leaves.test[row] != KEPT_OUT:
                 assert f"leaf {row} " in rejected(with_leaves(one, level=low))
+
+
+def test_a_leaf_is_kept_out_only_where_it_is(sound: dict[str, Certificate]) -> None:
+    """Each leaf that says so of a box that sticks out of the ball is rejected."""
+    one = sound["ball"]
+    ball_m, root_m = one.scenario.airspace.keep_out_m, one.trees[0].root_m
+    point_m = one.scenario.node_positions_m[0]
+    leaves = one.trees[0].leaves
+    share = 2.0 ** -leaves.box[:, ::2]
+    low_m = root_m[0] + (root_m[1] - root_m[0]) * leaves.box[:, 1::2] * share
+    high_m = low_m + (root_m[1] - root_m[0]) * share
+    farthest_m = np.linalg.norm(np.maximum(abs(low_m - point_m), abs(high_m - point_m)), axis=1)
+    sticking_out = np.flatnonzero(farthest_m > ball_m * (1.0 + 1e-9))
+    assert len(sticking_out) >= 10
+    for row in sticking_out:
+        test, point = leaves.test.copy(), leaves.point.copy()
+        test[row], point[row] = KEPT_OUT, 0
+        assert rejected(with_leaves(one, test=test, point=point))
 
 
 def test_a_bound_that_is_too_low_is_rejected(sound: dict[str, Certificate]) -> None:

@@ -140,7 +140,9 @@ def test_zero_interference_on_a_ball(seed, scene):
         altitude_m=(1.2, 30.0),
         keep_out_m=5.0,
     )
-    assert solve(one, Scheme.ZERO_INTERFERENCE, seed=seed).objective.value >= 39.98
+    solution = solve(one, Scheme.ZERO_INTERFERENCE, seed=seed)
+    assert solution.status == "certified"
+    assert solution.objective.value >= 39.98
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ def lobed(x: Any, y: Any, z: Any) -> Any:
     return (1.0 - z**2) * (1.0 + 0.3 * x + 0.2 * y * z) + 0.01 + 0.05 * x**2 * z**2
 
 
-UNEVEN = [[2.0], [-0.6, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0, 0.0]]
+UNEVEN = [[1.0], [-0.3, 0.0, 0.0], [0.25, 0.0, 0.0, 0.0, 0.0]]
 """A gain that is the same all round, but not upside down."""
 
 

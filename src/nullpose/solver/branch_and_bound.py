@@ -16,6 +16,7 @@ INTERRUPT = "an interrupt"
 """The reason of a run that was ended by Ctrl-C."""
 MOST_LEAVES = 250_000
 """Leaves that a certificate has at most; a proof with more goes on, and has none."""
+_MOST_BYTES = 8e9  # of boxes still to do, and of leaves where they are kept
 INSIDE = 1.0 - 1e-4
 """The gap that is aimed at, of the gap asked for: value and bound are rounded."""
 
@@ -38,6 +39,7 @@ class BranchAndBound(ABC):
         self.deadline = began + limits.time_limit_s
         self.node_limit = max(1, limits.node_limit - nodes)
         self.keeps_leaves = True
+        self.rounding = 1e-9  # a pose better by less, relative, is the incumbent evaluated in another order
 
     @property
     @abstractmethod
@@ -49,8 +51,8 @@ class BranchAndBound(ABC):
         """Return the kernel that excludes all above ``value (1 + gap)``."""
 
     @abstractmethod
-    def improve(self, position_m: FloatArray, orientation: FloatArray) -> None:
-        """Take up a pose that a kernel found to be better, and what a climb from there leads to."""
+    def improve(self, position_m: FloatArray, orientation: FloatArray) -> bool:
+        """Take up a pose that a kernel found, or what a climb from there leads to; check that it is better."""
 
     @abstractmethod
     def search_thoroughly(self) -> None:
@@ -88,13 +90,16 @@ class BranchAndBound(ABC):
                     return "shadows of buildings that meet in one point"
                 kernel = self.exclusion_kernel(gap)
                 self.nodes += workers.work(kernel, self.chunk, until - self.nodes, pool)
-                for position_m, orientation in workers.better():
-                    self.improve(position_m, orientation)
+                improved = [self.improve(*pose) for pose in workers.better()]
+                if improved and not any(improved):
+                    self.rounding *= 10.0
                 if self.nodes >= self.nodes_of_search and not workers.done:
                     self.search_thoroughly()
                 self.keeps_leaves = self.keeps_leaves and self.has_space(workers)
                 if not self.keeps_leaves:
                     workers.drop_leaves()
+                if workers.size_bytes > _MOST_BYTES:
+                    return f"the {_MOST_BYTES / 1e9:g} GB that boxes may take"
                 if self.limits.on_progress is not None and not workers.done:
                     self.limits.on_progress(self.proved / self.value - 1.0, self.nodes)
         return ""

@@ -29,7 +29,6 @@ from nullpose.solver.worker_pool import Kernel, WorkerPool
 _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
 _GAPS = (0.5, 0.1, 0.02)
 _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
-_ROUNDING = 1e-9  # relative: a middle that is better by less is the incumbent again
 
 
 def solve_pattern(scenario: Scenario, family: Family, options: SolveOptions) -> Outcome:
@@ -81,7 +80,6 @@ class PatternRun(BranchAndBound):
         super().__init__(options, limit_clock())
         self.family, self.antenna, self.reach = family, antenna, reach
         self.search = PatternSearch(family, antenna, reach, options.seed)
-        self.rounding = _ROUNDING
         self.leaves = np.empty((0, 0))
         self.root = np.zeros((2, 3))
 
@@ -165,10 +163,9 @@ class PatternRun(BranchAndBound):
         """Check that a certificate can hold the leaves."""
         return workers.filled <= MOST_LEAVES
 
-    def improve(self, position_m: FloatArray, rotation: FloatArray) -> None:
-        """Take up a pose, and what a climb from there leads to."""
-        # what does not help, by rounding, must not be met again and again
-        self.rounding *= 1.0 if self.search.improve(position_m, rotation) else 10.0
+    def improve(self, position_m: FloatArray, rotation: FloatArray) -> bool:
+        """Take up a pose, or what a climb from there leads to; check that it is better."""
+        return self.search.improve(position_m, rotation)
 
     def search_thoroughly(self) -> None:
         """Search as without a proof, once."""

@@ -103,7 +103,6 @@ class _Run(BranchAndBound):
         self.incumbent, self.search = incumbent, search
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
-        self.rounding = 0.0  # a pose better by less, relative, is the incumbent evaluated in another order
         self.target = INSIDE * limits.ratio_gap(self.value)
         self.spare = _LATE
         # two forms have no duality gap (Brickman), unless a band is in force
@@ -190,11 +189,11 @@ class _Run(BranchAndBound):
         family, level = self.family, self.value * (1.0 + gap)
         return partial(self.branch, family.arrays, family.domain, self.axis_field.arrays, level, goal)
 
-    def improve(self, position_m: FloatArray, axis: FloatArray) -> None:
-        self._climb_from(position_m, axis, 0.01)
+    def improve(self, position_m: FloatArray, axis: FloatArray) -> bool:
+        return self._climb_from(position_m, axis, 0.01)
 
-    def _climb_from(self, position_m: FloatArray, axis: FloatArray, mu: float) -> None:
-        """Take up a pose, or the local maximum that it leads to."""
+    def _climb_from(self, position_m: FloatArray, axis: FloatArray, mu: float) -> bool:
+        """Take up a pose, or the local maximum that it leads to, if it is better; check that it is."""
         from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 
         family = self.family.arrays
@@ -203,8 +202,7 @@ class _Run(BranchAndBound):
         found = climb(self.family, self.axis_field, position_m, axis, mu=mu, steps=100)
         if found.log_value < start:
             found = replace(found, log_value=start, position_m=position_m, axis=axis)
-        if not self._take(found):  # a difference of rounding: such poses are not tried again
-            self.rounding = max(1e-9, 10.0 * self.rounding)
+        return self._take(found)
 
     def _take(self, found: Incumbent) -> bool:
         """Make a pose the incumbent if it is better; check that it is."""

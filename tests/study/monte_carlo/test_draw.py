@@ -213,6 +213,7 @@ STATES: list[tuple[str, dict[str, Any]]] = [
     ("jammers", {"power_dbm": 33.0, "channel": {"model": "free-space"}}),
     ("eavesdroppers", {"noise_dbm": -90.0, **WHIP, **BALL}),
     ("eavesdroppers", {"noise_w": 1e-5}),
+    ("eavesdroppers", {"bandwidth_hz": 2e7, "noise_figure_db": 6.0}),
 ]
 
 
