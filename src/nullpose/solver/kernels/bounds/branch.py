@@ -57,6 +57,7 @@ EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes
 _HALVINGS = 3
 
 _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
+_FINEST = 0.05  # side of a cell, over a box's size, below which smaller cells tell nothing more
 _FAINT = 1e-6  # what multipliers leave over that is too little for smaller boxes to be sure to exclude
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
@@ -94,6 +95,12 @@ def examine(family, domain, axis_field, goal, seen, row, workspace, axis):
     coarseness = _COARSENESS * radius / nearest
     verdict, sought = examine_free(family, domain, axis_field, goal, seen, row, coarseness, workspace, axis)
     return verdict, side, sought
+
+
+@inner_kernel
+def is_wide(row, least):
+    """Check whether the longer side of a box's cell of axes is longer than this."""
+    return max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > least
 
 
 @inner_kernel
@@ -166,8 +173,7 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
             if can_beat and beats_from(whole, domain, row, reached * row[LEVEL], goal.best, workspace, axis):
                 return BETTER, 1
             if primal == math.inf:  # no axis was met that is inside both cell and band
-                wide = max(row[CELL + 1] - row[CELL], row[CELL + 3] - row[CELL + 2]) > coarseness
-                return (BY_AXIS if is_free and wide else BY_POSITION), 1
+                return (BY_AXIS if is_free and is_wide(row, coarseness) else BY_POSITION), 1
             if not primal < 1.0:
                 break
         if excludes(family, domain, axis_field, frame, row, below, workspace):
@@ -179,7 +185,7 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or coarseness == 0.0  # one position has no halves
-    if split_axes and is_free:
+    if split_axes and is_free and (row[FACE] < 0.0 or is_wide(row, _FINEST * coarseness)):
         return BY_AXIS, 1
     if primal >= 1.0:
         workspace.rest[0] = math.inf
