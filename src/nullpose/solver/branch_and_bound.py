@@ -52,7 +52,7 @@ class BranchAndBound(ABC):
 
     @abstractmethod
     def improve(self, position_m: FloatArray, orientation: FloatArray) -> bool:
-        """Take up a pose that a kernel found, or what a climb from there leads to; check that it is better."""
+        """Take up a pose that a kernel found, or where a climb from it leads; check that it is better."""
 
     @abstractmethod
     def search_thoroughly(self) -> None:
