@@ -171,8 +171,10 @@ class Node(Noisy, Powered, GroundPoint):
         power_dbm: the same in dBm; both may be left out where the drone transmits.
         weight: the node's margin is its SINR over this; or else
         min_sinr_db: the SINR that the node requires [dB]; its margin is its SINR over this.
-        noise_w, noise_dbm, bandwidth_hz, noise_figure_db: noise of the node's own receiver, for the downlink;
-            that of [receiver] when left out.
+        noise_w: noise of the node's own receiver [W], for the downlink; or else
+        noise_dbm: the same in dBm; or else
+        bandwidth_hz: of the receiver, with
+        noise_figure_db: from which the noise follows; that of [receiver] when all are left out.
         jamming_w: jamming power that the node's own receiver gets [W], for the downlink; or else
         jamming_dbm: the same in dBm; worked out from the jammers when both are left out.
     """
