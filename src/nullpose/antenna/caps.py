@@ -115,7 +115,8 @@ def _finest(harmonics: Harmonics) -> FloatArray:
     found: _Rotated = {(0, 0, 0): _complex(harmonics)}
     gain, least = _values(found[0, 0, 0], theta, phi), []
     for order in range(1, _ORDER + 1):
-        fields = {power: _values(c, theta, phi) for power, c in _rotated_once_more(found).items()}
+        found = _rotated_once_more(found)
+        fields = {power: _values(c, theta, phi) for power, c in found.items()}
         most = np.zeros(gain.shape)
         for angle in angles:
             about = math.cos(angle) * south + math.sin(angle) * east

@@ -91,7 +91,8 @@ class LocalSearch(ABC):
                 # a narrow airspace: begin where a dipole would be
                 positions_m[:] = multistart(self.family, AxisField.free(), seed=0).position_m
                 self.family = loosened(self.family, BORDER_M)
-                values = self.judge(self.orient(positions_m))
+                states = self.orient(positions_m)
+                values = self.judge(states)
             best = np.argsort(-values)[: min(climbed, np.count_nonzero(values > -math.inf))]
             ends += [self.climb(states[k]) for k in best]
         before = -math.inf

@@ -123,7 +123,8 @@ class Case(Section):
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Drop ``robust = false``; add the share of a least tilt, and how many scenes choose a best mount."""
         if isinstance(vehicle := data.get("airframe"), Mapping) and vehicle.get("tilt_max_deg") == "least":
-            data = {"reach": SHARE, **data, "airframe": {**vehicle, "tilt_max_deg": 180.0}}
+            vehicle = {**vehicle, "tilt_max_deg": 180.0}
+            data = {"reach": SHARE, **data, "airframe": vehicle}
         if isinstance(vehicle, Mapping) and vehicle.get("mount_deg") == "best":
             data = {"mount_scenes": 64, **data, "airframe": {**vehicle, "mount_deg": 0.0}}
         return {key: value for key, value in data.items() if not (key == "robust" and value is False)}

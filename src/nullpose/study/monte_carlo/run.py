@@ -139,7 +139,8 @@ def run_study(
             spec = with_best_mounts(spec, tally.tell)
         else:
             folder.require_same(spec, version("nullpose"))
-            to_do = _resume(folder, study_spec(folder.path), tally)
+            spec = study_spec(folder.path)
+            to_do = _resume(folder, spec, tally)
             if tally.at.done == tally.at.scenes:
                 tally.tell()
                 return study_status(folder.path)
