@@ -234,8 +234,10 @@ class Eavesdropper(Noisy, Uncertain, GroundPoint):
     """A receiver that is not to hear what the drone sends; it may be uncertain.
 
     Args beside those of a ground point:
-        noise_w, noise_dbm, bandwidth_hz, noise_figure_db: its receiver's noise; that of [receiver] when left
-            out.
+        noise_w: noise of its receiver [W]; or else
+        noise_dbm: the same in dBm; or else
+        bandwidth_hz: of the receiver, with
+        noise_figure_db: from which the noise follows; that of [receiver] when all are left out.
     """
 
     header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
