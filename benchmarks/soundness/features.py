@@ -342,7 +342,8 @@ def _channel_ends(rng: np.random.Generator) -> Table:
     """Channels at the ends of what may be stated, in the paper's cases and with other features."""
     makers = (_plain, _plain, _airframe, _secrecy, _margins)
     table = quiet(rng, makers[int(rng.integers(len(makers)))](rng) | {"channel": channel_ends(rng)})
-    return table | {"scheme": str(rng.choice(["optimum", "optimum", "vertical"]))}
+    upright = rng.uniform() < 1.0 / 3.0 and "airframe" not in table
+    return table | {"scheme": "vertical" if upright else "optimum"}
 
 
 def _narrow(rng: np.random.Generator) -> Table:
