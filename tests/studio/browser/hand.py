@@ -59,7 +59,7 @@ class Hand:
         """The camera as the server knows it."""
         return self.ours._client.camera
 
-    def until(self, met: Callable[[], object], seconds: float = 60.0) -> None:
+    def until(self, met: Callable[[], object], seconds: float = 300.0) -> None:
         """Wait until something holds."""
         until = time.monotonic() + seconds
         while not met():
@@ -171,7 +171,7 @@ def opened(browser: Browser, running: Studio, script: str = "", **more: Any) -> 
     """Open a studio in a browser of its own, up to the first proof."""
     context = browser.new_context(**DESK | more)
     page = context.new_page()
-    page.set_default_timeout(90_000)
+    page.set_default_timeout(300_000)
     page.add_init_script(f"localStorage.setItem('np-explained', '1'); {script}")
     page.goto(running.address)
     page.wait_for_function(CERTIFIED)

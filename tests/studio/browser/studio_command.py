@@ -95,7 +95,7 @@ def test_the_printed_address_opens_in_a_browser(browser: Browser, start: Start, 
     command = start()
     address = command.address()
     page = browser.new_context().new_page()
-    page.set_default_timeout(90_000)
+    page.set_default_timeout(300_000)
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url))
     page.on("websocket", lambda websocket: asked.append(websocket.url))
