@@ -15,7 +15,7 @@ from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.channel import LinkChannel, PointChannels, excess_gain
 from nullpose.channel.elevation import elevation_excess
-from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, WIDTH
 from nullpose.channel.power_law import distance_excess
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -150,14 +150,14 @@ def random_family(
         keep_out_points_m=points_m,
         keep_out_m=keep_out_m,
         leak=float(np.choose(int(points_m[0, 0]) % 3, [0.0, 0.001, 0.3])),
-        channels=None if channel is None else np.tile(channel.row, (len(points_m), 1)),
+        channels=np.zeros((0, WIDTH)) if channel is None else np.tile(channel.row, (len(points_m), 1)),
     )
 
 
 def excess_over(family: Family, position_m: np.ndarray) -> np.ndarray:
     """The excess gains of a family's points at positions, (..., points), from the models."""
     to_points_m = family.points_m - position_m[..., None, :]
-    if family.channels is None:
+    if not len(family.channels):
         return np.ones(to_points_m.shape[:-1])
     kinds = ((BY_DISTANCE, distance_excess), (BY_ELEVATION, elevation_excess))
     groups = tuple((model, np.flatnonzero(family.channels[:, 0] == kind)) for kind, model in kinds)

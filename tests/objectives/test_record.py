@@ -51,7 +51,7 @@ def test_smallest_ratio_is_the_value_of_the_physics(name: str, seed: int) -> Non
     away = ratios.points_m - pose.position_m
     squared = np.sum(away**2, axis=1)
     link = 1.0 / squared - (away @ pose.antenna_axis) ** 2 / squared**2
-    for j, row in enumerate([] if ratios.channels is None else ratios.channels):
+    for j, row in enumerate(ratios.channels):
         seen_rad = np.arcsin(-away[j, 2] / np.sqrt(squared[j]))
         link[j] *= EXCESS[int(row[0])](row, np.sqrt(squared[j]), seen_rad, 0.0)
     leaks = ratios.denominator_weight * link[ratios.denominator_point]

@@ -51,8 +51,9 @@ def ratios_over() -> Callable[..., Ratios]:
         none, first = np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64)
         one, start = np.ones(1), np.zeros(2, dtype=np.int64)
         numbers = (np.zeros(1), one, first, first, one, start, none, np.zeros(0))
-        leaks = None if axes is None else np.full(len(axes), through)
-        rows = None if channel is None else PointChannels.of([channel] * len(points_m)).rows
+        axes = np.zeros((0, 3)) if axes is None else axes
+        leaks = np.full(len(axes), through)
+        rows = PointChannels.of([channel] * len(points_m) if channel else []).rows
         return Ratios(points_m, *numbers, leak=leak, ground_axes=axes, ground_leaks=leaks, channels=rows)
 
     return build

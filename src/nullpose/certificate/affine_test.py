@@ -200,7 +200,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
     """
     family, identity, above, below = weighted_sum(family, leaves)
     terms = [(*term, True) for term in above] + [(point, -scale, False) for point, scale in below]
-    dipoles = np.zeros_like(family.points_m) if family.ground_axes is None else family.ground_axes
+    dipoles = family.ground_axes if len(family.ground_axes) else np.zeros_like(family.points_m)
     jets = [
         (
             scale,

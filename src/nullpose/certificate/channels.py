@@ -60,7 +60,7 @@ def most_excess(family: Family, point: IntArray, square: FloatArray) -> Interval
         point: (b,).
         square: (b,) lower bounds.
     """
-    if family.channels is None:
+    if not len(family.channels):
         return 1.0
     kind, e, unit = family.channels[point].T[:3]
     is_law = kind == BY_DISTANCE
@@ -77,7 +77,7 @@ def amplitude(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> 
         point: (b,).
         is_above: whether the link is to be bounded from above, else from below.
     """
-    if family.channels is None:
+    if not len(family.channels):
         return None
     unit, zeros = Interval(np.ones(len(boxes))), Interval(np.zeros((3, len(boxes))))
     parts = ((BY_DISTANCE, _by_distance), (BY_ELEVATION, _by_elevation))
@@ -221,7 +221,7 @@ def excess(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Exc
 
     An end of the range stands for all of it, where that leaves out less.
     """
-    if family.channels is None:
+    if not len(family.channels):
         return None
     unity, zeros = Interval(np.ones(len(boxes))), Interval(np.zeros((6, len(boxes))))
     parts = ((BY_DISTANCE, _excess_by_distance), (BY_ELEVATION, _excess_by_elevation))
@@ -288,7 +288,7 @@ def excess_at(family: Family, position_m: Iterable[Fraction]) -> Interval | None
         family: with its channels.
         position_m: (3,) metres.
     """
-    if family.channels is None:
+    if not len(family.channels):
         return None
     place = np.array([float(x) for x in position_m])
     many = np.tile(place, (len(family.points_m), 1))

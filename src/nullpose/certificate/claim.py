@@ -53,7 +53,7 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
         "there are no certificates of robust poses": len(family.turn) > 0,
         "there are no certificates of scenes with buildings yet": len(family.shadow_sides) > 0,
         "antennas with a pattern have certificates in free space only": (
-            family.channels is not None and not certificate.scenario.antenna_record.is_quadratic
+            len(family.channels) > 0 and not certificate.scenario.antenna_record.is_quadratic
         ),
         f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
         "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),

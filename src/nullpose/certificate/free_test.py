@@ -36,7 +36,7 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
     holds, vectors = _holds(family, field, leaves, boxes, None)
     left = np.flatnonzero(~holds)
     failed = leaves.chosen(left)
-    if len(left) and family.ground_axes is not None:  # in coordinates that turn too fast, still ones may do
+    if len(left) and len(family.ground_axes):  # in coordinates that turn too fast, still ones may do
         failed = replace(failed, test=np.where(failed.test == TOWARDS, WORLD, failed.test))
     if len(left):  # near a null the denominators' remainders may be had smaller
         holds[left], _ = _holds(family, field, failed, boxes.chosen(left), vectors[:, left])
@@ -47,7 +47,7 @@ def _holds(
     family: Family, field: AxisField, leaves: Leaves, boxes: Boxes, vectors: FloatArray | None
 ) -> tuple[np.ndarray, FloatArray]:
     """Check which boxes are excluded, and find about the largest eigenvalues' vectors at their centres."""
-    if family.ground_axes is not None:
+    if len(family.ground_axes):
         held = [(q, weight) for q, weight, _ in constants(field, leaves)]
         total, shear = dipole_sum(family, leaves, boxes, held)
         whole, turning = shear.gram, shear.on

@@ -151,10 +151,10 @@ def smallest_ratio(
         profile: its gain, if it is no dipole.
         gains: (m,) excess gains of all points there; None in free space.
     """
-    assert (gains is None) == (family.channels is None)
+    assert (gains is None) == (len(family.channels) == 0)
     leak = Fraction(family.leak)
     none = np.zeros_like(family.points_m), np.ones(len(family.points_m))
-    dipoles = none if family.ground_axes is None else (family.ground_axes, family.ground_leaks)
+    dipoles = (family.ground_axes, family.ground_leaks) if len(family.ground_axes) else none
     rows = zip(*map(exact, (family.points_m, *dipoles)), strict=True)
     links = np.array(
         [

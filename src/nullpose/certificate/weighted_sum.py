@@ -39,8 +39,8 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         family: the ratios.
         leaves: with multipliers and level.
     """
-    through = family.ground_leaks  # 1 without a dipole: such a point stays one
-    leaks = np.zeros(len(family.points_m)) if through is None else np.where(through < 1.0, through, 0.0)
+    leaks = np.zeros(len(family.points_m))
+    leaks[: len(family.ground_leaks)] = family.ground_leaks * (family.ground_leaks < 1.0)
     leaky, twin = np.flatnonzero(leaks), np.cumsum(leaks > 0.0) + len(leaks) - 1
 
     def parts(point: IntArray, scale: Interval) -> list[Multiple]:
@@ -71,7 +71,7 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         family = family.changed(
             points_m=np.vstack([family.points_m, family.points_m[leaky]]),
             ground_axes=np.vstack([family.ground_axes, np.zeros((len(leaky), 3))]),
-            ground_leaks=None,
-            channels=None if rows is None else np.vstack([rows, rows[leaky]]),
+            ground_leaks=np.zeros(0),
+            channels=np.vstack([rows, rows[leaky]]) if len(rows) else rows,
         )
     return family, identity, above, below

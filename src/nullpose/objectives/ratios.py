@@ -39,12 +39,12 @@ class Ratios(NamedTuple):
         denominator_weight: (e,) ``b_e``, m^2.
         turn: (m, 3, 3) rotations: point j sees the axis ``turn[j] u``; or (0, 3, 3), where all see u itself.
         leak: l, the antenna's gain along its axis; it is 1 across it.
-        ground_axes: (m, 3) v, the unit axis of a point's dipole, zero where it has none; None where no point
-            has one.
-        ground_leaks: (m,) f, the gain of a point's dipole along its axis, 1 where it has none; None where no
+        ground_axes: (m, 3) v, the unit axis of a point's dipole, zero where it has none; or (0, 3), where no
             point has one.
+        ground_leaks: (m,) f, the gain of a point's dipole along its axis, 1 where it has none; or (0,), where
+            no point has one.
         channels: (m, 6) the row of each point's channel (:mod:`nullpose.channel`), whose excess gain
-            multiplies its ``M(r)``; None where all are in free space.
+            multiplies its ``M(r)``; or (0, 6), where all are in free space.
         shadows_of_point: (m + 1,) where the shadows of each point begin in ``shadow_start``, and where the
             last ones end; (1,) without buildings.
         shadow_start: (n + 1,) where the sides of each shadow begin.
@@ -63,21 +63,16 @@ class Ratios(NamedTuple):
     denominator_weight: FloatArray
     turn: FloatArray = np.zeros((0, 3, 3))
     leak: float = 0.0
-    ground_axes: FloatArray | None = None
-    ground_leaks: FloatArray | None = None
-    channels: FloatArray | None = None
+    ground_axes: FloatArray = np.zeros((0, 3))
+    ground_leaks: FloatArray = np.zeros(0)
+    channels: FloatArray = np.zeros((0, WIDTH))
     shadows_of_point: IntArray = np.zeros(1, dtype=np.int64)
     shadow_start: IntArray = np.zeros(1, dtype=np.int64)
     shadow_sides: FloatArray = np.zeros((0, 5))
 
-    @property
-    def variant(self) -> tuple[bool, bool]:
-        """Whether any point has a dipole, and any a channel: kernels are compiled for each case."""
-        return self.ground_axes is not None, self.channels is not None
 
-
-def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, FloatArray | None, FloatArray]:
-    """Return the dipoles' axes, (m, 3), and leaks, (m,), None without dipoles, and the largest gains, (m,).
+def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the dipoles' axes, (m, 3), and leaks, (m,), empty without dipoles, and the largest gains, (m,).
 
     Args:
         scenario: with its points.
@@ -86,7 +81,7 @@ def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray | None, Float
     groups = [(getattr(scenario, f"{k}_antennas"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
     parts = [antennas or (np.zeros((n, 3)), np.ones(n), np.ones(n)) for antennas, n in groups]
     axes, shares, leaks = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return (axes, leaks, shares) if np.any(axes) else (None, None, shares)
+    return (axes, leaks, shares) if np.any(axes) else (axes[:0], leaks[:0], shares)
 
 
 def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[dict[str, Any], FloatArray]:

@@ -51,7 +51,7 @@ class Family:
         return Family(**self.arrays._asdict(), **place._asdict())
 
     @property
-    def fields(self) -> dict[str, FloatArray | IntArray | float | None]:
+    def fields(self) -> dict[str, FloatArray | IntArray | float]:
         """Every array by name, and the keep-out radius."""
         return self.arrays._asdict() | self.domain._asdict()
 
@@ -59,7 +59,7 @@ class Family:
     def digest(self) -> str:
         """SHA-256 of every number in the family: two families with the same digest are the same problem."""
         sha = hashlib.sha256()
-        for name in sorted(name for name, value in self.fields.items() if value is not None):
+        for name in sorted(self.fields):
             array = np.ascontiguousarray(getattr(self, name))
             sha.update(f"{name}:{array.dtype.str}:{array.shape};".encode())
             sha.update(array.tobytes())

@@ -70,10 +70,9 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         denominator_of.append(groups[key])
     ratios = np.array([case.ratio for case in cases], dtype=np.int64)
     _, points_m, rotations, originals = map(np.array, zip(*copies.values(), strict=True))
+    of_points = {name: getattr(nominal, name) for name in ("ground_axes", "ground_leaks", "channels")}
     return nominal.changed(
-        ground_axes=None if nominal.ground_axes is None else nominal.ground_axes[originals],
-        ground_leaks=None if nominal.ground_leaks is None else nominal.ground_leaks[originals],
-        channels=None if nominal.channels is None else nominal.channels[originals],
+        **{name: rows[originals] for name, rows in of_points.items() if len(rows)},
         points_m=points_m,
         turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
         numerator_isotropic=nominal.numerator_isotropic[ratios],

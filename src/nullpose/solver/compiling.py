@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from nullpose.channel.model import WIDTH
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.background_compiler import LOOK_S, BackgroundCompiler
@@ -85,67 +84,56 @@ def _compiling() -> Any:
     return total
 
 
-def precompile(variant: tuple[bool, bool]) -> None:
+def precompile() -> None:
     """Compile search and proof if this process has not, or load them from the cache.
 
     Two other processes compile them where a folder keeps what they make; otherwise this one does.
-
-    Args:
-        variant: of the ratios, for each of which the kernels are others.
     """
     from numba.core import event
 
     from nullpose.solver.kernels.bounds.branch import branch
 
-    if _is_compiled(branch, variant):
+    if _is_compiled(branch):
         return
     with _ONE_AT_A_TIME, event.trigger_event(PREPARING):
         if interpreted.compiler is None and branch.stats.cache_path is not None:
             elsewhere = BackgroundCompiler()
             with elsewhere.in_use():
-                compile_proof(variant)
-                compile_search(variant)
+                compile_proof()
+                compile_search()
                 while elsewhere.is_busy():
                     time.sleep(LOOK_S)
-        compile_proof(variant)
-        compile_search(variant)
+        compile_proof()
+        compile_search()
 
 
-def _is_compiled(kernel: object, variant: tuple[bool, bool]) -> bool:
+def _is_compiled(kernel: object) -> bool:
     """Test if nothing is to be compiled in this process: done, or switched off."""
-    return isinstance(kernel, FunctionType) or variant in getattr(kernel, "entries", ())
+    return isinstance(kernel, FunctionType) or bool(getattr(kernel, "overloads", False))
 
 
-def compile_proof(variant: tuple[bool, bool]) -> None:
-    """Compile the branch and bound by giving it no box to work off.
-
-    Args:
-        variant: of the ratios.
-    """
+def compile_proof() -> None:
+    """Compile the branch and bound by giving it no box to work off."""
     from nullpose.solver.kernels.bounds import branch, node
     from nullpose.solver.kernels.bounds.records import Goal
 
-    family, field = _smallest_family(variant), AxisField.free()
+    family, field = _smallest_family(), AxisField.free()
     row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
     problem = family.arrays, family.domain, field.arrays
     branch.branch(*problem, 1.0, Goal(1.0, row, 0.0), rows, 0, rows, 0, 1, none, none)
 
 
-def compile_search(variant: tuple[bool, bool]) -> None:
-    """Compile what is needed beside that, by a search of no round and a climb of no step.
-
-    Args:
-        variant: of the ratios.
-    """
+def compile_search() -> None:
+    """Compile what is needed beside that, by a search of no round and a climb of no step."""
     from nullpose.solver.kernels.bounds.node import COLUMNS, keep_largest
     from nullpose.solver.kernels.bounds.root import fill_root
     from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
     from nullpose.solver.kernels.search.search import search_and_climb
     from nullpose.solver.multistart import climb
 
-    if _is_compiled(search_and_climb, variant):
+    if _is_compiled(search_and_climb):
         return
-    family, weight = _smallest_family(variant), np.ones(1)
+    family, weight = _smallest_family(), np.ones(1)
     up, high_m, row = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0]), np.zeros(COLUMNS)
     climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
     fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, row)
@@ -153,13 +141,9 @@ def compile_search(variant: tuple[bool, bool]) -> None:
     keep_largest(weight, 1, row)
 
 
-def _smallest_family(variant: tuple[bool, bool]) -> Family:
-    """Build a family of one ratio: its arrays have the types of any other's of the variant."""
-    dipoles, channels = variant
+def _smallest_family() -> Family:
+    """Build a family of one ratio: its arrays have the types of any other's."""
     return Family(
-        ground_axes=np.zeros((1, 3)) if dipoles else None,
-        ground_leaks=np.zeros(1) if dipoles else None,
-        channels=np.zeros((1, WIDTH)) if channels else None,
         points_m=np.zeros((1, 3)),
         numerator_isotropic=np.zeros(1),
         numerator_weight=np.ones(1),

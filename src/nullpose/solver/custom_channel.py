@@ -155,7 +155,7 @@ def solve_custom(
     Raises:
         SolveError: no pose reaches every node.
     """
-    (precompile if options.certify else compile_search)((False, False))
+    (precompile if options.certify else compile_search)()
     search = CustomSearch(scenario, family, fields, options.seed)
     began = limit_clock()
     search.search()

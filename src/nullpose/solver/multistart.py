@@ -205,7 +205,7 @@ def _run(
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
     ratios = family.arrays
     multipliers = np.empty(len(ratios.numerator_point))
-    log_value, starts, evaluations = entry_of(search_and_climb, ratios)(
+    log_value, starts, evaluations = entry_of(search_and_climb)(
         ratios,
         family.domain,
         axis_field.arrays,

@@ -99,7 +99,7 @@ class _Run(BranchAndBound):
         super().__init__(limits, began, nodes)
         ratios = family.arrays
         self.family, self.axis_field = family, axis_field
-        self.node, self.branch = node, entry_of(branch.branch, ratios)
+        self.node, self.branch = node, entry_of(branch.branch)
         self.incumbent, self.search = incumbent, search
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
@@ -110,7 +110,7 @@ class _Run(BranchAndBound):
             len(ratios.numerator_point) > 2 or axis_field.band != (0.0, 1.0)
         )
         self.incumbent_row = np.zeros(node.COLUMNS)  # its multipliers are the incumbent's
-        self.proved, farthest = entry_of(root.fill_root, ratios)(
+        self.proved, farthest = entry_of(root.fill_root)(
             ratios,
             family.domain,
             incumbent.log_value,

@@ -24,7 +24,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 def summed(family, axis_field, kind, anchor, row, basis, matrix, slopes, rest):
     """Fill the frame and the sum of a row."""
     frame = frame_at(family, kind, anchor, row[CENTRE:HALF], row[HALF:LEVEL], basis)
-    add_dipole_sum(family, family.ground_axes, axis_field, frame, row, matrix, slopes, rest)
+    add_dipole_sum(family, axis_field, frame, row, matrix, slopes, rest)
 
 
 @kernel

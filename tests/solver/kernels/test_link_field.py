@@ -49,7 +49,7 @@ def test_an_amplitude_encloses_a_million_samples(
         centre = POINT[0] + rng.normal(size=3) * 10.0 ** rng.uniform(0.5, 2.0)
         reach = np.linalg.norm(centre - POINT[0])
         half = reach * 10.0 ** rng.uniform(-4.0, -1.0, size=3)
-        field = amplitude(ratios, ratios.channels, 0, is_above, centre, half)
+        field = amplitude(ratios, 0, is_above, centre, half)
         samples = centre + rng.uniform(-1.0, 1.0, (SAMPLES, 3)) * half
         h, at_centre = roots(channel, samples), float(roots(channel, centre))
         if field.slope == 0.0 and field.bend == 0.0 and channel is not None:
@@ -75,10 +75,10 @@ def test_an_amplitude_encloses_a_million_samples(
     assert ends < BOXES
 
 
-def test_the_rules_give_the_lemmas_of_free_space() -> None:
+def test_the_rules_give_the_lemmas_of_free_space(ratios_over: Callable) -> None:
     """At rest 6 and 4 over a^4; in a turning frame what lemma 2 adds; of the anchor 6 and 2."""
     a, rho = 20.0, 30.0
-    field = amplitude(None, None, 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
+    field = amplitude(ratios_over(POINT, 0.0), 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
     reach = scaled_inverse(field, a)
     assert rise_of(reach, reach) == pytest.approx(6.0 / a**4)
     assert fall_of(reach) == pytest.approx(4.0 / a**4)
@@ -96,6 +96,6 @@ def test_a_power_law_has_the_exact_rise(ratios_over: Callable[..., Ratios]) -> N
     a = 20.0
     for alpha in (2.0, 2.5, 4.0, 6.0):
         ratios = ratios_over(POINT, 0.0, channel=power_law(alpha, 1.0))
-        field = amplitude(ratios, ratios.channels, 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
+        field = amplitude(ratios, 0, True, POINT[0] + [a, 0.0, 0.0], np.zeros(3))
         reach = scaled_inverse(field, a)
         assert rise_of(reach, reach) == pytest.approx(alpha * (alpha + 1.0) / a ** (alpha + 2.0))

@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from nullpose.antenna import QuadraticAntenna
+from nullpose.channel.model import WIDTH
 from nullpose.physics.gain import dipole_gain
 from nullpose.solver.kernels.search.set_links import Sets
 from nullpose.solver.kernels.search.worst_case_links import clearance, strongest_link
@@ -19,13 +20,19 @@ LOOSE, ROUNDING = 1e-3, 1e-12
 
 def ball(radius: float) -> Sets:
     """Returns the set of one ball."""
-    return Sets(np.array([radius]), None, None, np.zeros((1, 3)), np.array([radius]))
+    radii = np.array([radius])
+    return Sets(radii, np.zeros((1, 3, 3)), np.zeros((1, 3)), np.zeros((1, 3)), radii, np.zeros((0, WIDTH)))
 
 
 def ellipsoid(axes: np.ndarray, semi: np.ndarray) -> Sets:
     """Returns the set of one ellipsoid, its axes being columns."""
     return Sets(
-        np.array([-1.0]), np.ascontiguousarray(axes.T[None]), np.array([semi]), np.zeros((1, 3)), np.ones(1)
+        np.array([-1.0]),
+        np.ascontiguousarray(axes.T[None]),
+        np.array([semi]),
+        np.zeros((1, 3)),
+        np.ones(1),
+        np.zeros((0, WIDTH)),
     )
 
 

@@ -188,7 +188,7 @@ from nullpose.studio.state import State
 found = threading.Event()
 def note(event):
     if isinstance(event, Answer) and not found.is_set():
-        print(event.result.pose is not None, len(branch.entries), flush=True)
+        print(event.result.pose is not None, len(branch.overloads), flush=True)
         found.set()
 Session(State(scenario=load({str(EXAMPLES / "paper.toml")!r})), on_event=note).start()
 found.wait(300)

@@ -128,9 +128,8 @@ class Inner:
         self.family = build_family(scenario, any_channel=True)
         self.reach_m = float(scenario.receiver.position_error_m)
         channels = self.family.channels
-        by_elevation = channels is not None and bool(np.any(channels[:, 0] == BY_ELEVATION))
         require_usage(
-            not by_elevation or self.reach_m == 0.0,
+            self.reach_m == 0.0 or not np.any(channels[:, 0] == BY_ELEVATION),
             f"receiver.position_error_m: given {self.reach_m:g} with line of sight by elevation; allowed "
             'there for guarantees: 0, or average = "guaranteed"',
         )
@@ -138,10 +137,10 @@ class Inner:
         self.none = ErrorCase.none(scenario)
         self.moved = interferer_field(scenario, "offsets")
         axes = self.family.ground_axes
-        self.dipoles = np.zeros_like(self.family.points_m) if axes is None else axes
+        self.dipoles = axes if len(axes) else np.zeros_like(self.family.points_m)
         self.radii, self.axes, self.semi = _shapes(point_uncertainty_m(scenario))
         is_closed = (self.family.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
-        if channels is not None:
+        if len(channels):
             is_closed &= channels[:, 0] == CONSTANT
         self.radii[~is_closed & (self.radii > 0.0)] = -1.0
 
@@ -177,8 +176,7 @@ class Inner:
         entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
         points = family.denominator_point[entries]
         noise, node = float(family.denominator_isotropic[group]), family.numerator_point[ratio]
-        channels = None if family.channels is None else family.channels[[*points, node]]
-        shaped = channels is not None or bool(np.any(self.radii < 0.0))
+        channels = family.channels[[*points, node]] if len(family.channels) else family.channels
         node_m = family.points_m[node] - p
         numbers = Ratio(
             isotropic=float(family.numerator_isotropic[ratio]) / noise,
@@ -188,8 +186,8 @@ class Inner:
             centres=family.points_m[points] - p,
             sets=Sets(
                 self.radii[points],
-                self.axes[points] if shaped else None,
-                self.semi[points] if shaped else None,
+                self.axes[points],
+                self.semi[points],
                 self.dipoles[points],
                 np.max(self.semi[points], axis=1),
                 channels,
@@ -202,7 +200,7 @@ class Inner:
             accuracy = min(accuracy, _EXACT)  # closed form
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
         most = _STAGE_CELLS_ELLIPSOIDS if np.any(numbers.sets.radii < 0.0) else _STAGE_CELLS
-        is_slow = channels is not None or np.any(numbers.sets.dipoles)
+        is_slow = len(channels) or np.any(numbers.sets.dipoles)
         most = _STAGE_CELLS_DIPOLES if is_slow else most
         lower, worst, cells = worst_case(numbers, errors, accuracy, most, y, offset, places)
         case = self._case(u, y, offset, points, places - (numbers.centres - offset))

@@ -139,7 +139,7 @@ def box_bound(problem, centre, half):
     nodes, m = problem.nodes, len(problem.ratios.points_m)
     strengths_m2 = problem.strengths_m2.copy()
     for i in range(m):
-        low, high = excess_range(problem.ratios, problem.ratios.channels, i, centre[:3], half[:3])
+        low, high = excess_range(problem.ratios, i, centre[:3], half[:3])
         strengths_m2[i] *= high if i < nodes else low
     channels = channels_at(problem, strengths_m2, centre)
     spans = spans_over(problem, strengths_m2, channels, centre, half)

@@ -42,7 +42,13 @@ from nullpose.solver.kernels.bounds.node import (
 )
 from nullpose.solver.kernels.bounds.records import Workspace
 from nullpose.solver.kernels.bounds.sight import hidden_nowhere, in_sight
-from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import (
+    heap_kernel,
+    inner_heap_kernel,
+    inner_kernel,
+    rare_kernel,
+    small_kernel,
+)
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.forms import add_denominator
@@ -152,7 +158,7 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
     frame = frame_at(family, kind, anchor, centre, half, basis)
     denominator, slopes = zeroed(6), zeroed(3, 6)
     rests = (0.0, 0.0)
-    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes is not None:
+    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes.shape[0] > 0:
         add_denominator(family, np.int64(0), -row[LEVEL], centre, basis, denominator)
     elif family.denominator_isotropic.shape[0] == 1:
         first = np.int64(0)
@@ -206,7 +212,7 @@ def lone_ratio(family, row, below):
     return False
 
 
-@inner_kernel
+@rare_kernel
 def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half, family = row[HALF:LEVEL], in_sight(whole, domain, seen, row, workspace)
@@ -314,7 +320,7 @@ def branch(
             if seen < 0:
                 verdict = found
                 if has_shadows and found != EXCLUDED and found != BETTER:
-                    hidden = hidden_nowhere(family, family.channels, domain, row)
+                    hidden = hidden_nowhere(family, domain, row)
             if hidden == 0 or (seen >= 0 and found != EXCLUDED):
                 if seen >= 0 and found == EXCLUDED:
                     verdict = EXCLUDED

@@ -8,7 +8,7 @@ from nullpose.solver.kernels.bounds.constants import ROUNDING
 from nullpose.solver.kernels.bounds.expansion import expand_point
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT
-from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.forms import bilinear
 from nullpose.solver.kernels.linear_algebra.symmetric import (
@@ -65,7 +65,7 @@ def group_weight(family, row, s):
     return total
 
 
-@inner_kernel
+@rare_kernel
 def add_mixed_denominators(family, frame, row, matrix, slopes):
     """Add ``-t sum_k lambda_k D_k`` of the row's multipliers and its slopes; return its remainders."""
     everywhere = across = 0.0

@@ -273,14 +273,14 @@ def add_links(family, shear, frame, row, v, matrix, slopes, rest):
         k = int(row[INDEX + s])
         strength = row[WEIGHT + s] * family.numerator_weight[k]
         j = family.numerator_point[k]
-        strength *= excess_end(family, family.channels, j, True, centre, half)
+        strength *= excess_end(family, j, True, centre, half)
         add_link(family, j, shear, frame, centre, half, v, 1.0, strength, matrix, slopes, rest)
         weight = group_weight(family, row, s) * row[LEVEL]
         g = family.denominator_of[k]
         first, last = family.denominator_start[g], family.denominator_start[g + 1]
         for e in range(first, last if weight > 0.0 else first):
             j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
-            scale *= excess_end(family, family.channels, j, False, centre, half)
+            scale *= excess_end(family, j, False, centre, half)
             jamming += (1.0 - family.leak) * scale * shear.square if j == frame.anchor else 0.0
             add_link(family, j, shear, frame, centre, half, v, -1.0, scale, matrix, slopes, rest)
     add_turned_identity(shear, half, identity_weight(family, row), jamming, v, matrix, slopes, rest)

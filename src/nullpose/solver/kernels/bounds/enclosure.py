@@ -15,7 +15,7 @@ import numpy as np
 
 from nullpose.channel.model import BY_DISTANCE
 from nullpose.solver.kernels.bounds.excess import EXCESS, fill_excess, product, quotient, square, total
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, copy_table, entry
@@ -110,7 +110,7 @@ def square_range_about(v, swing):
 @inner_kernel
 def weight_of(excess, b, s, power):
     """Return ``1 / (b s^power)``; without a channel the power is 2 or 3."""
-    if excess is None:
+    if excess.shape[0] == 0:
         return 1.0 / (b * s * s * (s if power == 3.0 else 1.0))
     return 1.0 / (b * s**power)
 
@@ -156,7 +156,7 @@ def of_gradients(i, k, power, excess, dn, beta, sigma):
     fall_i = (-beta_i[1] - power * sigma_i[1], -beta_i[0] - power * sigma_i[0])
     fall_k = (-beta_k[1] - power * sigma_k[1], -beta_k[0] - power * sigma_k[0])
     more = 0.0, 0.0
-    if excess is not None:
+    if excess.shape[0] > 0:
         gain_i, gain_k = (excess[1 + i, 1], excess[1 + i, 2]), (excess[1 + k, 1], excess[1 + k, 2])
         more = total(product(gain_i, fall_k), product(fall_i, gain_k))
         fall_i, fall_k = total(fall_i, gain_i), total(fall_k, gain_k)
@@ -205,60 +205,39 @@ def link_jet(family, j, is_above, axis_field, centre, half, jet):
 
     It is to bound the link from above or from below, as ``is_above`` says.
     """
-    excess_link_jet(family, family.channels, j, is_above, axis_field, centre, half, jet)
-
-
-@small_kernel
-def excess_link_jet(family, channels, j, is_above, axis_field, centre, half, jet):
-    """Fill the jet of point j, with the excess gain of its channel if there are channels."""
-    if channels is None:
-        fill_link_jet(family, j, axis_field, centre, half, 0.0, None, jet)
-        return
-    excess, channel = scratch(EXCESS, 3), channels[j]
-    r = minus(row(family.points_m, j), centre)
-    fill_excess(channel, r, is_above, family.points_m[j], centre, half, excess)
-    if channel[0] == BY_DISTANCE:
-        fill_link_jet(family, j, axis_field, centre, half, -0.5 * channel[1], excess, jet)
-        for m in range(JET):
-            jet[m] *= channel[2] ** -channel[1]
-    else:
-        fill_link_jet(family, j, axis_field, centre, half, 0.0, excess, jet)
-
-
-@small_kernel
-def fill_link_jet(family, j, axis_field, centre, half, more, excess, jet):
-    """Fill the jet of point j over ``|r|^(2 more)``, times an excess gain."""
+    rows, more, scale = scratch(EXCESS, 3), 0.0, 1.0
+    excess = rows[:0]  # none without a channel
+    if family.channels.shape[0] > 0:
+        channel, way = family.channels[j], minus(row(family.points_m, j), centre)
+        fill_excess(channel, way, is_above, family.points_m[j], centre, half, rows)
+        excess = rows
+        if channel[0] == BY_DISTANCE:
+            more, scale = -0.5 * channel[1], channel[2] ** -channel[1]
     offset, matrix = scratch(3), scratch(3, 3)
     turned_field(axis_field, family.turn, j, offset, matrix)
     r, u, c = scratch(3), scratch(3), scratch(4)
     dc, hc, hr = scratch(4, 3), scratch(4, 3, 3), zeroed(4, 3, 3)
     store(minus(row(family.points_m, j), centre), r)
     fill_affine(offset, matrix, centre, u)
-    share, axes = isotropic_share(family.ground_leaks, j), family.ground_axes
+    share = isotropic_share(family.ground_leaks, j)
     if share > 0.0:
         count = entries(family.leak, matrix, r, u, c, dc, hc)
         quotient_jet(matrix, r, u, half, count, 2.0 + more, excess, c, dc, hc, hr, jet)
     if share < 1.0:
-        of_dipole = scratch(JET)
-        dipole_jet(family.leak, axes, j, matrix, r, half, more, excess, u, c, dc, hc, hr, of_dipole)
-        for m in range(JET):
-            jet[m] = (share * jet[m] if share > 0.0 else 0.0) + (1.0 - share) * of_dipole[m]
-
-
-@inner_kernel
-def dipole_jet(leak, axes, j, matrix, r, half, more, excess, u, c, dc, hc, hr, jet):
-    """Fill the jet of point j, which has a dipole; the arrays from c to hr are scratch."""
-    if axes is not None:
-        v = axes[j]
+        of_dipole, leaking, still, leak = scratch(JET), zeroed(JET), zeroed(3, 3), family.leak
+        v = family.ground_axes[j]
         dipole_entry(matrix, r, v, half, u, c, dc, hc, hr)
-        quotient_jet(matrix, r, u, half, np.int64(1), 3.0 + more, excess, c, dc, hc, hr, jet)
+        quotient_jet(matrix, r, u, half, np.int64(1), 3.0 + more, excess, c, dc, hc, hr, of_dipole)
         if leak > 0.0:  # what leaks is the dipole's own gain, as that of an axis along it
-            leaking, still = scratch(JET), zeroed(3, 3)
             entries(0.0, still, r, v, c, dc, hc)
             hr[:, :, :] = 0.0
             quotient_jet(still, r, v, half, np.int64(3), 2.0 + more, excess, c, dc, hc, hr, leaking)
-            for m in range(JET):
-                jet[m] = (1.0 - leak) * jet[m] + leak * leaking[m]
+        for m in range(JET):
+            dipole = (1.0 - leak) * of_dipole[m] + leak * leaking[m]
+            jet[m] = (share * jet[m] if share > 0.0 else 0.0) + (1.0 - share) * dipole
+    if scale != 1.0:
+        for m in range(JET):
+            jet[m] *= scale
 
 
 @inner_kernel
@@ -293,13 +272,13 @@ def quotient_jet(matrix, r, u, half, count, power, excess, c, dc, hc, hr, jet):
         beta[i, 0], beta[i, 1] = quotient((db - change, db + change), b_range)
     w_low = weight_of(excess, b_range[1], s_range[1], power)
     w_high = weight_of(excess, b_range[0], s_range[0], power)
-    if excess is not None:
+    if excess.shape[0] > 0:
         for i in range(3):
             jet[SLOPE + i] = excess[0, 0] * (jet[SLOPE + i] + jet[0] * excess[1 + i, 0])
         jet[0] *= excess[0, 0]
         w_low, w_high = w_low * excess[0, 1], w_high * excess[0, 2]
     jet[LEAST], jet[MOST] = n_low * w_low, n_high * w_high
-    if excess is None:
+    if excess.shape[0] == 0:
         jet[MOST] = min(jet[MOST], 1.0 / s_range[0])
     for e in range(6):
         i, k = entry(e)
@@ -313,7 +292,7 @@ def quotient_jet(matrix, r, u, half, count, power, excess, c, dc, hc, hr, jet):
         high -= gram / b_range[1 if gram > 0.0 else 0]
         if i == k:
             low, high = low - 2.0 * power / s_range[0], high - 2.0 * power / s_range[1]
-        if excess is not None:
+        if excess.shape[0] > 0:
             low, high = low + excess[4 + e, 1], high + excess[4 + e, 2]
         x, y = product((n_low, n_high), (low, high))
         low, high = product((w_low, w_high), (first_low + x, first_high + y))

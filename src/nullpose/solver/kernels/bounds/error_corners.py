@@ -42,7 +42,7 @@ def link_reach(channels, j, q, near, far, is_dipole):
     """Return the reach of a link vector times the amplitude of its channel, between two distances.
 
     Args:
-        channels: the rows, or None.
+        channels: the rows, if there are any.
         j: which.
         q: of the point, or of the centre of its set.
         near: the least distance; in a channel by elevation the position is known.
@@ -51,20 +51,12 @@ def link_reach(channels, j, q, near, far, is_dipole):
     """
     slope, bend = (VECTOR_SLOPE, VECTOR_BEND) if is_dipole else (1.0, 2.0)
     reach = Reach(1.0 / near, slope / near**2, bend / near**3)
-    if channels is not None:
+    if channels.shape[0] > 0:
         if channels[j, 0] == BY_DISTANCE:
             return times_amplitude(distance_amplitude(channels[j], q, near * near, far * far), reach)
         if near == far:
             return Reach(reach.length * math.sqrt(excess_in_sight(channels[j], q)), reach.slope, reach.bend)
     return reach
-
-
-@inner_kernel
-def node_gain(channels, n, q):
-    """Return the excess gain of the node's channel, the last of n + 1."""
-    if channels is not None:
-        return excess_in_sight(channels[n], q)
-    return 1.0
 
 
 @inner_kernel
@@ -77,7 +69,9 @@ def evaluate_corners(ratio, weight, errors, level, cell, tolerance, corners):
     for e in range(n_offsets):
         offset = corner_of(cell.d, cell.d_half, e)
         node = minus(ratio.node, offset)
-        strength = weight * node_gain(ratio.sets.channels, ratio.shares.shape[0], node)
+        strength = weight
+        if ratio.sets.channels.shape[0] > 0:  # the node's is the last
+            strength *= excess_in_sight(ratio.sets.channels[ratio.shares.shape[0]], node)
         corners.ball[e] = errors.reach**2 - dot(offset, offset)
         for m in range(n_axes):
             x = corner_of(cell.x, cell.x_half, 2 * m)

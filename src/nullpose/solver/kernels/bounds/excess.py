@@ -11,7 +11,7 @@ import math
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_ELEVATION
 from nullpose.solver.kernels.bounds.link_field import elevation_range, relative_range
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, rare_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import excess_jet
 from nullpose.solver.kernels.linear_algebra.symmetric import entry
@@ -77,7 +77,7 @@ def fill_angle_range(r, point, centre, half, slopes, bends):
     bends[4], bends[5] = product(upright, east), product(upright, north)
 
 
-@inner_kernel
+@rare_kernel
 def fill_excess(row, r, is_above, point, centre, half, excess):
     """Fill the excess gain over a box, (EXCESS, 3): at the centre, and its bounds.
 

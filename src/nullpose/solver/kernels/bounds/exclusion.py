@@ -47,7 +47,7 @@ from nullpose.solver.kernels.bounds.node import (
     cell_side,
 )
 from nullpose.solver.kernels.bounds.records import WORLD
-from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.forms import congruence, form_value
@@ -186,29 +186,28 @@ def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
     return below_rest
 
 
-@inner_kernel
-def add_dipole_sum(family, axes, axis_field, frame, row, matrix, slopes, rest):
+@rare_kernel
+def add_dipole_sum(family, axis_field, frame, row, matrix, slopes, rest):
     """Fill the row's sum and its slopes and rest where points have dipoles."""
-    if axes is not None:
-        v, weights, turned, half = scratch(3), scratch(3), scratch(3, 6), row[HALF:LEVEL]
-        shear = shear_at(
-            family, frame, row[CENTRE:HALF], half,
-            Shear(np.int64(WORLD), False, 0.0, scratch(3, 3), scratch(6, 3), zeroed(4)),
-        )  # fmt: skip
-        matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
-        centre_form(family, frame, row, matrix)
-        q = scratch(6)
-        for number in range(3):
-            weights[number], level = constraint_of(axis_field, row, number, q)
-            add_identity(level, q)
-            congruence(q, frame.basis, turned[number])
-            add_scaled(weights[number], turned[number], matrix)
-        top_eigenvector(matrix, v)
-        matrix[:] = 0.0
-        for number in range(3):
-            if weights[number] > 0.0:
-                add_constant(shear, half, weights[number], turned[number], matrix, slopes, rest)
-        add_links(family, shear, frame, row, v, matrix, slopes, rest)
+    v, weights, turned, half = scratch(3), scratch(3), scratch(3, 6), row[HALF:LEVEL]
+    shear = shear_at(
+        family, frame, row[CENTRE:HALF], half,
+        Shear(np.int64(WORLD), False, 0.0, scratch(3, 3), scratch(6, 3), zeroed(4)),
+    )  # fmt: skip
+    matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
+    centre_form(family, frame, row, matrix)
+    q = scratch(6)
+    for number in range(3):
+        weights[number], level = constraint_of(axis_field, row, number, q)
+        add_identity(level, q)
+        congruence(q, frame.basis, turned[number])
+        add_scaled(weights[number], turned[number], matrix)
+    top_eigenvector(matrix, v)
+    matrix[:] = 0.0
+    for number in range(3):
+        if weights[number] > 0.0:
+            add_constant(shear, half, weights[number], turned[number], matrix, slopes, rest)
+    add_links(family, shear, frame, row, v, matrix, slopes, rest)
 
 
 @small_kernel
@@ -239,11 +238,11 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
     if not row[COUNT] > 0.0:
         return False
     matrix, slopes = scratch(6), forecast.slopes
-    dipoles = family.ground_axes is not None
+    dipoles = family.ground_axes.shape[0] > 0
     row[NU] = below_rest = 0.0
     half, is_horizontal = row[HALF:LEVEL], has_horizontal_axes(axis_field)
     if dipoles:
-        add_dipole_sum(family, family.ground_axes, axis_field, frame, row, matrix, slopes, forecast.rest)
+        add_dipole_sum(family, axis_field, frame, row, matrix, slopes, forecast.rest)
     else:
         below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
     # without a remainder, at the centre: what fails there fails in every box about it, however small
@@ -268,7 +267,7 @@ def excludes(family, domain, axis_field, frame, row, below, forecast):
     return row[BALL] >= 0.0 and excludes_within_borders(domain, row, matrix, slopes, is_horizontal)
 
 
-@inner_kernel
+@rare_kernel
 def excludes_within_borders(domain, row, matrix, slopes, is_horizontal):
     """Check whether the matrix is negative wherever a border allows positions; fill its multiplier."""
     sides, counts = scratch(MOST_ALTERNATIVES, 2, 5), scratch_int(MOST_ALTERNATIVES)

@@ -54,14 +54,6 @@ def min_distance(points, j, centre, half):
     return math.sqrt(min_square(points, j, centre, half))
 
 
-@inner_kernel
-def turn_to_form(axes, j, c):
-    """Put the direction along which point j's dipole is seen in place of that to the point."""
-    if axes is not None:
-        v = row_of(axes, j)
-        store(unit(along(v, -dot(v, c), c)), c)
-
-
 @kernel
 def frame_at(family, kind, anchor, centre, half, basis):
     """Return a frame at the centre, whose axes are filled into ``basis``.
@@ -77,7 +69,8 @@ def frame_at(family, kind, anchor, centre, half, basis):
     rho = norm(r)
     store(over(r, rho), c)
     if isotropic_share(family.ground_leaks, anchor) < 1.0:
-        turn_to_form(family.ground_axes, anchor, c)
+        v = row_of(family.ground_axes, anchor)  # along which it is seen, in place of the direction
+        store(unit(along(v, -dot(v, c), c)), c)
     tangents(c, a, b)
     for i in range(3):
         basis[i, 0], basis[i, 1], basis[i, 2] = a[i], b[i], c[i]
@@ -107,7 +100,7 @@ def expand_point(family, j, is_above, frame, centre, half, form, slopes):
     the form does.
     """
     a = min_distance(family.points_m, j, centre, half)
-    field = amplitude(family, family.channels, j, is_above, centre, half)
+    field = amplitude(family, j, is_above, centre, half)
     reach = scaled_inverse(field, a)
     if frame.kind == TOWARDS_POINT and j == frame.anchor:
         fill_anchor(family.leak, frame, form, slopes)
@@ -123,7 +116,7 @@ def expand_point(family, j, is_above, frame, centre, half, form, slopes):
 @small_kernel
 def scale_form(channels, field, form, slopes):
     """Multiply a form and its derivatives by the square of an amplitude."""
-    if channels is not None:
+    if channels.shape[0] > 0:
         for k in range(6):
             for i in range(3):
                 slopes[i, k] *= field.value * field.value
@@ -167,16 +160,8 @@ def fill_form(family, j, frame, centre, form, slopes):
 @small_kernel
 def reach_of_link(family, j, is_above, centre, half):
     """Return the reach of point j's link vector over a box, in a frame at rest."""
-    field = amplitude(family, family.channels, j, is_above, centre, half)
+    field = amplitude(family, j, is_above, centre, half)
     return scaled_inverse(field, min_distance(family.points_m, j, centre, half))
-
-
-@inner_kernel
-def dipole_sine(axes, j, away):
-    """Return the sine of the angle between point j's dipole and a direction."""
-    if axes is not None:
-        return norm(cross(axes[j], away)) / norm(away)
-    return 1.0
 
 
 @small_kernel
@@ -191,11 +176,12 @@ def best_frame(family, is_horizontal, row):
     if anchor < 0 or family.turn.shape[0] > 0 or is_horizontal:
         return WORLD, anchor
     rho = min_distance(points, anchor, centre, half)
-    if family.ground_axes is not None:
+    if family.ground_axes.shape[0] > 0:
         rho *= _WITH_DIPOLES
     if isotropic_share(family.ground_leaks, anchor) < 1.0:
         # the nearer to its own null, the faster its form turns
-        rho *= dipole_sine(family.ground_axes, anchor, minus(row_of(points, anchor), centre))
+        away = minus(row_of(points, anchor), centre)
+        rho *= norm(cross(family.ground_axes[anchor], away)) / norm(away)
         if not rho > 0.0:
             return WORLD, anchor
     still = turning = 0.0

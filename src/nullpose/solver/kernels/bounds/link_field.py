@@ -14,7 +14,7 @@ from typing import NamedTuple
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
 from nullpose.solver.kernels.bounds.constants import DIRECTION_BEND
-from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.linear_algebra.channel import elevation_gain, sight_probability, steepness
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of, square_range
 
@@ -98,19 +98,18 @@ def anchor_fall(field, a):
 
 
 @small_kernel
-def amplitude(family, channels, j, is_above, centre, half):
+def amplitude(family, j, is_above, centre, half):
     """Return the amplitude of point j's channel over a box that it is outside of.
 
     Args:
-        family: with the points.
-        channels: the points' rows, or None.
+        family: with the points and their channels.
         j: which point.
         is_above: whether the form is to be bounded from above, else from below.
         centre: of the box.
         half: its half sides.
     """
-    if channels is not None:
-        row, r = channels[j], minus(row_of(family.points_m, j), centre)
+    if family.channels.shape[0] > 0:
+        row, r = family.channels[j], minus(row_of(family.points_m, j), centre)
         least, most = square_range(family.points_m[j], centre, half, 3)
         if row[0] == BY_DISTANCE:
             return distance_amplitude(row, r, least, most)
@@ -119,11 +118,11 @@ def amplitude(family, channels, j, is_above, centre, half):
     return Amplitude(1.0, (0.0, 0.0, 0.0), 1.0, 0.0, 0.0)
 
 
-@inner_kernel
-def excess_end(family, channels, j, is_above, centre, half):
+@rare_kernel
+def excess_end(family, j, is_above, centre, half):
     """Return the largest excess gain of point j in a box, or the least, as ``is_above`` says."""
-    if channels is not None:
-        row, points = channels[j], family.points_m
+    if family.channels.shape[0] > 0:
+        row, points = family.channels[j], family.points_m
         if row[0] == BY_DISTANCE:
             least, most = square_range(points[j], centre, half, 3)
             unit, power = row[2] * row[2], 0.5 * row[1]
@@ -134,7 +133,7 @@ def excess_end(family, channels, j, is_above, centre, half):
     return 1.0
 
 
-@inner_kernel
+@rare_kernel
 def distance_amplitude(row, r, least, most):
     """Return the amplitude ``(d / d0)^c`` over squared distances from least to most."""
     c, unit, square = 0.5 * row[1], row[2] * row[2], dot(r, r)
@@ -162,7 +161,7 @@ def relative_range(row, low, high):
     return gain, first, (row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low))
 
 
-@inner_kernel
+@rare_kernel
 def elevation_amplitude(row, r, least, is_above, point, centre, half):
     """Return the amplitude of a channel by elevation, over squared distances of ``least`` or more."""
     low, high = elevation_range(r, point, centre, half)

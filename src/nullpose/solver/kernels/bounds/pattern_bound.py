@@ -79,7 +79,7 @@ def fill_points(family, pattern, row, space):
         width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
         cap_bounds(pattern, unit(a), min(width, math.pi), caps)
         least, most = -caps[0], caps[1]
-        low, high = excess_range(family, family.channels, j, row[:3], row[HALF : HALF + 3])
+        low, high = excess_range(family, j, row[:3], row[HALF : HALF + 3])
         end = space.excess[j] = high if space.is_numerator[j] > 0.0 else low
         space.wide[LEAST, j] = low * least / far if least >= 0.0 else high * least / near
         space.wide[MOST, j] = high * most / near if most >= 0.0 else low * most / far

@@ -7,7 +7,7 @@ from nullpose.objectives.ratios import Ratios
 from nullpose.solver.kernels.bounds.expansion import min_square
 from nullpose.solver.kernels.bounds.link_field import excess_end
 from nullpose.solver.kernels.bounds.node import CENTRE, HALF, LEVEL
-from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
 from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
@@ -21,8 +21,8 @@ _ROWS = 256  # their sides together
 _ENTRIES = 62  # of denominators that are looked at: bits of a number
 
 
-@inner_kernel
-def blocked_end(family, channels, j, is_above, centre, half):
+@rare_kernel
+def blocked_end(family, j, is_above, centre, half):
     """Return the share that link j keeps among buildings all over a box: the most or least, by ``is_above``.
 
     A shadow is convex: beyond one of its sides the box is clear of it, inside of all it is in it.
@@ -35,18 +35,18 @@ def blocked_end(family, channels, j, is_above, centre, half):
             for s in range(piece.shape[0]):
                 inside = inside and reach_beyond(piece[s], centre, half) < 0.0
             if inside or not is_above:
-                return channels[j, BLOCKED]
+                return family.channels[j, BLOCKED]
     return 1.0
 
 
 @small_kernel
-def excess_range(family, channels, j, centre, half):
+def excess_range(family, j, centre, half):
     """Return the least and the largest excess gain of point j in a box, buildings included."""
-    low = excess_end(family, channels, j, False, centre, half)
-    high = excess_end(family, channels, j, True, centre, half)
-    if channels is not None and family.shadow_sides.shape[0] > 0:
-        low *= blocked_end(family, channels, j, False, centre, half)
-        high *= blocked_end(family, channels, j, True, centre, half)
+    low = excess_end(family, j, False, centre, half)
+    high = excess_end(family, j, True, centre, half)
+    if family.shadow_sides.shape[0] > 0:
+        low *= blocked_end(family, j, False, centre, half)
+        high *= blocked_end(family, j, True, centre, half)
     return low, high
 
 
@@ -158,7 +158,7 @@ def fill_pieces(family, domain, row, pieces, ends):
     return count
 
 
-@inner_kernel
+@rare_kernel
 def is_seen_with_nodes(family, domain, j, row):
     """Check whether point j is in sight wherever all nodes are that must be, and the drone may be.
 
@@ -188,7 +188,7 @@ def shadows_in_box(family, j, row):
     return count, last
 
 
-@inner_kernel
+@rare_kernel
 def is_hidden_by_several(family, j, row):
     """Check whether shadows of point j that touch or overlap hold all of a box."""
     if shadows_in_box(family, j, row)[0] < 2:
@@ -201,7 +201,7 @@ def is_hidden_by_several(family, j, row):
 
 
 @inner_kernel
-def hidden_nowhere(family, channels, domain, row):
+def hidden_nowhere(family, domain, row):
     """Find interferers that are hidden together nowhere in a small box, of which each counts as hidden.
 
     Positions that are forbidden, and those from which a node is hidden that must be seen, do not count.
@@ -210,7 +210,7 @@ def hidden_nowhere(family, channels, domain, row):
         A bit for each entry of the denominators that is of them; of no interferer can be done without.
     """
     found = 0
-    if channels is not None and norm(row[HALF:LEVEL]) < _SMALL_M:
+    if norm(row[HALF:LEVEL]) < _SMALL_M:
         pieces, ends = scratch(_ROWS, 4), scratch_int(_PIECES)
         count = fill_pieces(family, domain, row, pieces, ends)
         for e in range(min(_ENTRIES, family.denominator_point.shape[0])):
@@ -266,16 +266,16 @@ def norm_along(side, half):
 
 
 @small_kernel
-def multiply_by_sight(family, domain, channels, points, is_above, seen, row, weights):
+def multiply_by_sight(family, domain, points, is_above, seen, row, weights):
     """Multiply weights by what buildings leave of their points' links, at best, all over a row's box."""
-    if channels is not None and family.shadow_sides.shape[0] > 0:
+    if family.shadow_sides.shape[0] > 0:
         for k in range(weights.shape[0]):
             j, half = points[k], row[HALF:LEVEL]
-            left = blocked_end(family, channels, j, is_above, row[CENTRE:HALF], half)
+            left = blocked_end(family, j, is_above, row[CENTRE:HALF], half)
             if left < 1.0 and not is_above and norm(half) < _SMALL_M:
                 left = 1.0 if j == seen or is_seen_with_nodes(family, domain, j, row) else left
             if left == 1.0 and is_above and is_hidden_by_several(family, j, row):
-                left = channels[j, BLOCKED]
+                left = family.channels[j, BLOCKED]
             weights[k] *= left
 
 
@@ -287,9 +287,9 @@ def in_sight(family, domain, seen, row, workspace):
     """
     copy_into(family.numerator_weight, workspace.numerator_weight)
     copy_into(family.denominator_weight, workspace.denominator_weight)
-    nodes, others, channels = family.numerator_point, family.denominator_point, family.channels
-    multiply_by_sight(family, domain, channels, nodes, True, seen, row, workspace.numerator_weight)
-    multiply_by_sight(family, domain, channels, others, False, seen, row, workspace.denominator_weight)
+    nodes, others = family.numerator_point, family.denominator_point
+    multiply_by_sight(family, domain, nodes, True, seen, row, workspace.numerator_weight)
+    multiply_by_sight(family, domain, others, False, seen, row, workspace.denominator_weight)
     return Ratios(
         family.points_m, family.numerator_isotropic, workspace.numerator_weight, family.numerator_point,
         family.denominator_of, family.denominator_isotropic, family.denominator_start,

@@ -7,12 +7,13 @@ from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import numba
 from numba import config
 
 from nullpose.channel import elevation, model
-from nullpose.objectives import Ratios, ratios
+from nullpose.objectives import ratios
 from nullpose.problem import records
 from nullpose.solver.kernels.compiler.notices import OTHER_NUMBA, UNCACHED, warn_once
 
@@ -52,6 +53,14 @@ def small_kernel(function: Callable[..., object]):
     forty multiplications.
     """
     return _compiled(function, _LEAN | {"forceinline": True}, is_part=True)
+
+
+def rare_kernel(function: Callable[..., object]):
+    """Return a kernel that only kernels can call and that is not put into them, nor what it calls.
+
+    For what few scenes need: the code of all others, which grows with every copy, is compiled sooner.
+    """
+    return _compiled(function, _LEAN | {"forceinline": False}, is_part=True)
 
 
 def heap_kernel(function: Callable[..., object]):
@@ -109,14 +118,13 @@ def _drop_outdated(cache_path: str) -> None:
         stamp.write_text(present)
 
 
-def entry_of(kernel, ratios: Ratios):
-    """Return the quickest entry to a kernel whose arguments but the ratios are always of the same types.
+def entry_of(kernel: Any) -> Any:
+    """Return the quickest entry to a kernel whose arguments are always of the same types.
 
     That is its machine code, once it is compiled: to choose by types, which for named tuples takes as long
     as a short kernel, is left out.
 
     Args:
-        kernel: any whose first argument are ratios.
-        ratios: those it will be called with.
+        kernel: any.
     """
-    return getattr(kernel, "entries", {}).get(ratios.variant, kernel)
+    return getattr(kernel, "entry", kernel)

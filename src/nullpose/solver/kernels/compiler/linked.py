@@ -15,7 +15,6 @@ from hashlib import sha256
 from pathlib import Path
 
 from llvmlite import binding
-from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
@@ -23,7 +22,6 @@ from numba.core.registry import CPUDispatcher
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
-from nullpose.objectives import Ratios
 from nullpose.solver.kernels.compiler import interpreted
 from nullpose.solver.kernels.compiler.jit import digest_of_sources
 from nullpose.solver.kernels.compiler.notices import UNCACHED, warn_once
@@ -169,7 +167,7 @@ class LinkedDispatcher(CPUDispatcher):
 
     def __init__(self, function, options: dict[str, object]) -> None:
         super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
-        self.entries: dict[tuple[bool, ...], object] = {}
+        self.entry: object = self  # or machine code, once it is there
         self._part = Part(function, options)
         self.makes_arrays = self._part.makes_arrays
 
@@ -196,8 +194,4 @@ class LinkedDispatcher(CPUDispatcher):
     def add_overload(self, cres) -> None:
         """Keep the machine code for one choice of types."""
         super().add_overload(cres)
-        for first in cres.signature.args[:1]:
-            if isinstance(first, types.NamedTuple) and first.instance_class is Ratios:
-                kinds = dict(zip(Ratios._fields, first.types, strict=True))
-                variant = tuple(kinds[name] is not types.none for name in ("ground_axes", "channels"))
-                self.entries[variant] = cres.entry_point
+        self.entry = cres.entry_point

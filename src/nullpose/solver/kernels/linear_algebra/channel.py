@@ -2,7 +2,7 @@
 
 ``g = (d / d0)^e`` by distance; ``n + (1 - n) P`` or ``n^(1 - P)`` by elevation, with the probability
 ``P = 1 / (1 + exp(c - k theta))`` of line of sight. Derivatives are relative, ``g' / g``. Where no point has
-a channel, the rows are None, and what channels need is not even compiled.
+a channel, there are no rows.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BLOCKED, BY_DISTANCE, BY_ELEVATION
-from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of
 
@@ -40,7 +40,7 @@ def steepness(row, gain):
     return -math.log(row[3]) if row[4] == DB_AVERAGE else (1.0 - row[3]) / gain
 
 
-@inner_kernel
+@rare_kernel
 def blocked_gain(points, sides, start, row, p):
     """Return the share that a link keeps at a position, by shadows from one to another of ``start``."""
     for shadow in range(points[0], points[1]):
@@ -53,24 +53,24 @@ def blocked_gain(points, sides, start, row, p):
 
 
 @small_kernel
-def sight_gain(family, channels, j, p):
+def sight_gain(family, j, p):
     """Return the share that point j's link keeps among buildings at a position; 1 in the clear."""
-    if channels is not None and family.shadow_sides.shape[0] > 0:
+    if family.shadow_sides.shape[0] > 0:
         shadows = family.shadows_of_point[j : j + 2]
-        return blocked_gain(shadows, family.shadow_sides, family.shadow_start, channels[j], p)
+        return blocked_gain(shadows, family.shadow_sides, family.shadow_start, family.channels[j], p)
     return 1.0
 
 
 @small_kernel
-def excess_at(family, channels, j, p):
+def excess_at(family, j, p):
     """Return the excess gain of point j at a position."""
-    if channels is not None:
-        sight = sight_gain(family, channels, j, p)
-        return sight * excess_in_sight(channels[j], minus(row_of(family.points_m, j), p))
+    if family.channels.shape[0] > 0:
+        r = minus(row_of(family.points_m, j), p)
+        return sight_gain(family, j, p) * excess_in_sight(family.channels[j], r)
     return 1.0
 
 
-@small_kernel
+@rare_kernel
 def excess_in_sight(row, r):
     """Return the excess gain of a channel, r being the vector to the point, without buildings."""
     if row[0] == BY_DISTANCE:
@@ -102,7 +102,7 @@ def fill_elevation(r, slopes, bends):
     bends[2, 2] = -outwards
 
 
-@inner_kernel
+@rare_kernel
 def excess_jet(row, r, slopes, bends):
     """Return the excess gain of a channel; fill its relative derivatives by the position, (3,) and (3, 3)."""
     slopes[:], bends[:, :] = 0.0, 0.0
@@ -132,7 +132,7 @@ def excess_jet(row, r, slopes, bends):
 @small_kernel
 def reach_of(channels, j, square):
     """Return the largest distance at which the gain of point j is one over ``square``, in any direction."""
-    if channels is not None:
+    if channels.shape[0] > 0:
         row = channels[j]
         if row[0] == BY_DISTANCE:
             return (square * row[2] ** -row[1]) ** (1.0 / (2.0 - row[1]))
@@ -145,7 +145,7 @@ def most_excess(channels, j, square):
 
     By any power law the gain falls with the distance; by elevation the excess is at most 1.
     """
-    if channels is not None:
+    if channels.shape[0] > 0:
         row = channels[j]
         if row[0] == BY_DISTANCE:
             return (square / (row[2] * row[2])) ** (0.5 * row[1])

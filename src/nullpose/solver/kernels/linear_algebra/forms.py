@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share
@@ -107,24 +107,23 @@ def add_form(x, y, z, leak, weight, isotropic, out):
     out[5] -= bent * y * z
 
 
-@inner_kernel
+@rare_kernel
 def add_dipole_form(family, axes, j, basis, r, weight, out):
     """Add ``weight`` times the form of point j's dipole with a perfect null; r is in the frame."""
-    if axes is not None:
-        v = in_frame(family.turn[j] if family.turn.shape[0] > 0 else basis, axes[j])
-        rho2 = dot(r, r)
-        a = along(scaled(rho2, v), -dot(v, r), r)
-        s = weight / (rho2 * rho2 * rho2)
-        add_identity(family.leak * s * dot(a, a), out)
-        for k in range(6):
-            m, n = entry(k)
-            out[k] += (1.0 - family.leak) * s * a[m] * a[n]
+    v = in_frame(family.turn[j] if family.turn.shape[0] > 0 else basis, axes[j])
+    rho2 = dot(r, r)
+    a = along(scaled(rho2, v), -dot(v, r), r)
+    s = weight / (rho2 * rho2 * rho2)
+    add_identity(family.leak * s * dot(a, a), out)
+    for k in range(6):
+        m, n = entry(k)
+        out[k] += (1.0 - family.leak) * s * a[m] * a[n]
 
 
 @small_kernel
 def add_point(family, j, p, basis, weight, isotropic, out):
     """Add ``weight * M`` of point j and ``isotropic * I``, in a frame, to a form of six numbers."""
-    weight *= excess_at(family, family.channels, j, p)
+    weight *= excess_at(family, j, p)
     x, y, z = seen_from(family.points_m, family.turn, j, p, basis)
     share = isotropic_share(family.ground_leaks, j)
     add_form(x, y, z, family.leak, share * weight, isotropic, out)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet, sight_gain
 from nullpose.solver.kernels.linear_algebra.symmetric import (
@@ -37,13 +37,8 @@ def seen_axis(turn, j, u):
 
 @inner_kernel
 def isotropic_share(leaks, j):
-    """Return the isotropic part of point j: all of it, or the leak through the null of its dipole.
-
-    Where no point has a dipole, the leaks are None, and what dipoles need is not even compiled.
-    """
-    if leaks is not None:
-        return leaks[j]
-    return 1.0
+    """Return the isotropic part of point j: all of it, or the leak through the null of its dipole."""
+    return leaks[j] if leaks.shape[0] > 0 else 1.0
 
 
 @small_kernel
@@ -54,20 +49,18 @@ def strongest_point(family, centre):
     for e in range(family.denominator_weight.shape[0]):
         j, weight = family.denominator_point[e], family.denominator_weight[e]
         r = minus(row(family.points_m, j), centre)
-        received, square = weight * excess_at(family, family.channels, j, centre), dot(r, r)
+        received, square = weight * excess_at(family, j, centre), dot(r, r)
         if received > strongest * square:
             strongest, anchor = received / square, j
     return anchor
 
 
-@inner_kernel
+@rare_kernel
 def dipole_link(leak, axes, j, r, u):
     """Return the link of point j, which has a dipole, seen along r."""
-    if axes is not None:
-        other, square = cross(axes[j], r), dot(r, r)
-        both, leaking = dot(cross(u, r), other), leak * dot(u, u) * dot(other, other)
-        return ((1.0 - leak) * both * both / square + leaking) / (square * square)
-    return 0.0
+    other, square = cross(axes[j], r), dot(r, r)
+    both, leaking = dot(cross(u, r), other), leak * dot(u, u) * dot(other, other)
+    return ((1.0 - leak) * both * both / square + leaking) / (square * square)
 
 
 @kernel
@@ -75,7 +68,7 @@ def link_form(family, j, p, u):
     """Return the link of point j, without cancellation beside the null."""
     r, seen = minus(row(family.points_m, j), p), seen_axis(family.turn, j, u)
     ahead, side, square = dot(seen, r), cross(seen, r), dot(r, r)
-    excess = excess_at(family, family.channels, j, p)
+    excess = excess_at(family, j, p)
     link = excess / (square * square)
     link *= dot(side, side) + family.leak * ahead * ahead
     share = isotropic_share(family.ground_leaks, j)
@@ -125,19 +118,21 @@ def min_log_ratio(family, p, u, log_denominators, out):
 
 @small_kernel
 def add_form(family, j, weight, p, u, grad, hess, second):
-    """Return ``weight * h_j``; add its derivatives in (p, u)."""
-    return add_excess(family, family.channels, j, weight, p, u, grad, hess, second)
+    """Return ``weight * h_j``; add its derivatives in (p, u), by the product rule for the excess gain."""
+    g, h, slopes, bends = grad, hess, scratch(6), scratch(3, 3)
+    if family.channels.shape[0] > 0:
+        g, h = zeroed(6), zeroed(6, 6)
+        excess = excess_jet(family.channels[j], minus(row(family.points_m, j), p), slopes, bends)
+        weight *= sight_gain(family, j, p) * excess
+    value = add_turned_form(family, j, weight, p, u, g, h, second)
+    if family.channels.shape[0] > 0:
+        add_product(value, slopes, bends, g, h, grad, hess, second)
+    return value
 
 
-@small_kernel
-def add_excess(family, channels, j, weight, p, u, grad, hess, second):
-    """Do what ``add_form`` does, by the product rule for the excess gain."""
-    if channels is None:
-        return add_turned_form(family, j, weight, p, u, grad, hess, second)
-    slopes, bends, g, h = zeroed(6), scratch(3, 3), zeroed(6), zeroed(6, 6)
-    gain = sight_gain(family, channels, j, p)
-    gain *= excess_jet(channels[j], minus(row(family.points_m, j), p), slopes[:3], bends)
-    value = add_turned_form(family, j, gain * weight, p, u, g, h, second)
+@rare_kernel
+def add_product(value, slopes, bends, g, h, grad, hess, second):
+    """Add the derivatives of an excess gain, relative, times those of a form."""
     for i in range(6):
         grad[i] += g[i] + value * slopes[i]
     if second:
@@ -146,7 +141,6 @@ def add_excess(family, channels, j, weight, p, u, grad, hess, second):
                 hess[i, k] += h[i, k] + slopes[i] * g[k] + g[i] * slopes[k]
         for i in range(3):
             add_scaled(value, bends[i], hess[i, :3])
-    return value
 
 
 @small_kernel
@@ -264,38 +258,36 @@ def vector_jet(r, v, basis, value, first, second):
             second[s, m] = i3 * (along_v * v[m] + along_e * e[m] + along_f * f[m] + along_r * r[m])
 
 
-@inner_kernel
+@rare_kernel
 def add_dipole_form(family, axes, j, weight, p, u, grad, hess, second):
     """Do what ``add_seen_form`` does, for a point with a dipole.
 
     The form is ``(1 - l) (u.a)^2 + l |u|^2 |a|^2`` with the point's link vector a.
     """
-    if axes is not None:
-        r, a, slopes, bends = scratch(3), scratch(3), scratch(3, 3), scratch(6, 3)
-        world, by = scratch(3, 3), scratch(3)
-        fill_identity(world)
-        store(minus(row(family.points_m, j), p), r)
-        vector_jet(r, axes[j], world, a, slopes, bends)
-        # u.a as a product of two cross products: no cancellation beside the null
-        b, uu, aa = dot(cross(u, r), cross(axes[j], r)) / dot(r, r) ** 1.5, dot(u, u), dot(a, a)
-        kept, leaking = 2.0 * (1.0 - family.leak) * weight, 2.0 * family.leak * weight
+    r, a, slopes, bends = scratch(3), scratch(3), scratch(3, 3), scratch(6, 3)
+    world, by = scratch(3, 3), scratch(3)
+    fill_identity(world)
+    store(minus(row(family.points_m, j), p), r)
+    vector_jet(r, axes[j], world, a, slopes, bends)
+    # u.a as a product of two cross products: no cancellation beside the null
+    b, uu, aa = dot(cross(u, r), cross(axes[j], r)) / dot(r, r) ** 1.5, dot(u, u), dot(a, a)
+    kept, leaking = 2.0 * (1.0 - family.leak) * weight, 2.0 * family.leak * weight
+    for i in range(3):
+        by[i] = dot(u, slopes[i])
+        grad[i] += kept * b * by[i] + leaking * uu * dot(a, slopes[i])
+        grad[3 + i] += kept * b * a[i] + leaking * aa * u[i]
+    if second:
         for i in range(3):
-            by[i] = dot(u, slopes[i])
-            grad[i] += kept * b * by[i] + leaking * uu * dot(a, slopes[i])
-            grad[3 + i] += kept * b * a[i] + leaking * aa * u[i]
-        if second:
-            for i in range(3):
-                for k in range(3):
-                    bend = bends[PLACE[i, k]]
-                    hess[i, k] += kept * (by[i] * by[k] + b * dot(u, bend))
-                    hess[i, k] += leaking * uu * (dot(slopes[i], slopes[k]) + dot(a, bend))
-                    hess[3 + i, 3 + k] += kept * a[i] * a[k] + (leaking * aa if i == k else 0.0)
-                    mixed = kept * (a[i] * by[k] + b * slopes[k, i])
-                    mixed += 2.0 * leaking * u[i] * dot(a, slopes[k])
-                    hess[3 + i, k] += mixed
-                    hess[k, 3 + i] += mixed
-        return 0.5 * (kept * b * b + leaking * uu * aa)
-    return 0.0
+            for k in range(3):
+                bend = bends[PLACE[i, k]]
+                hess[i, k] += kept * (by[i] * by[k] + b * dot(u, bend))
+                hess[i, k] += leaking * uu * (dot(slopes[i], slopes[k]) + dot(a, bend))
+                hess[3 + i, 3 + k] += kept * a[i] * a[k] + (leaking * aa if i == k else 0.0)
+                mixed = kept * (a[i] * by[k] + b * slopes[k, i])
+                mixed += 2.0 * leaking * u[i] * dot(a, slopes[k])
+                hess[3 + i, k] += mixed
+                hess[k, 3 + i] += mixed
+    return 0.5 * (kept * b * b + leaking * uu * aa)
 
 
 @inner_kernel

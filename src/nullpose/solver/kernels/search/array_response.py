@@ -69,13 +69,13 @@ def channels_at(problem, strengths_m2, x):
 
 
 @small_kernel
-def add_excess(ratios, rows, x, strengths_m2, leans):
+def add_excess(ratios, x, strengths_m2, leans):
     """Multiply strengths by the excess gains of their points at a state, and add the slopes to the leans."""
-    if rows is not None:
+    if ratios.channels.shape[0] > 0:
         slopes, bends = scratch(3), scratch(3, 3)
         for i in range(len(strengths_m2)):
-            strengths_m2[i] *= excess_at(ratios, rows, i, x)
-            excess_jet(rows[i], minus(row(ratios.points_m, i), x), slopes, bends)
+            strengths_m2[i] *= excess_at(ratios, i, x)
+            excess_jet(ratios.channels[i], minus(row(ratios.points_m, i), x), slopes, bends)
             for axis in range(3):
                 leans[i, axis] += 0.5 * slopes[axis]
 
@@ -167,7 +167,7 @@ def respond(problem, x, logs, slopes):
         slopes: output, (nodes, 4) or (0, 4).
     """
     strengths_m2, leans = problem.strengths_m2.copy(), np.zeros((len(problem.ratios.points_m), 3))
-    add_excess(problem.ratios, problem.ratios.channels, x, strengths_m2, leans)
+    add_excess(problem.ratios, x, strengths_m2, leans)
     channels = channels_at(problem, strengths_m2, x)
     channels.leans[:] += leans
     nulls = nulls_towards(channels.values, np.arange(problem.nodes, len(problem.ratios.points_m)))

@@ -156,7 +156,7 @@ def strongest_in_ellipsoid(sets, channels, j, y, q, leak, tolerance):
     power, scale, is_tilted = 2.0, 1.0, False
     lengths, both = Form(y, axis, 0.0, 0.0, 0.0, 1.0), Form(y, axis, 1.0, 0.0, 0.0, 0.0)
     up = components(frame, (0.0, 0.0, 1.0))
-    if channels is not None:
+    if channels.shape[0] > 0:
         kind = channels[j, 0]
         if kind == BY_DISTANCE:
             power, scale = 2.0 - 0.5 * channels[j, 1], channels[j, 2] ** -channels[j, 1]
@@ -191,14 +191,12 @@ def strongest_in_ellipsoid(sets, channels, j, y, q, leak, tolerance):
         top -= 1
         examined += 1
         near, far, low, high = parts[top, 0], parts[top, 1], parts[top, 2], parts[top, 3]
-        bound, at = math.inf, place
-        if channels is not None:  # noqa: SIM102  this test alone is decided when it is compiled
-            if is_tilted:
-                part = near, far, low, high
-                bound, at = part_by_elevation(
-                    channels[j], y, axis, up, leak, q, semi, part, nearest, tolerance, best, place
-                )
-        if not is_tilted:
+        if is_tilted:
+            part = near, far, low, high
+            bound, at = part_by_elevation(
+                channels[j], y, axis, up, leak, q, semi, part, nearest, tolerance, best, place
+            )
+        else:
             form = form_of(y, axis, leak, low, high)
             bound, at = bound_of_part(
                 form, power, _TRIALS, q, semi, near, far, nearest, tolerance, best / scale, place

@@ -94,21 +94,14 @@ def rotation_rates(family, p, u, out):
         for i in range(3):
             out[i, i] = math.copysign(1.0 / math.sqrt(rho2), -dot(u, r))
         return
-    follow_dipole(family.ground_axes, j, r, u, out)
-
-
-@inner_kernel
-def follow_dipole(axes, j, r, u, out):
-    """Fill the changes of the axis that leave its product with the link vector of point j as it is."""
-    if axes is not None:
-        v, rho2 = row(axes, j), dot(r, r)
-        ahead = dot(v, r)
-        a = along(scaled(rho2, v), -ahead, r)  # link vector times |r|^3
-        size = dot(a, a)
-        for i in range(3 if size > _TIP * rho2 * rho2 else 0):
-            change = u[i] * ahead + dot(u, v) * r[i] + dot(u, r) * (v[i] - 3.0 * ahead * r[i] / rho2)
-            for m in range(3):
-                out[i, m] = -a[m] * change / size
+    v = row(family.ground_axes, j)
+    ahead = dot(v, r)
+    a = along(scaled(rho2, v), -ahead, r)  # link vector times |r|^3
+    size = dot(a, a)
+    for i in range(3 if size > _TIP * rho2 * rho2 else 0):
+        change = u[i] * ahead + dot(u, v) * r[i] + dot(u, r) * (v[i] - 3.0 * ahead * r[i] / rho2)
+        for m in range(3):
+            out[i, m] = -a[m] * change / size
 
 
 @kernel

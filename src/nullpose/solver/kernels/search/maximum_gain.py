@@ -57,7 +57,7 @@ def maximum_gain_value(family, p, axis):
     worst = -1
     for k in range(ratios):
         point = family.points_m[family.numerator_point[k]]
-        excess = excess_at(family, family.channels, family.numerator_point[k], p)
+        excess = excess_at(family, family.numerator_point[k], p)
         if level >= excess * family.numerator_weight[k] / squared_distance(point, p) * (1.0 - _TIE):
             worst = k
     if worst >= 0:

@@ -54,7 +54,7 @@ def fill_log_ratios(family, pattern, position, rotation, links, out):
     for j in range(family.points_m.shape[0]):
         r = minus(row(family.points_m, j), position)
         x, y, z = unit(in_frame(rotation, r))
-        links[j] = excess_at(family, family.channels, j, position) * gain_at(pattern, x, y, z) / dot(r, r)
+        links[j] = excess_at(family, j, position) * gain_at(pattern, x, y, z) / dot(r, r)
     least = math.inf
     for k in range(family.numerator_point.shape[0]):
         above, below = quotient(family, k, links, links)

@@ -25,17 +25,14 @@ FloatArray = NDArray[np.float64]
 
 
 class Sets(NamedTuple):
-    """The sets that points are known up to, about a centre each: balls and ellipsoids.
-
-    Where all are balls, the axes are None, and what ellipsoids need is not even compiled.
-    """
+    """The sets that points are known up to, about a centre each: balls and ellipsoids."""
 
     radii: FloatArray  # (n,) of a ball; negative for an ellipsoid
-    axes: FloatArray | None  # (n, 3, 3) an ellipsoid's axes, as rows
-    semi: FloatArray | None  # (n, 3) and its half lengths
+    axes: FloatArray  # (n, 3, 3) an ellipsoid's axes, as rows
+    semi: FloatArray  # (n, 3) and its half lengths
     dipoles: FloatArray  # (n, 3) the axes of the dipoles there, zero where there is none; balls are of others
     extents: FloatArray  # (n,) the largest half length of each
-    channels: FloatArray | None = None  # (n + 1, WIDTH) rows of their channels and the node's; None if free
+    channels: FloatArray  # (n + 1, WIDTH) rows of their channels and the node's; no row if all are free
 
 
 @inner_kernel
@@ -68,7 +65,7 @@ def link_and_slopes(y, q, axis, leak):
 def channel_slopes(channels, j, y, q, axis, leak):
     """Do what ``link_and_slopes`` does, with the excess gain of channel j if there are channels."""
     link, by_axis, by_place = link_and_slopes(y, q, axis, leak)
-    if channels is not None:
+    if channels.shape[0] > 0:
         slopes, bends = scratch(3), scratch(3, 3)
         gain = excess_jet(channels[j], q, slopes, bends)  # its slopes are by the position
         by_place = along(by_place, -link, (slopes[0], slopes[1], slopes[2]))

@@ -38,39 +38,25 @@ def strongest_in_ball(y, q, radius):
     return (norm(cross(y, q)) + radius) / clear, over(inverted, dot(inverted, inverted))
 
 
-@inner_kernel
-def clearance_of(radius, axes, semi, j, q):
-    """Do what ``clearance`` does; compiled without the branch where there are no axes."""
-    if axes is not None:  # noqa: SIM102  this test alone is decided when it is compiled
-        if radius < 0.0:
-            return least_distance(components(rows(axes[j]), q), row(semi, j))
-    return norm(q) - radius
-
-
-@inner_kernel
-def strongest_of(sets, axes, semi, channels, j, y, q, leak, tolerance):
-    """Do what ``strongest_link`` does; compiled without the branch where there are no axes."""
-    radius, dipole = sets.radii[j], row(sets.dipoles, j)
-    if axes is not None:  # noqa: SIM102  this test alone is decided when it is compiled
-        if radius < 0.0:
-            return strongest_in_ellipsoid(sets, channels, j, y, q, leak, tolerance)
-    if radius == 0.0:
-        scale = 1.0
-        if channels is not None:
-            scale = math.sqrt(excess_in_sight(channels[j], q))
-        root = scale * math.sqrt(link_and_slopes(y, q, dipole, leak)[0])
-        return root, root * (1.0 + ROUNDING) + 4.0 * ROUND * scale / norm(q), q
-    most, place = strongest_in_ball(y, q, radius)
-    return most, most + ROUND * norm(q) / (dot(q, q) - radius * radius), place
-
-
 @kernel
 def clearance(sets, j, q):
     """Return a lower bound on the distance from the origin to set j about q; not positive if it is inside."""
-    return clearance_of(sets.radii[j], sets.axes, sets.semi, j, q)
+    if sets.radii[j] < 0.0:
+        return least_distance(components(rows(sets.axes[j]), q), row(sets.semi, j))
+    return norm(q) - sets.radii[j]
 
 
 @kernel
 def strongest_link(sets, j, y, q, leak, tolerance):
     """Return (attained, upper bound, place) of the largest root link of set j about q, y a unit vector."""
-    return strongest_of(sets, sets.axes, sets.semi, sets.channels, j, y, q, leak, tolerance)
+    radius, dipole = sets.radii[j], row(sets.dipoles, j)
+    if radius < 0.0:
+        return strongest_in_ellipsoid(sets, sets.channels, j, y, q, leak, tolerance)
+    if radius == 0.0:
+        scale = 1.0
+        if sets.channels.shape[0] > 0:
+            scale = math.sqrt(excess_in_sight(sets.channels[j], q))
+        root = scale * math.sqrt(link_and_slopes(y, q, dipole, leak)[0])
+        return root, root * (1.0 + ROUNDING) + 4.0 * ROUND * scale / norm(q), q
+    most, place = strongest_in_ball(y, q, radius)
+    return most, most + ROUND * norm(q) / (dot(q, q) - radius * radius), place
