@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from hypothesis import settings
+from tests.reference.whip import whip_rows
 
 from nullpose.channel import ENVIRONMENTS, LinkChannel
-from nullpose.channel.elevation import elevation_channel
+from nullpose.channel.elevation import elevation_channel, with_profile
+from nullpose.channel.free_space import constant_channel
 from nullpose.channel.power_law import power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.solver import SolveOptions
@@ -99,6 +101,13 @@ CHANNELS: dict[str, LinkChannel | None] = {
     "suburban": elevation_channel(*ENVIRONMENTS["suburban"], average="power"),
     "urban in dB": elevation_channel(*ENVIRONMENTS["urban"], average="db"),
     "high-rise": elevation_channel(*ENVIRONMENTS["high-rise"], average="power"),
+    "whip": with_profile(constant_channel(1.0), *zip(*whip_rows(), strict=True)),
+    "whip in suburbs": with_profile(
+        elevation_channel(*ENVIRONMENTS["suburban"], average="power"), *zip(*whip_rows(1.0), strict=True)
+    ),
+    "whip in town": with_profile(
+        elevation_channel(*ENVIRONMENTS["urban"], average="db"), *zip(*whip_rows(10.0), strict=True)
+    ),
 }
 
 

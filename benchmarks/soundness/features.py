@@ -372,6 +372,27 @@ def _one_element(rng: np.random.Generator) -> Table:
     return table | {"array": {"elements": 1, "layout": "linear", "spacing_wavelengths": 0.5}}
 
 
+def _ground_profile(rng: np.random.Generator) -> Table:
+    """Antennas on the ground that are tables over elevation: smooth, steep or coarse."""
+    makers = (_plain, _plain, _airframe, _secrecy, _margins, _no_fly)
+    table = makers[int(rng.integers(len(makers)))](rng)
+    if rng.uniform() < 0.4:
+        channel = {"model": "elevation", "environment": str(rng.choice(list(ENVIRONMENTS)))}
+        table["channel"] = channel | {"average": str(rng.choice(["power", "db", "guaranteed"]))}
+    for point in [*table["nodes"], *table["jammers"], *table.get("eavesdroppers", [])]:
+        if rng.uniform() < 0.7:
+            inner = np.unique(np.round(rng.uniform(-80.0, 80.0, int(rng.integers(0, 30))), 2))
+            gains_dbi = rng.normal(-4.0, float(rng.choice([1.0, 4.0, 8.0])), len(inner) + 2)
+            rows = np.column_stack([[-90.0, *inner, 90.0], np.minimum(gains_dbi, 0.0)])
+            point |= {"antenna": "profile", "antenna_profile": rows.tolist()}
+        if rng.uniform() < 0.1:
+            point["position_m"][2] = float(rng.uniform(0.0, 40.0))  # the drone below its horizon
+    if not table.keys() & {"airframe", "eavesdroppers"} and rng.uniform() < 0.5:
+        some = ["vertical", "maximum-gain", *["zero-interference"] * (2 * len(table["jammers"]))]
+        table["scheme"] = str(rng.choice(some))
+    return table
+
+
 _SIDES = ("x_m", "y_m", "altitude_m")
 
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
@@ -399,6 +420,7 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "depths": _depths,
     "scales": _scales,
     "one-element": _one_element,
+    "ground-profile": _ground_profile,
 }
 
 ENDS = ("channel-ends", "narrow", "depths", "scales", "one-element")
@@ -410,7 +432,7 @@ _CELLS = 15_000  # of the proofs at given gaps: what is left then is promised to
 def make_feature_scene(feature: str, number: int) -> Scene:
     """Return the scene of a number with something that scenarios can ask for; the first that is allowed."""
     rng = np.random.default_rng([20261, list(FEATURES).index(feature), number])
-    has_gap = feature in ("gaps", "channels", "channel-ends")
+    has_gap = feature in ("gaps", "channels", "channel-ends", "ground-profile")
     while True:
         table = FEATURES[feature](rng)
         scheme = table.pop("scheme", "optimum")

@@ -247,6 +247,6 @@ def test_a_profile(tmp_path: Path) -> None:
     """Angles come back in order, gains linear; a floor is no gain."""
     path = tmp_path / "profile.csv"
     path.write_text("angle_deg,gain_dbi\n180,-999\n90,0\n0,-3.0103\n", encoding="utf-8")
-    angle_deg, gain = read_profile(path)
+    angle_deg, gain, _ = read_profile(path)
     assert angle_deg.tolist() == [0.0, 90.0, 180.0]
     assert gain == pytest.approx([0.5, 1.0, 0.0], abs=1e-6)

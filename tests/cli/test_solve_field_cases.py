@@ -38,7 +38,7 @@ Solve = Callable[..., dict[str, Any]]
         ("no-zone.toml", ["no_fly_from"]),
         ("shp-dbf.toml", ["shp-dbf", "records"]),
         ("shp-truncated.toml", ["shp-truncated", "shp"]),
-        ("omni-8dbi.toml", ["nodes[0].gain_dbi", "1.76", "isotropic"]),
+        ("omni-8dbi.toml", ["nodes[0].gain_dbi", "1.76", "profile"]),
         ("keys.toml", ["0.3048", "log10", "power_dbm"]),
     ],
 )

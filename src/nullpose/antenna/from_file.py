@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path, PurePath
 
+import numpy as np
+
 from nullpose.antenna.kind import AntennaKind
 from nullpose.antenna.pattern import (
     PatternAntenna,
@@ -54,7 +56,27 @@ def pattern_antenna(
 def _read_profile(path: Path, _: PlainTable) -> tuple[PlainTable, tuple[str, ...]]:
     from nullpose.antenna.files import read_profile
 
-    return {"harmonics": profile_harmonics(*read_profile(path)).rows()}, ()
+    angle_deg, gain, notes = read_profile(path)
+    return {"harmonics": profile_harmonics(angle_deg, gain).rows()}, notes
+
+
+def with_profile(table: PlainTable, path: Path) -> tuple[PlainTable, tuple[str, ...]]:
+    """Fill in a raw ground point what the file of its upright antenna holds, with notes.
+
+    Args:
+        table: of any antenna; only a profile has a file.
+        path: of the file.
+
+    Raises:
+        ScenarioError: the file cannot be read, or would mislead.
+    """
+    from nullpose.antenna.files import read_profile
+
+    if table.get("antenna") != "profile":
+        return table, ()
+    angle_deg, gain, notes = read_profile(path)
+    rows = np.column_stack([90.0 - angle_deg, 10.0 * np.log10(np.maximum(gain, 1e-10))])  # -100 dBi
+    return {**table, "antenna_profile": rows[::-1].tolist()}, notes
 
 
 def _read_pattern(path: Path, table: PlainTable) -> tuple[PlainTable, tuple[str, ...]]:

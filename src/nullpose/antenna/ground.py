@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-GROUND_ANTENNAS = {"isotropic": 1.0, "circular": 0.5, "dipole": 1.0}
+GROUND_ANTENNAS = {"isotropic": 1.0, "circular": 0.5, "dipole": 1.0, "profile": 1.0}
 """By the kind in a scenario file: the largest share of the power that it takes.
 
 An isotropic antenna takes part with all of the power whatever the polarisation (paper eq. 2.1), a circular
 one, either way round, with half of it. A short dipole takes what its pattern and its polarisation let
-through.
+through. A profile is an isotropic antenna times a gain by elevation, which is part of the link's channel
+(:mod:`nullpose.channel.profile`).
 """
 
 

@@ -19,7 +19,7 @@ from nullpose.certificate.forms import COLUMN, IDENTITY, ROW, outer, squares
 from nullpose.certificate.interval import Interval, stack, where
 from nullpose.certificate.jets import Jet
 from nullpose.channel.elevation import DB_AVERAGE
-from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, KNOTS
 from nullpose.problem.family import Family
 
 
@@ -42,6 +42,7 @@ class Amplitude:
     bend: Interval
 
 
+_ROUND = 2e-13  # of ln g of a profile: more than its knots are rounded
 Interval3: TypeAlias = tuple[Interval, Interval, Interval]
 _Part = TypeVar("_Part", "Amplitude", "Excess")
 _Parts: TypeAlias = tuple[tuple[int, Callable[..., _Part]], ...]
@@ -65,7 +66,7 @@ def most_excess(family: Family, point: IntArray, square: FloatArray) -> Interval
     kind, e, unit = family.channels[point].T[:3]
     is_law = kind == BY_DISTANCE
     ratio = Interval(square) / Interval(np.where(is_law, unit, 1.0)).squared()
-    return where(is_law, power(ratio, 0.5 * e), 1.0)
+    return where(is_law, power(ratio, 0.5 * e), 1.0 + _ROUND * (family.channels.shape[1] > KNOTS))
 
 
 def amplitude(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Amplitude | None:
@@ -101,17 +102,15 @@ def _by_elevation(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above
     """Return the amplitude of channels by elevation, or an end of its range where that leaves out less."""
     r = (Interval(points_m) - boxes.centre).T
     angles = _Angles.over(points_m, boxes)
-    gain, first, bent = _relative(rows, angles.tangent)
-    first = first * 0.5  # h' / h of the root h, and h'' / h
-    second = first * where(rows[4] == DB_AVERAGE, bent + first, bent - first)
-    size, steep = Interval(second.magnitude()), Interval(first.high)
+    gain, first, second, _ = _relative(rows, angles.tangent)
+    size, steep = Interval(second.magnitude()), Interval((first * 0.5).magnitude())
     bend = (size + (size.squared() + steep.squared() * 4.0).sqrt()) * 0.5
     slant = steep * angles.tangent.magnitude()
     bend = Interval(np.maximum(bend.high, slant.high))
     near, root = boxes.nearest(points_m), gain.sqrt().most()
     whole = root, (root * steep / near).most(), (root * bend / near.squared()).most()
     level = (r[0].squared() + r[1].squared()).sqrt()
-    at_centre, change, _ = _relative(rows, -r[2] / level)
+    at_centre, change, *_ = _relative(rows, -r[2] / level)
     value = at_centre.sqrt()
     by = value * change * 0.5 / r.squared().total()
     gradient = stack([-(by * r[2] * r[0] / level), -(by * r[2] * r[1] / level), by * level])
@@ -131,8 +130,8 @@ def _by_elevation(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above
     )
 
 
-def _relative(rows: FloatArray, tangent: Interval) -> tuple[Interval, Interval, Interval]:
-    """Return bounds on excess gains g, on ``g' / g`` by the elevation and on ``k (1 - 2 P)``, (b,) each."""
+def _relative(rows: FloatArray, tangent: Interval) -> tuple[Interval, Interval, Interval, Interval]:
+    """Return bounds on the excess gain g, ``g' / g`` by elevation, ``h'' / h`` of its root h, ``g'' / g``."""
     _, c, k, n, average = rows[:5]
     p = 1.0 / (exp(c - arctan(tangent) * k) + 1.0)
     p = Interval(np.maximum(p.low, 0.0), np.minimum(p.high, 1.0))
@@ -145,7 +144,39 @@ def _relative(rows: FloatArray, tangent: Interval) -> tuple[Interval, Interval, 
     low, high = (Interval(q) * (1.0 - Interval(q)) for q in (least, most))
     spread = Interval(np.maximum(low.low, 0.0), high.high)
     first = where(in_db, -loss, (1.0 - Interval(n)) / gain) * spread * k
-    return gain, first, (1.0 - p * 2.0) * k
+    bent, half = (1.0 - p * 2.0) * k, first * 0.5
+    second = half * where(in_db, bent + half, bent - half)
+    third = first * where(in_db, bent + first, bent)
+    if len(rows) > KNOTS:
+        log_gain, slope, bend = _profiles(rows, arctan(tangent))
+        gain, both, square = gain * exp(log_gain), first * slope, slope.squared()
+        first, second = first + slope, second + (both + square * 0.5 + bend) * 0.5
+        third = third + both * 2.0 + square + bend
+    return gain, first, second, third
+
+
+def _profiles(rows: FloatArray, angle: Interval) -> tuple[Interval, Interval, Interval]:
+    """Return bounds on ``ln g`` of profiles between two elevations, on its slope and its bend, (b,) each."""
+    knots = rows[KNOTS + 1 :].reshape(-1, 3, rows.shape[1])
+    (start, log, slope), (end, _, last) = knots[:-1].swapaxes(0, 1), knots[1:].swapaxes(0, 1)
+    inside = (np.arange(1, len(knots))[:, None] < rows[KNOTS]) & (start <= angle.high) & (end >= angle.low)
+    bend = (Interval(last) - slope) / (Interval(end) - start)
+    low, high = (Interval(np.clip(a, start, end)) - start for a in (angle.low, angle.high))
+    slopes = [bend * step + slope for step in (low, high)]
+    logs = [(bend * step * 0.5 + slope) * step + log for step in (low, high)]
+    # where the slope changes its sign, ln g goes on by slope^2 / (2 |bend|) from the low end
+    steep = slopes[0].magnitude()
+    rest = np.minimum((Interval(steep) / bend).magnitude(), (high - low).high)
+    over = (Interval(steep) * rest * 0.5).high
+    logs[0] += Interval(np.where(slopes[0].low < 0.0, -over, 0.0), np.where(slopes[0].high > 0.0, over, 0.0))
+    return _hull(logs, inside) + Interval(-_ROUND, _ROUND), _hull(slopes, inside), _hull([bend], inside)
+
+
+def _hull(parts: list[Interval], inside: np.ndarray) -> Interval:
+    """Return bounds on all parts that are inside, over the first axis; 0 where none is."""
+    low = np.min([np.where(inside, part.low, np.inf) for part in parts], axis=(0, 1))
+    high = np.max([np.where(inside, part.high, -np.inf) for part in parts], axis=(0, 1))
+    return where(np.any(inside, axis=0), Interval(low, high), 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -263,11 +294,10 @@ def _excess_by_distance(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is
 def _excess_by_elevation(rows: FloatArray, points_m: FloatArray, boxes: Boxes, is_above: bool) -> Excess:
     """Return the excess gain of channels by elevation."""
     angles = _Angles.over(points_m, boxes)
-    gain, first, bent = _relative(rows, angles.tangent)
-    second = first * where(rows[4] == DB_AVERAGE, bent + first, bent)
+    gain, first, _, second = _relative(rows, angles.tangent)
     bends = (angles.bends * first + squares(angles.slopes) * second) * gain
     centre = _Angles.at(Interval(boxes.centre.T) - points_m.T, np.zeros(len(boxes)))
-    value, change, _ = _relative(rows, centre.tangent)
+    value, change, *_ = _relative(rows, centre.tangent)
     end = gain.high if is_above else gain.low
     half = boxes.half.T
     weight = np.where(IDENTITY > 0.0, 0.25, 0.5)[:, None] * half[ROW] * half[COLUMN]

@@ -10,10 +10,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nullpose.channel.convex import FloatArray
 from nullpose.channel.free_space import constant_channel
-from nullpose.channel.model import BY_ELEVATION, ChannelModel, LinkChannel
+from nullpose.channel.model import BLOCKED, BY_ELEVATION, ChannelModel, LinkChannel
+from nullpose.channel.profile import knots_of, log_gain
 
 
 class Environment(NamedTuple):
@@ -54,17 +56,18 @@ def elevation_excess(
 ) -> FloatArray:
     """Evaluate the mean gain over that with line of sight: ``n + (1 - n) P``, or ``n^(1 - P)``.
 
-    So written nothing cancels, however small n and P are.
+    So written nothing cancels, however small n and P are. The profile of the ground antenna multiplies it.
 
     Args:
         row: the kind, two numbers of the probability, n, and which average; n is the gain without line of
-            sight over that with it.
+            sight over that with it. Then ``BLOCKED``, and a profile or none.
         distance_m: of no effect.
         elevation_rad: of the drone, at the ground point.
         azimuth_rad: of no effect.
     """
     p, n = sight_probability(row, elevation_rad), row[3]
-    return np.asarray(np.where(row[4] == DB_AVERAGE, n ** (1.0 - p), n + (1.0 - n) * p))
+    gain = np.where(row[4] == DB_AVERAGE, n ** (1.0 - p), n + (1.0 - n) * p)
+    return np.asarray(gain * np.exp(log_gain(row, elevation_rad)))
 
 
 def elevation_channel(
@@ -93,6 +96,22 @@ def elevation_channel(
     kept = DB_AVERAGE if average == "db" else POWER_AVERAGE
     row = (BY_ELEVATION, math.log(a) + a * b, math.degrees(b), hidden / seen, kept, 1.0)
     return LinkChannel(seen, row, elevation_excess)
+
+
+def with_profile(channel: LinkChannel, elevation_deg: ArrayLike, gain_dbi: ArrayLike) -> LinkChannel:
+    """Return a channel in free space or by elevation, times the profile of the antenna on the ground.
+
+    Its largest gain, of which the excess is what is left elsewhere, is the antenna's own.
+
+    Args:
+        channel: without a profile.
+        elevation_deg: (n,) of the antenna's table, rising from -90 to 90.
+        gain_dbi: (n,) the gains there.
+    """
+    knots = knots_of(elevation_deg, gain_dbi)
+    sight = channel.row if channel.row[0] == BY_ELEVATION else (BY_ELEVATION, 0.0, 0.0, 1.0, POWER_AVERAGE)
+    row = (*sight[:BLOCKED], channel.row[BLOCKED], float(len(knots)), *knots.ravel().tolist())
+    return LinkChannel(channel.strength, row, elevation_excess)
 
 
 ELEVATION = ChannelModel(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from itertools import zip_longest
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +13,18 @@ from nullpose.channel.buildings import Prisms, is_blocked
 from nullpose.channel.convex import FloatArray
 
 WIDTH = 6
-"""Numbers in the row of a link's channel: its kind, up to four of its own, and ``BLOCKED``."""
+"""Numbers in the row of a link's channel: its kind, up to four of its own, and ``BLOCKED``.
+
+Where any ground antenna has a profile, rows go on with it (:mod:`nullpose.channel.profile`).
+"""
 BLOCKED = 5
 """The number that multiplies the gain where a building blocks the line of sight; 1 without buildings."""
+
+KNOTS = 6
+"""Where in a row the number of the profile's knots stands, or 0; the knots follow.
+
+A knot is three numbers: its elevation [rad], ``ln g`` over that of the peak, and the slope of this [1/rad].
+"""
 
 CONSTANT, BY_DISTANCE, BY_ELEVATION, CUSTOM = 0, 1, 2, 3
 """Kinds: an excess gain of 1, one of the distance alone, one of the elevation alone, and any function."""
@@ -26,7 +36,7 @@ class LinkChannel(NamedTuple):
     Args:
         strength: the largest excess over free space [a power ratio; for a power law that at its reference
             distance d0, times d0^2].
-        row: (WIDTH,) its kind and the numbers of its excess gain.
+        row: (WIDTH,) its kind and the numbers of its excess gain; longer with a profile.
         excess: from the row, the distance [m], and the elevation and the azimuth [rad] of the drone at the
             ground point to the excess gain, a power ratio; for arrays as for numbers.
     """
@@ -59,7 +69,7 @@ class PointChannels(NamedTuple):
 
     Args:
         strengths: (m,) the strength of each.
-        rows: (m, WIDTH) the row of each.
+        rows: (m, w) the row of each, padded with zeros.
         groups: the excess gain and the places of the points that it is for, one pair for each kind.
         prisms: the buildings; None without any.
         is_interferer: (m,) whether each is a jammer or an eavesdropper, which the lower roofs count for.
@@ -81,7 +91,7 @@ class PointChannels(NamedTuple):
             places.setdefault(channel.excess, []).append(place)
         return cls(
             np.array([channel.strength for channel in channels]),
-            np.array([channel.row for channel in channels]).reshape(-1, WIDTH),
+            padded([channel.row for channel in channels]),
             tuple((excess, np.array(group, dtype=np.int64)) for excess, group in places.items()),
             prisms,
             np.array(is_interferer, dtype=bool),
@@ -98,6 +108,12 @@ class PointChannels(NamedTuple):
             return np.ones(np.broadcast_shapes(positions_m[..., None, :].shape, points_m.shape)[:-1])
         blocked = is_blocked(self.prisms, positions_m, points_m, self.is_interferer)
         return np.where(blocked, self.rows[:, BLOCKED], 1.0)
+
+
+def padded(rows: Iterable[Sequence[float] | FloatArray]) -> FloatArray:
+    """Stack the rows of channels, (m, w), shorter ones with zeros behind."""
+    columns = zip_longest(np.zeros(WIDTH), *rows, fillvalue=0.0)
+    return np.ascontiguousarray(np.array([*columns], dtype=np.float64).T[1:])
 
 
 def excess_gain(

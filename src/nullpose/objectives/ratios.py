@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nullpose.channel.buildings import shadows_of
-from nullpose.channel.model import CONSTANT, CUSTOM, WIDTH
+from nullpose.channel.model import CONSTANT, CUSTOM, WIDTH, padded
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
@@ -43,8 +43,8 @@ class Ratios(NamedTuple):
             point has one.
         ground_leaks: (m,) f, the gain of a point's dipole along its axis, 1 where it has none; or (0,), where
             no point has one.
-        channels: (m, 6) the row of each point's channel (:mod:`nullpose.channel`), whose excess gain
-            multiplies its ``M(r)``; or (0, 6), where all are in free space.
+        channels: (m, w) the row of each point's channel (:mod:`nullpose.channel`), whose excess gain
+            multiplies its ``M(r)``; or (0, w), where all are in free space.
         shadows_of_point: (m + 1,) where the shadows of each point begin in ``shadow_start``, and where the
             last ones end; (1,) without buildings.
         shadow_start: (n + 1,) where the sides of each shadow begin.
@@ -97,10 +97,13 @@ def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[dict[
     """
     groups = [(getattr(scenario, f"{k}_channels"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
     parts = [(c.rows, c.strengths) if c else (np.zeros((n, WIDTH)), np.ones(n)) for c, n in groups]
-    rows, strengths = (np.concatenate(part) for part in zip(*parts, strict=True))
+    rows, strengths = (
+        padded([row for rows, _ in parts for row in rows]),
+        np.concatenate([s for _, s in parts]),
+    )
     if np.isin(rows[:, 0], (CONSTANT, CUSTOM)).all() and scenario.prisms is None:
         return {}, strengths
-    rows = np.vstack([rows, np.zeros((others, WIDTH))])
+    rows = np.pad(rows, ((0, others), (0, 0)))
     if scenario.prisms is None:
         return {"channels": rows}, strengths
     points_m = np.vstack([getattr(scenario, f"{k}_positions_m").reshape(-1, 3) for k in kinds])

@@ -63,8 +63,10 @@ def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
     distance_m = np.maximum(distance_m, family.keep_out_m)
     over_noise = family.denominator_weight / distance_m**2
-    if channels is not None:  # its gain is largest right below the drone
-        over_noise *= excess_gain(channels, distance_m[:, None] * [0.0, 0.0, -1.0]) / channels.strengths
+    if channels is not None:  # without a profile its gain is largest right below the drone
+        angle = np.radians(np.arange(-90.0, 91.0))
+        below = np.column_stack([np.cos(angle), np.zeros(len(angle)), -np.sin(angle)])[:, None]
+        over_noise *= excess_gain(channels, distance_m[:, None] * below).max(axis=0) / channels.strengths
     if not (over_noise > LOUDEST).any():
         return
     index = int(family.denominator_point[np.argmax(over_noise)]) - len(scenario.nodes)

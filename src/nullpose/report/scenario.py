@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -28,6 +27,7 @@ from nullpose.scenario import (
     Scenario,
 )
 
+_ELEVATIONS = np.radians(np.linspace(-90.0, 90.0, 1801))
 _MOST_ROWS = 12  # of buildings; more are told of as one
 _Point = Node | Jammer | Eavesdropper
 _EARTHLY = {
@@ -95,8 +95,8 @@ def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray |
         if noises_w is not None and transmitter is not None:
             sent_w, noise_w = transmitter.transmit_power_w, float(noises_w[i])
             noise = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
-        channel = scenario.channel_of(point)  # the excess gain is largest right above the point
-        gain = channel.strength * float(channel.excess(channel.row, nearest_m, math.pi / 2.0, 0.0))
+        channel = scenario.channel_of(point)  # without a profile it is largest right above the point
+        gain = channel.strength * float(np.max(channel.excess(channel.row, nearest_m, _ELEVATIONS, 0.0)))
         ratio = gain * point.largest_gain * scenario.reference_gain * sent_w / nearest_m**2 / noise_w
         rows.append(
             {
@@ -274,7 +274,8 @@ def _antenna_words(point: _Point) -> str | None:
 
 def _gain_words(antenna: _Point | Antenna | None) -> str:
     """Write an antenna's gain after a comma, nothing where it is 0 dBi."""
-    return "" if antenna is None or antenna.gain_dbi == 0.0 else f", {antenna.gain_dbi:g} dBi"
+    dbi = 0.0 if antenna is None else getattr(antenna, "peak_dbi", antenna.gain_dbi)
+    return "" if dbi == 0.0 else f", {dbi:g} dBi"
 
 
 def _extents(point: _Point) -> str | None:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.antenna import GroundAntennas, unit_axis
 from nullpose.channel import Custom, LinkChannel, PointChannels
 from nullpose.channel.buildings import Prisms
+from nullpose.channel.elevation import with_profile
 from nullpose.channel.model import CONSTANT
 from nullpose.errors import UsageError, require_usage
 from nullpose.scenario.channel import BLOCKED_DB, Channel, CustomChannel
@@ -132,14 +133,16 @@ class PointArrays:
         return *self.nodes, *self.jammers, *self.eavesdroppers
 
     def channel_of(self, point: GroundPoint) -> LinkChannel:
-        """Return the channel of a point's link: its own, or the scenario's."""
+        """Return the channel of a point's link, its own or the scenario's, with its antenna's profile."""
         whole = self.channel or Channel()
         channel = point.channel or whole
-        if self.prisms is None:
-            return channel.make(point.is_interferer)
-        return channel.in_sight(
-            point.is_interferer, channel.blocked_loss_db or whole.blocked_loss_db or BLOCKED_DB
+        lost_db = channel.blocked_loss_db or whole.blocked_loss_db or BLOCKED_DB
+        by_sight = self.prisms is not None
+        link = (
+            channel.in_sight(point.is_interferer, lost_db) if by_sight else channel.make(point.is_interferer)
         )
+        rows = point.antenna_profile
+        return link if rows is None else with_profile(link, *zip(*rows, strict=True))
 
     @property
     def has_channels(self) -> bool:
@@ -194,7 +197,7 @@ class PointArrays:
         if (jamming_w := power_w(node.jamming_w, node.jamming_dbm)) > 0.0:
             return jamming_w
         distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
-        gains = [ratio_from_db(node.gain_dbi + jammer.gain_dbi) for jammer in self.jammers]
+        gains = [ratio_from_db(node.peak_dbi + jammer.peak_dbi) for jammer in self.jammers]
         powers_w = self.receiver.reference_gain * self.jammer_powers_w * gains
         if self.jammer_channels is not None:
             powers_w = powers_w * self.jammer_channels.strengths

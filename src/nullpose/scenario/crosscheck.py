@@ -11,6 +11,7 @@ from nullpose.antenna import SHORT_DIPOLE
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS
 from nullpose.scenario.buildings import Building, buried_points
+from nullpose.scenario.channel import Channel, CustomChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node
 from nullpose.scenario.origin import POINT_LISTS
@@ -99,7 +100,14 @@ def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> 
         (has_array and antenna != SHORT_DIPOLE, ("antenna",), other),
     ]
     for place, point in points.items():
+        channel = point.channel or scenario.channel or Channel()
+        is_by_sight = channel.model in ("free-space", "elevation") and not isinstance(channel, CustomChannel)
+        law = (
+            f'antenna = "profile" goes with free space and with line of sight by elevation or buildings, and '
+            f'here model = "{channel.model}"; write another channel, or antenna = "isotropic" with gain_dbi'
+        )
         faults += [
+            (point.antenna == "profile" and not is_by_sight, (*place, "antenna"), law),
             (has_array and point.antenna not in (None, "isotropic"), (*place, "antenna"), deaf),
             (point.antenna == "dipole" and not antenna.has_polarisation, (*place, "antenna"), unlike),
         ]
@@ -112,7 +120,7 @@ def _gain_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Ite
     drone_db = drone_dbi + 10.0 * np.log10(max(drone.mean, 1e-30))
     whip = (
         ", a quarter wave over a large ground plane. A collinear whip has more in a narrow beam alone: write "
-        'antenna = "isotropic" with the least gain_dbi that it has towards the drone, or of a jammer the most'
+        'antenna = "profile" with its gain by elevation (antenna_file or antenna_profile)'
     )
     gains = {("antenna",): (drone.label, drone_dbi, drone_db, MOST_OVER_FED_DB, "")} | {
         place: ("short dipole", point.gain_dbi, point.over_fed_db, MOST_OVER_FED_DB + HALF_DB, whip)

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Iterable
 from typing import Annotated, ClassVar, Self
 
 from pydantic import Field
 
 from nullpose.antenna import GROUND_ANTENNAS, short_dipole
+from nullpose.channel.profile import MOST_ROWS, mean_gain
 from nullpose.files import PlainTable
 from nullpose.scenario.channel import NamedChannel
-from nullpose.scenario.faults import Place
+from nullpose.scenario.faults import ONLY_LOCAL, Place
 from nullpose.scenario.radio import NOISE, POWER, Noisy, Powered
-from nullpose.scenario.rules import Choice, Quantity
+from nullpose.scenario.rules import Choice, ListOf, Quantity
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
     GEODETIC_KEYS,
+    MOST_OVER_FED_DB,
     Altitude,
     AxisDirection,
     DecibelMilliwatts,
     DecibelsIsotropic,
+    ElevationDegrees,
     Label,
     Latitude,
     Longitude,
@@ -37,6 +41,19 @@ from nullpose.scenario.units import (
 from nullpose.scenario.ways import Ways, at_most_one
 
 GroundAntennaKind = Annotated[str, Choice("an antenna on the ground", tuple(GROUND_ANTENNAS))]
+_Row = Annotated[
+    tuple[ElevationDegrees, DecibelsIsotropic],
+    ListOf("a list of two numbers [elevation in degrees, gain in dBi]", 2, 2),
+]
+_LEAST_STEP_DEG = 0.01
+ALIKE = ((-90.0, 0.0), (90.0, 0.0))
+"""The profile of an isotropic antenna."""
+_PARTS = {
+    "antenna_axis": ("axis", "dipole"),
+    "null_depth_db": ("null", "dipole"),
+    "antenna_file": ("file", "profile"),
+    "antenna_profile": ("profile", "profile"),
+}  # keys that only one antenna has
 PLACE = Ways(
     (("position_m",), GEODETIC_KEYS),
     fewest=0,
@@ -59,6 +76,8 @@ class GroundPoint(Section):
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
+        antenna_file: name of the file that a profile is from, relative to the scenario's.
+        antenna_profile: (n, 2) elevations [deg] and gains there [dBi]: stated, or what was read of the file.
         null_depth_db: how far a dipole's gain along its axis is below that across it [dB]; None for a
             perfect null.
         gain_dbi: the antenna's gain at its peak over an isotropic one [dBi].
@@ -106,12 +125,28 @@ class GroundPoint(Section):
     antenna: GroundAntennaKind = Field(
         default="isotropic",
         description="What antenna it has: isotropic, which loses nothing to polarisation; circular, which "
-        "takes part with half the power; or dipole, a short one.",
+        "takes part with half the power; dipole, a short one; or profile, isotropic times a gain by "
+        "elevation, as of a collinear whip.",
         examples=list(GROUND_ANTENNAS),
     )
     antenna_axis: AxisDirection | None = optional(
         "How a dipole lies: the direction of its wire, [east, north, up], of any length. Left out: upright.",
         [0.0, 0.0, 1.0],
+    )
+    antenna_file: str | None = optional(
+        "Name of the file of a profile, in the scenario's folder or below it: a CSV file of elevation_deg, "
+        "from -90 to 90, or angle_deg, from the zenith, from 0 to 180, and gain_dbi; or .msi.",
+        "whip.csv",
+    )
+    antenna_profile: (
+        Annotated[
+            tuple[_Row, ...], ListOf("a list of rows [elevation in degrees, gain in dBi]", 2, MOST_ROWS)
+        ]
+        | None
+    ) = optional(
+        "The gain of a profile, in place of a file: rows of an elevation in degrees and the gain there in "
+        "dBi, from -90 (right below) over 0 (the horizon) to 90.",
+        [[-90.0, -20.0], [0.0, 6.0], [90.0, -20.0]],
     )
     null_depth_db: NullDepthDecibels | None = optional(
         "How deep a dipole's null is, in dB below its broadside gain: beside a mast or a body 15 "
@@ -131,20 +166,60 @@ class GroundPoint(Section):
     )
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
-        """Return the fault that an axis or the depth of a null is given of an antenna that has none."""
+        """Return the faults of what is given of an antenna that has none, and of a profile."""
         yield from super().faults(raw)
-        for key, noun in (("antenna_axis", "axis"), ("null_depth_db", "null")):
-            if getattr(self, key) is not None and self.antenna in GROUND_ANTENNAS.keys() - {"dipole"}:
+        for key, (noun, owner) in _PARTS.items():
+            if getattr(self, key) is not None and self.antenna in GROUND_ANTENNAS.keys() - {owner}:
                 yield (
                     (key,),
                     f'given, but antenna = "{self.antenna}" has no {noun}; remove it, or write antenna = '
-                    '"dipole"',
+                    f'"{owner}"',
                 )
+        if self.antenna == "profile":
+            yield from self._profile_faults(raw)
+
+    def _profile_faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
+        deg = [row[0] for row in self.antenna_profile or ALIKE]
+        least_deg = min(map(operator.sub, deg[1:], deg))
+        is_whole = (deg[0], deg[-1]) == (-90.0, 90.0) and least_deg >= _LEAST_STEP_DEG
+        over_fed_db = self.over_fed_db if is_whole else 0.0
+        is_missing, is_unread = "antenna_profile" not in raw, self.antenna_file is not None
+        faults = (
+            (
+                self.gain_dbi,
+                "gain_dbi",
+                f"got {self.gain_dbi}, but a profile's gains are in dBi: it would add to them; remove it",
+            ),
+            (is_missing and is_unread, "antenna_file", f"{ONLY_LOCAL}; load that file by its path"),
+            (
+                is_missing and not is_unread,
+                "antenna_profile",
+                'missing, but antenna = "profile" needs it, or antenna_file; add either',
+            ),
+            (
+                not is_whole,
+                "antenna_profile",
+                f"elevations go from {deg[0]:g} to {deg[-1]:g} degrees, must rise from -90, right below, to "
+                f"90 by {_LEAST_STEP_DEG:g} or more a row; state what the antenna does there",
+            ),
+            (
+                over_fed_db > MOST_OVER_FED_DB,
+                "antenna_profile",
+                f"its gain averages to {over_fed_db:.1f} dB over the sphere: it would radiate more than it "
+                "is fed; must be 0 dB at most. Are its gains in dBi?",
+            ),
+        )
+        return [((key,), message) for is_wrong, key, message in faults if is_wrong]
 
     @property
     def largest_gain(self) -> float:
         """The largest gain of a link that its antenna allows, linear: its own, halved for a circular one."""
-        return GROUND_ANTENNAS[self.antenna] * ratio_from_db(self.gain_dbi)
+        return GROUND_ANTENNAS[self.antenna] * ratio_from_db(self.peak_dbi)
+
+    @property
+    def peak_dbi(self) -> float:
+        """The gain of its antenna in the direction where it is largest [dBi]."""
+        return max((dbi for _, dbi in self.antenna_profile or ()), default=self.gain_dbi)
 
     @property
     def leak(self) -> float:
@@ -154,13 +229,17 @@ class GroundPoint(Section):
     @property
     def over_fed_db(self) -> float:
         """How much more than it is fed its antenna would radiate over the whole sphere by its gain [dB]."""
+        if self.antenna_profile is not None:
+            return 10.0 * math.log10(mean_gain(*zip(*self.antenna_profile, strict=True)))
         mean = short_dipole(self.null_depth_db).mean if self.antenna == "dipole" else 1.0
         return (self.gain_dbi or 0.0) + 10.0 * math.log10(mean)
 
     @property
     def isotropic(self) -> Self:
         """The point with an isotropic antenna of the same gain."""
-        return self.model_copy(update={"antenna": "isotropic", "antenna_axis": None, "null_depth_db": None})
+        return self.model_copy(
+            update={"antenna": "isotropic", "gain_dbi": self.peak_dbi} | dict.fromkeys(_PARTS)
+        )
 
 
 class Node(Noisy, Powered, GroundPoint):

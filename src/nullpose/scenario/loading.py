@@ -11,11 +11,12 @@ from pathlib import Path
 from nullpose.errors import ScenarioError, checked
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import ONLY_LOCAL, refusal, require
+from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import file_text, tables_of, uploaded_text
 
-_FILE_KEYS = ("nodes_from", "geofence_from", "no_fly_from", "file", "buildings_from")
+_FILE_KEYS = ("nodes_from", "geofence_from", "no_fly_from", "file", "buildings_from", "antenna_file")
 _EARLY = re.compile(
     r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b"
     r"|buildings\S*\.(?:buildings_from|storey_height_m|missing_height_m|height_unit|\w+_property)\b"
@@ -87,12 +88,13 @@ def _overridden_tables(
 
 
 def _named_files(tables: PlainTable) -> PlainTable:
-    """Pick the names of the files of nodes, fence, zones, antenna and buildings, by key."""
-    buildings = tables.get("buildings")
+    """Pick the names of the files of nodes, fence, zones, antennas and buildings, by key."""
     holders = {"": tables, "airspace.": tables.get("airspace"), "antenna.": tables.get("antenna")}
-    holders |= {
-        f"buildings[{i}].": each for i, each in enumerate(buildings if isinstance(buildings, list) else ())
-    }
+    for key in ("buildings", *POINT_LISTS):
+        members = tables.get(key)
+        holders |= {
+            f"{key}[{i}].": each for i, each in enumerate(members if isinstance(members, list) else ())
+        }
     return {
         f"{path}{key}": table[key]
         for path, table in holders.items()

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
-from functools import partial
+from functools import cache, partial
 from pathlib import Path, PurePath
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
+from nullpose.antenna.from_file import with_profile
 from nullpose.errors import Fault, ScenarioError
 from nullpose.files import PlainTable
 from nullpose.scenario.antenna import with_harmonics
@@ -20,7 +21,9 @@ from nullpose.scenario.buildings import Building
 from nullpose.scenario.faults import raise_all, refusal, require
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
 from nullpose.scenario.geo_json import HOME
+from nullpose.scenario.ground_points import ALIKE
 from nullpose.scenario.node_files import nodes_of_csv, nodes_of_features
+from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_content, file_text, inside
 from nullpose.scenario.wording import described
@@ -32,13 +35,15 @@ _AREA_FILE = FileKind("a file of areas", "zones.geojson", (*ENDINGS, ".plan"))
 _STEP = re.compile(r"(?=[.\[])")
 _MEMBER = re.compile(r"[\w.]+\[\d+\]")
 _Found = TypeVar("_Found")
+_Read: TypeAlias = tuple[PlainTable, tuple[str, ...]]
 
 
 class NamedFiles:
     """The files that a scenario file names, and where in them the parts of the scenario stand."""
 
     def __init__(self, folder: Path, allow_outside: bool, on_note: Callable[[str], object]) -> None:
-        self._folder, self._allow_outside, self._on_note = folder, allow_outside, on_note
+        self._folder, self._allow_outside = folder, allow_outside
+        self._on_note = cache(on_note)  # once of a file that several name
         self._faults: list[Fault] = []
         self._keys: list[str] = []  # that name files of zones and buildings
         self._places: dict[str, str] = {}  # in the files, of tables and values by their path in the scenario
@@ -51,7 +56,8 @@ class NamedFiles:
         """
         origin = origin if isinstance(origin := tables.get("origin"), dict) else {}
         if "antenna" in tables:
-            tables |= {"antenna": self._antenna(tables["antenna"])}
+            harmonics = ("antenna", "file", "harmonics", with_harmonics, [[1.0]])
+            tables |= {"antenna": self._with_file(tables["antenna"], *harmonics)}
         airspace = tables.get("airspace")
         if isinstance(airspace, dict) and isinstance(airspace.get("no_fly", []), list):
             if "origin" not in tables and (origin := self._home(airspace)):
@@ -63,6 +69,12 @@ class NamedFiles:
             # The nodes take the place of the key, so that faults come in the order of the file.
             tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
             tables["nodes"] = self._nodes(tables["nodes"])
+        for kind in POINT_LISTS:
+            if isinstance(points := tables.get(kind), list):
+                profile = ("antenna_file", "antenna_profile", with_profile, ALIKE)
+                tables[kind] = [
+                    self._with_file(each, f"{kind}[{i}]", *profile) for i, each in enumerate(points)
+                ]
         try:
             scenario = Scenario.from_dict(tables)
         except ScenarioError as error:
@@ -107,19 +119,26 @@ class NamedFiles:
     def _features(self, path: Path, kind: FileKind, place: str = "") -> list[Feature]:
         return features_of(file_content(path, kind, self._folder, place, MOST_BYTES), path)
 
-    def _antenna(self, antenna: object) -> object:
-        """Fill in what the file of an antenna holds."""
-        if (
-            not isinstance(antenna, dict)
-            or not isinstance(file := antenna.get("file"), str)
-            or "harmonics" in antenna
-        ):
-            return antenna
-        with self._reading(f"antenna.file: {file}"):
-            filled, notes = with_harmonics(antenna, inside(self._folder, file, self._allow_outside))
+    def _with_file(
+        self, table: object, place: str, key: str, product: str, read: Callable[..., _Read], instead: object
+    ) -> object:
+        """Fill in what the file of an antenna holds.
+
+        Args:
+            table: the raw antenna, or ground point.
+            place: its path.
+            key: that names the file.
+            product: the key for what the file holds.
+            read: from the table and the path of the file to the table filled in, and notes.
+            instead: what stands for what cannot be read.
+        """
+        if not isinstance(table, dict) or not isinstance(file := table.get(key), str) or product in table:
+            return table
+        with self._reading(f"{place}.{key}: {file}"):
+            filled, notes = read(table, inside(self._folder, file, self._allow_outside))
             self._note(file, notes)
             return filled
-        return antenna | {"harmonics": [[1.0]]}
+        return table | {product: instead}
 
     def _filled(
         self, key: str, file: object, fill: Callable[[list[Feature]], Filled[_Found]]

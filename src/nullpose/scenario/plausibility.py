@@ -163,7 +163,8 @@ def _gains(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:
         Fault(
             f"{place}.gain_dbi",
             f'{point.gain_dbi:g} dBi with antenna = "{point.antenna}" is true only {only}: all round '
-            f"it is {point.over_fed_db:.1f} dB more than the antenna is fed",
+            f"it is {point.over_fed_db:.1f} dB more than the antenna is fed; a collinear whip is antenna = "
+            '"profile", its gain by elevation',
         )
         for only, most_db, antennas in ((ground, 0.0, whips), (turned, HALF_DB, others))
         for place, point in antennas.items()

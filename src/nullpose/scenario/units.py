@@ -62,6 +62,9 @@ DecibelsIsotropic = Annotated[
         "a gain in dBi", -100.0, 100.0, "1.76 for a short dipole, 2.15 for a half-wave dipole; 0 is isotropic"
     ),
 ]
+ElevationDegrees = Annotated[
+    float, Quantity("an elevation in degrees", -90.0, 90.0, "0 is the horizon, 90 right above")
+]
 NullDepthDecibels = Annotated[
     float,
     Quantity("a depth in dB", 0.0, 200.0, "30 is a null 30 dB below the broadside gain; it is not negative"),

@@ -46,6 +46,8 @@ _ALIKE = (
     "antenna",
     "antenna_axis",
     "null_depth_db",
+    "antenna_file",
+    "antenna_profile",
     "gain_dbi",
     "noise_w",
     "noise_dbm",
@@ -165,7 +167,9 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
         Entry(f"{path}.position_m[{i}]", *each)
         for i, each in enumerate(zip(_DIRECTIONS, map(_text, member.position_m), strict=True))
     ]
-    antenna = Entry(f"{path}.antenna", "antenna", member.antenna, tuple(GROUND_ANTENNAS))
+    # a profile needs a table, which is not typed
+    kinds = tuple(kind for kind in GROUND_ANTENNAS if kind != "profile" or kind == member.antenna)
+    antenna = Entry(f"{path}.antenna", "antenna", member.antenna, kinds)
     return (entries[0], *place, *entries[1:], antenna)
 
 

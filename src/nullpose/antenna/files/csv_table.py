@@ -10,7 +10,7 @@ import numpy as np
 
 from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, power_of, require
 
-_PROFILE = ("angle_deg", "gain_dbi")
+_ANGLES = {"angle_deg": (0.0, 1.0), "elevation_deg": (90.0, -1.0)}  # to that from the axis: offset and sign
 _FIELDS = (("re_theta", "im_theta"), ("re_phi", "im_phi"))
 _IN_DB = ("db(", "gain_dbi")
 _GAINS = {"gain_dbi": "gain"} | {
@@ -76,13 +76,17 @@ def profile_of(lines: Lines) -> tuple[FloatArray, FloatArray]:
     """
     header, values = _table(lines)
     got = f"got the header {lines[0][1].strip()[:60]!r}"
-    require({*_PROFILE} <= {*header}, f"{got}, must have {','.join(_PROFILE)}", lines[0][0])
-    values = values[:, [header.index(name) for name in _PROFILE]]
-    angle, gain_dbi = values[np.argsort(values[:, 0])].T
+    names = [name for name in _ANGLES if name in header]
+    needed = "must have angle_deg,gain_dbi (from the axis) or elevation_deg,gain_dbi"
+    require("gain_dbi" in header and len(names) == 1, f"{got}, {needed}", lines[0][0])
+    offset, sign = _ANGLES[names[0]]
+    rows = values[:, [header.index(names[0]), header.index("gain_dbi")]] * [sign, 1.0] + [offset, 0.0]
+    angle, gain_dbi = rows[np.argsort(rows[:, 0])].T
     first = ", ".join(f"{x:g}" for x in (*angle[:2], angle[-1]))
     require(
         angle[0] == 0.0 and angle[-1] == 180.0 and np.all(np.diff(angle) > 0.0),
-        f"angles are {first} degrees (first two, last), must go from 0 to 180, each given once",
+        f"angles are {first} degrees (first two, last), must go from 0 to 180, each given once, from the "
+        "axis; elevations must go from -90 to 90",
     )
     return angle, from_db(gain_dbi)
 

@@ -88,21 +88,28 @@ def read_pattern(
     return table
 
 
-def read_profile(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray]:
-    """Return angles from the axis, (n,), degrees, rising from 0 to 180, and linear gains there, (n,).
+def read_profile(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray, tuple[str, ...]]:
+    """Return angles from the axis, (n,), degrees, rising from 0 to 180, linear gains there, (n,), and notes.
 
     Args:
-        path: a CSV file of angle_deg and gain_dbi, which may be compressed by gzip.
+        path: a CSV file of gain_dbi over angle_deg from the axis or over elevation_deg, or the cuts of .msi;
+            it may be compressed by gzip.
 
     Raises:
         ScenarioError: the file cannot be read, or does not span the angles.
     """
     with _lines_of(path) as lines:
-        angle_deg, gain = profile_of(lines)
+        if re.search(FORMATS["msi"][0], "\n".join(text for _, text in lines), _FLAGS):
+            (cuts,) = read_msi(lines)
+            require(not cuts.caveat, f"{cuts.caveat}; a profile is of an antenna that is the same all round")
+            angle_deg, first = np.unique(cuts.theta_deg, return_index=True)
+            gain, notes = cuts.gain[first], cuts.notes
+        else:
+            angle_deg, gain, notes = *profile_of(lines), ()
         theta_deg, phi_deg = np.linspace(0.0, 180.0, 721), np.arange(0.0, 360.0, 90.0)
         fine = np.repeat(np.interp(theta_deg, angle_deg, gain)[:, None], len(phi_deg), axis=1)
         require_antenna(PatternTable(theta_deg=theta_deg, phi_deg=phi_deg, gain=fine))
-    return angle_deg, gain
+    return angle_deg, gain, tuple(filter(None, notes))
 
 
 @contextmanager

@@ -96,18 +96,23 @@ def guarantee_of(inner: Inner, position_m: ArrayLike, axis: ArrayLike, accuracy:
 
 
 def require_dipole(scenario: Scenario) -> Scenario:
-    """Refuse a scenario with an array or buildings; return any other.
+    """Refuse a scenario with an array, buildings or a profile on the ground; return any other.
 
     Args:
         scenario: any.
 
     Raises:
-        UsageError: it has an array or buildings.
+        UsageError: it has one of these.
     """
     require_usage(
         scenario.prisms is None,
         "buildings: a guarantee would end at the edge of a shadow; remove [[buildings]], or solve "
         "without robust",
+    )
+    require_usage(
+        all(point.antenna != "profile" for point in scenario.points),
+        'antenna: guarantees are not for antenna = "profile"; write "isotropic" with gain_dbi, the least '
+        "that a node has towards the drone, the most of an interferer, or solve without robust",
     )
     require_usage(
         scenario.array is None,

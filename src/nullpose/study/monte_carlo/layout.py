@@ -62,7 +62,7 @@ _REGIONS = (("centre_m", "radius_m"), ("x_m", "y_m"))
 _PLACING = ("count", "density_per_m2", "parents", "spread_m", *_REGIONS[0], *_REGIONS[1])
 _PLACE = ("name", "position_m", *GEODETIC_KEYS, *ALTITUDE_KEYS)
 _DETAILS = {
-    "antenna": ("antenna_axis", "gain_dbi", "null_depth_db"),
+    "antenna": ("antenna_axis", "antenna_file", "antenna_profile", "gain_dbi", "null_depth_db"),
     "uncertainty_m": ("uncertainty_attitude_deg",),
 }
 

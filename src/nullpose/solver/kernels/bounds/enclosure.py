@@ -14,7 +14,8 @@ import math
 import numpy as np
 
 from nullpose.channel.model import BY_DISTANCE
-from nullpose.solver.kernels.bounds.excess import EXCESS, fill_excess, product, quotient, square, total
+from nullpose.solver.kernels.bounds.excess import EXCESS, fill_excess, quotient
+from nullpose.solver.kernels.bounds.link_field import product, square, total
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 
-from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_ELEVATION
-from nullpose.solver.kernels.bounds.link_field import elevation_range, relative_range
-from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, rare_kernel
+from nullpose.solver.kernels.bounds.link_field import elevation_range, product, relative_range, square, total
+from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import excess_jet
 from nullpose.solver.kernels.linear_algebra.symmetric import entry
@@ -20,30 +19,10 @@ from nullpose.solver.kernels.linear_algebra.vectors import square_range
 EXCESS = 10  # rows: the gain, its three relative slopes, its six relative second derivatives
 
 
-@kernel
-def product(a, b):
-    """Return bounds on the product of two numbers of which bounds are given."""
-    w, x, y, z = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
-    return min(min(w, x), min(y, z)), max(max(w, x), max(y, z))
-
-
-@kernel
-def square(a):
-    """Return bounds on the square of a number of which bounds are given."""
-    x, y = a[0] * a[0], a[1] * a[1]
-    return (0.0 if a[0] < 0.0 < a[1] else min(x, y)), max(x, y)
-
-
 @inner_kernel
 def quotient(a, size):
     """Return bounds on a number over a positive one."""
     return a[0] / size[1 if a[0] > 0.0 else 0], a[1] / size[0 if a[1] > 0.0 else 1]
-
-
-@inner_kernel
-def total(a, b):
-    """Return bounds on a sum."""
-    return a[0] + b[0], a[1] + b[1]
 
 
 @inner_kernel
@@ -96,8 +75,7 @@ def fill_excess(row, r, is_above, point, centre, half, excess):
         return
     slopes, bends, steep, bent = scratch(3), scratch(3, 3), scratch(3, 2), scratch(6, 2)
     low, high = elevation_range(r, point, centre, half)
-    gain, first, bent_range = relative_range(row, low, high)
-    second = product(first, total(bent_range, first) if row[4] == DB_AVERAGE else bent_range)
+    gain, first, _, second = relative_range(row, low, high)
     fill_angle_range(r, point, centre, half, steep, bent)
     at_centre, left_out = excess_jet(row, r, slopes, bends), 0.0
     for e in range(6):

@@ -12,10 +12,17 @@ import math
 from typing import NamedTuple
 
 from nullpose.channel.elevation import DB_AVERAGE
-from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, KNOTS
 from nullpose.solver.kernels.bounds.constants import DIRECTION_BEND
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
-from nullpose.solver.kernels.linear_algebra.channel import elevation_gain, sight_probability, steepness
+from nullpose.solver.kernels.linear_algebra.channel import (
+    elevation_gain,
+    gain_by_elevation,
+    knot_below,
+    parabola,
+    sight_probability,
+    steepness,
+)
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of, square_range
 
 
@@ -129,7 +136,7 @@ def excess_end(family, j, is_above, centre, half):
             return ((least if is_above == (power < 0.0) else most) / unit) ** power
         if row[0] == BY_ELEVATION:
             low, high = elevation_range(minus(row_of(points, j), centre), points[j], centre, half)
-            return elevation_gain(row, sight_probability(row, math.atan(high if is_above else low)))
+            return relative_range(row, low, high)[0][1 if is_above else 0]
     return 1.0
 
 
@@ -150,26 +157,84 @@ def distance_amplitude(row, r, least, most):
     )
 
 
+@small_kernel
+def product(a, b):
+    """Return bounds on the product of two numbers of which bounds are given."""
+    w, x, y, z = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
+    return min(min(w, x), min(y, z)), max(max(w, x), max(y, z))
+
+
+@small_kernel
+def square(a):
+    """Return bounds on the square of a number of which bounds are given."""
+    x, y = a[0] * a[0], a[1] * a[1]
+    return (0.0 if a[0] < 0.0 < a[1] else min(x, y)), max(x, y)
+
+
+@inner_kernel
+def total(a, b):
+    """Return bounds on a sum."""
+    return a[0] + b[0], a[1] + b[1]
+
+
+@inner_kernel
+def hull(a, x, y):
+    """Return bounds that hold for two more numbers."""
+    return min(a[0], min(x, y)), max(a[1], max(x, y))
+
+
+@inner_kernel
+def profile_range(row, low, high):
+    """Return bounds on ``ln g`` of a profile between two elevations, on its slope and on its bend."""
+    at, last = knot_below(row, low), KNOTS + 3 * int(row[KNOTS]) - 5
+    logs = slopes = bends = (math.inf, -math.inf)
+    while True:
+        log, slope, bend = parabola(row, at, max(low, row[at]))
+        end = high if at >= last else min(high, row[at + 3])
+        log_end, slope_end, _ = parabola(row, at, end)
+        peak = log - 0.5 * slope * slope / bend if slope * slope_end < 0.0 else log
+        logs = hull(hull(logs, log, log_end), peak, peak)
+        slopes, bends = hull(slopes, slope, slope_end), hull(bends, bend, bend)
+        if end >= high:
+            return logs, slopes, bends
+        at += 3
+
+
 @inner_kernel
 def relative_range(row, low, high):
-    """Return bounds on a gain g by elevation, ``g' / g`` and ``k (1 - 2 P)``, between two tangents of it."""
+    """Return bounds on a gain g by elevation, on ``g' / g``, ``h'' / h`` of its root h, and ``g'' / g``.
+
+    Args:
+        row: of the channel.
+        low: the tangent of the least elevation.
+        high: that of the largest.
+    """
     p_low, p_high = sight_probability(row, math.atan(low)), sight_probability(row, math.atan(high))
     gain = elevation_gain(row, p_low), elevation_gain(row, p_high)
     ends = p_low * (1.0 - p_low), p_high * (1.0 - p_high)
     spread = min(ends[0], ends[1]), (0.25 if p_low < 0.5 < p_high else max(ends[0], ends[1]))
     first = steepness(row, gain[1]) * row[2] * spread[0], steepness(row, gain[0]) * row[2] * spread[1]
-    return gain, first, (row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low))
+    bent = row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low)
+    # h' / h = g' / (2 g) and h'' / h = g'' / (2 g) - (g' / (2 g))^2
+    root, in_db = (0.5 * first[0], 0.5 * first[1]), row[4] == DB_AVERAGE
+    bend_of_root = product(root, total(bent, root if in_db else (-root[1], -root[0])))
+    bend = product(first, total(bent, first) if in_db else bent)
+    if row.shape[0] > KNOTS and row[KNOTS] > 0.0:
+        logs, slopes, bends = profile_range(row, math.atan(low), math.atan(high))
+        both, steep = product(first, slopes), square(slopes)
+        more = bends[0] + both[0] + 0.5 * steep[0], bends[1] + both[1] + 0.5 * steep[1]
+        bend_of_root = bend_of_root[0] + 0.5 * more[0], bend_of_root[1] + 0.5 * more[1]
+        bend = bend[0] + more[0] + both[0] + 0.5 * steep[0], bend[1] + more[1] + both[1] + 0.5 * steep[1]
+        gain, first = (gain[0] * math.exp(logs[0]), gain[1] * math.exp(logs[1])), total(first, slopes)
+    return gain, first, bend_of_root, bend
 
 
 @rare_kernel
 def elevation_amplitude(row, r, least, is_above, point, centre, half):
     """Return the amplitude of a channel by elevation, over squared distances of ``least`` or more."""
     low, high = elevation_range(r, point, centre, half)
-    (bottom, top), (rest, first), bent = relative_range(row, low, high)
-    # h' / h = g' / (2 g) and h'' / h = g'' / (2 g) - (g' / (2 g))^2
-    rest, first = 0.5 * rest, 0.5 * first
-    shift = (rest, first) if row[4] == DB_AVERAGE else (-first, -rest)
-    second = first * max(abs(bent[0] + shift[0]), abs(bent[1] + shift[1]))
+    (bottom, top), by, of_root, _ = relative_range(row, low, high)
+    first, second = 0.5 * max(abs(by[0]), abs(by[1])), max(abs(of_root[0]), abs(of_root[1]))
     root = math.sqrt(top)
     steep = max(abs(low), abs(high))
     bend = 0.5 * (second + math.sqrt(second * second + 4.0 * first * first))
@@ -182,8 +247,7 @@ def elevation_amplitude(row, r, least, is_above, point, centre, half):
         root * max(first * steep, bend) * inverse * inverse,
     )
     level = math.hypot(r[0], r[1])
-    p = sight_probability(row, math.atan2(-r[2], level))
-    gain = elevation_gain(row, p)
+    gain, change, _ = gain_by_elevation(row, math.atan2(-r[2], level))
     value = math.sqrt(gain)
     end = top if is_above else bottom
     # first order, or the end of the range: whichever leaves out less
@@ -191,8 +255,8 @@ def elevation_amplitude(row, r, least, is_above, point, centre, half):
     left_out = square * (reach.slope * reach.slope + reach.length * reach.bend)
     if not left_out < abs(end - gain) * inverse * inverse + 3.0 * square * end * inverse**4:
         return Amplitude(math.sqrt(end), (0.0, 0.0, 0.0), math.sqrt(end), 0.0, 0.0)
-    by = value * 0.5 * steepness(row, gain) * row[2] * p * (1.0 - p) / dot(r, r)
-    gradient = -by * r[2] * r[0] / level, -by * r[2] * r[1] / level, by * level
+    rate = value * 0.5 * change / dot(r, r)
+    gradient = -rate * r[2] * r[0] / level, -rate * r[2] * r[1] / level, rate * level
     return Amplitude(value, gradient, whole.most, whole.slope, whole.bend)
 
 

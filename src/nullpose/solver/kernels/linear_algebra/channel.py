@@ -1,8 +1,8 @@
 """The excess gain of a point's channel at a position, and its derivatives (:mod:`nullpose.channel`).
 
 ``g = (d / d0)^e`` by distance; ``n + (1 - n) P`` or ``n^(1 - P)`` by elevation, with the probability
-``P = 1 / (1 + exp(c - k theta))`` of line of sight. Derivatives are relative, ``g' / g``. Where no point has
-a channel, there are no rows.
+``P = 1 / (1 + exp(c - k theta))`` of line of sight, times the ground antenna's profile. Derivatives
+are relative, ``g' / g``. Where no point has a channel, there are no rows.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from nullpose.channel.elevation import DB_AVERAGE
-from nullpose.channel.model import BLOCKED, BY_DISTANCE, BY_ELEVATION
+from nullpose.channel.model import BLOCKED, BY_DISTANCE, BY_ELEVATION, KNOTS
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of
@@ -38,6 +38,40 @@ def elevation_gain(row, probability):
 def steepness(row, gain):
     """Return ``g' / g`` over ``k P (1 - P)``."""
     return -math.log(row[3]) if row[4] == DB_AVERAGE else (1.0 - row[3]) / gain
+
+
+@inner_kernel
+def knot_below(row, angle):
+    """Return where in a channel's row the last knot of its profile at an elevation or below it begins."""
+    low, high = 0, int(row[KNOTS]) - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if row[KNOTS + 1 + 3 * middle] <= angle:
+            low = middle
+        else:
+            high = middle
+    return KNOTS + 1 + 3 * low
+
+
+@inner_kernel
+def parabola(row, at, angle):
+    """Return ``ln g`` of a profile by the knot below an elevation, its slope and its bend there."""
+    step, bend = angle - row[at], (row[at + 5] - row[at + 2]) / (row[at + 3] - row[at])
+    return row[at + 1] + step * (row[at + 2] + 0.5 * bend * step), row[at + 2] + bend * step, bend
+
+
+@inner_kernel
+def gain_by_elevation(row, angle):
+    """Return the excess gain g of a channel by elevation, ``g' / g`` and ``g'' / g``."""
+    p = sight_probability(row, angle)
+    gain = elevation_gain(row, p)
+    first = steepness(row, gain) * row[2] * p * (1.0 - p)
+    second = first * row[2] * (1.0 - 2.0 * p) + (first * first if row[4] == DB_AVERAGE else 0.0)
+    if row.shape[0] > KNOTS and row[KNOTS] > 0.0:
+        log, slope, bend = parabola(row, knot_below(row, angle), angle)
+        second += slope * (2.0 * first + slope) + bend
+        gain, first = gain * math.exp(log), first + slope
+    return gain, first, second
 
 
 @rare_kernel
@@ -76,8 +110,7 @@ def excess_in_sight(row, r):
     if row[0] == BY_DISTANCE:
         return (dot(r, r) / (row[2] * row[2])) ** (0.5 * row[1])
     if row[0] == BY_ELEVATION:
-        elevation_rad = math.atan2(-r[2], math.hypot(r[0], r[1]))
-        return elevation_gain(row, sight_probability(row, elevation_rad))
+        return gain_by_elevation(row, math.atan2(-r[2], math.hypot(r[0], r[1])))[0]
     return 1.0
 
 
@@ -117,10 +150,7 @@ def excess_jet(row, r, slopes, bends):
     if row[0] == BY_ELEVATION:
         angle = scratch(3)
         fill_elevation(r, angle, bends)
-        p = sight_probability(row, math.atan2(-r[2], math.hypot(r[0], r[1])))
-        gain = elevation_gain(row, p)
-        first = steepness(row, gain) * row[2] * p * (1.0 - p)
-        second = first * row[2] * (1.0 - 2.0 * p) + (first * first if row[4] == DB_AVERAGE else 0.0)
+        gain, first, second = gain_by_elevation(row, math.atan2(-r[2], math.hypot(r[0], r[1])))
         for i in range(3):
             slopes[i] = first * angle[i]
             for k in range(3):
