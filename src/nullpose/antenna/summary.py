@@ -67,8 +67,7 @@ class PatternSummary:
 
     def to_dict(self) -> PlainTable:
         """Return the summary as plain data, angles in radians, without the table's numbers."""
-        names = ("source", "quantity", "frequency_hz", "notes")
-        data = {name: getattr(self.table, name) for name in names}
+        data = {name: getattr(self.table, name) for name in ("source", "quantity", "frequency_hz", "notes")}
         for name in PatternSummary.__dataclass_fields__:
             if name.endswith("_deg"):
                 data[name.replace("_deg", "_rad")] = np.radians(getattr(self, name)).tolist()

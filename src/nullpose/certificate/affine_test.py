@@ -65,8 +65,7 @@ def link_jet(
         share = 1.0 - Interval(leak)
         jets = _joined(lambda jet, other: jet * share + other * leak, jets, alone)
     if not np.all(has):
-        others = _isotropic_jet(field, boxes, points, leak, gain)
-        jets = _joined(partial(where, has), jets, others)
+        jets = _joined(partial(where, has), jets, _isotropic_jet(field, boxes, points, leak, gain))
     return jets
 
 
@@ -216,9 +215,9 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         for point, scale, is_above in terms
     ]
     zero = Interval(np.zeros((6, len(boxes))))
-    starts = {"value": identity, "slopes": zero[:3], "bends": zero, "over": identity}
     value, slopes, hessian, ranged = (
-        sum((scale * getattr(jet, part) for scale, jet in jets), start) for part, start in starts.items()
+        sum((scale * getattr(jet, part) for scale, jet in jets), start)
+        for part, start in {"value": identity, "slopes": zero[:3], "bends": zero, "over": identity}.items()
     )
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:

@@ -55,8 +55,7 @@ def dipole_sum(
         for jet in jets:
             centre = centre + squares(jet.value) * (scale * (sign * (1.0 - family.leak)))
         if family.leak > 0.0:
-            gain = _gain(family, boxes, point)[0]
-            centre = centre + shear.gram * (gain * scale * (sign * family.leak))
+            centre = centre + shear.gram * (_gain(family, boxes, point)[0] * scale * (sign * family.leak))
     for form, _, weight in held:
         centre = centre + form.value * weight
     top = top_vectors(centre)

@@ -68,8 +68,7 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
     isotropic = family.denominator_isotropic[family.denominator_of]
     unheard = Interval(leaves.level[:, None]) * isotropic - family.numerator_isotropic
     rows = np.flatnonzero(~holds & np.all(unheard.low > 0.0, axis=1))
-    whole = Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows])
-    cells = _Cells(whole, leaves.cell[rows, 1:])
+    cells = _Cells(Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows]), leaves.cell[rows, 1:])
     most = _MOST * len(rows) + _CHUNK
     for _ in range(_ROUNDS):
         if not 0 < len(cells.boxes) <= most or np.any(cells.turn[:, ::2] > DEEPEST):
@@ -85,8 +84,7 @@ def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Bo
     """Check which boxes lie in some keep-out ball or zone."""
     holds = np.zeros(len(boxes), dtype=bool)
     for border in range(len(family.keep_out_points_m) + len(family.zone_kind)):
-        same = replace(leaves, point=np.full(len(leaves), border))
-        holds |= kept_out_holds(family, field, same, boxes)
+        holds |= kept_out_holds(family, field, replace(leaves, point=np.full(len(leaves), border)), boxes)
     return holds
 
 

@@ -80,8 +80,7 @@ def link_vector(points_m: FloatArray, axes: FloatArray, boxes: Boxes) -> Jet:
     along_r = along_r - r[i] * r[j] * (ahead * 15.0 / s.squared())
     second = v[:, None] * along_v + r[:, None] * along_r
     second = (second + _UNIT[:, i] * along_i + _UNIT[:, j] * along_j) / cube
-    near = boxes.nearest(points_m)
-    return Jet(value, first, second, (VECTOR_THIRD / near.squared().squared()).most())
+    return Jet(value, first, second, (VECTOR_THIRD / boxes.nearest(points_m).squared().squared()).most())
 
 
 def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:

@@ -79,9 +79,8 @@ def evaluate(
     from nullpose.study import evaluate_against, poses_from_csv
     from nullpose.study.evaluation import require_one_antenna
 
-    is_one_way = [pose, pose_lat_lon, poses].count(None) == 2 and (poses is None or attitude is None)
     require_usage(
-        is_one_way,
+        [pose, pose_lat_lon, poses].count(None) == 2 and (poses is None or attitude is None),
         "evaluate: give either --pose or --pose-lat-lon, with --attitude unless it is 0,0,0, or --poses",
     )
     scenario = scene.read()

@@ -49,8 +49,7 @@ class FaultReportingGroup(TyperGroup):
                 sys.stdout.flush()
             except NullposeError as error:
                 code = INTERNAL if isinstance(error, SolveError) else BAD_INPUT
-                words = _as_json(error, code) if as_json else f"error: {error}"
-                say(words, err=True, broken=not as_json)
+                say(_as_json(error, code) if as_json else f"error: {error}", err=True, broken=not as_json)
                 raise typer.Exit(code) from error
             except _WRONG_USAGE as error:
                 error.message = _plain_choice(error.message)

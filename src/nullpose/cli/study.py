@@ -85,8 +85,7 @@ def status(folder: StudyFolder, json_output: JsonOutput = False) -> None:
     """Show a study's progress."""
     from nullpose.study.monte_carlo import study_status
 
-    found = study_status(folder)
-    tell(found, words_of, json_output)
+    tell(study_status(folder), words_of, json_output)
 
 
 @study.command()

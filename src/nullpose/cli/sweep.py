@@ -123,5 +123,4 @@ def sweep(
         say("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep
 
-    written = write_sweep(found, out, log=log, width=width, bounds=bounds)
-    tell(found, sweep_view, json_output, files=written)
+    tell(found, sweep_view, json_output, files=write_sweep(found, out, log=log, width=width, bounds=bounds))

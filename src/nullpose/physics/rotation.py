@@ -164,5 +164,4 @@ def attitude_from_axis(axis: ArrayLike, yaw_rad: ArrayLike = 0.0) -> tuple[Float
     sign = 1.0 - 2.0 * flip
     forward, left, up = sign * forward, sign * left, np.abs(up)
     roll = np.arctan2(-left, np.hypot(forward, up))
-    pitch = np.arctan2(forward, up)
-    return roll, pitch
+    return roll, np.arctan2(forward, up)

@@ -91,8 +91,7 @@ class AxisField:
         """Build the field ``(s1 - p) x (s2 - p) = s1 x s2 + (s2 - s1) x p`` (eq. 3.4, of any length)."""
         first, second = np.asarray(first_m, dtype=float), np.asarray(second_m, dtype=float)
         x, y, z = second - first
-        matrix = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        return cls.affine(np.cross(first, second), matrix)
+        return cls.affine(np.cross(first, second), np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]))
 
     def axis_at(self, position_m: ArrayLike) -> NDArray[np.float64]:
         """Return the unit axis of an affine field, shape (..., 3); not a number where the field vanishes.

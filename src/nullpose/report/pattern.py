@@ -13,7 +13,6 @@ def pattern_view(summary: PatternSummary) -> View:
     table, largest_m = summary.table, summary.largest_m
     field = "gains only" if table.field is None else "with phases"
     polarisation = summary.polarisation if table.field is None else f"{summary.polarisation}, at the peak"
-    fine = f"fine enough for antennas within {largest_m:.2g} m of the origin" if largest_m else None
     rows = [
         ("quantity", table.quantity),
         ("frequency", None if table.frequency_hz is None else f"{table.frequency_hz / 1e6:.7g} MHz"),
@@ -26,7 +25,7 @@ def pattern_view(summary: PatternSummary) -> View:
         ("polarisation", polarisation),
         ("degree used", f"{summary.degree}; the grid resolves {summary.supported_degree}"),
         ("grid", f"steps of {summary.step_deg:g} degrees, {field}"),
-        ("", fine),
+        ("", (f"fine enough for antennas within {largest_m:.2g} m of the origin" if largest_m else None)),
     ]
     return document(head(table.source), pairs("", rows), *table.notes)
 

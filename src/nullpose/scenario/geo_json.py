@@ -58,9 +58,9 @@ def members_of(text: str) -> dict[str, Any]:
     if "crs" in data:
         stated = value_of(data["crs"], "properties") or data["crs"]
         require_wgs84(str(value_of(stated, "name") or value_of(stated, "code") or described(stated)))
-    is_cut = any(value_of(each, "exceededTransferLimit") for each in (data, data.get("properties")))
     require(
-        not is_cut and data.get("numberMatched") in (None, "unknown", len(listed)),
+        not any(value_of(each, "exceededTransferLimit") for each in (data, data.get("properties")))
+        and data.get("numberMatched") in (None, "unknown", len(listed)),
         "features",
         f"it has {len(listed)}, a part of what its server holds (exceededTransferLimit, numberMatched); "
         "load all of them",

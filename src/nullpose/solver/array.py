@@ -200,5 +200,4 @@ def _vertical_bound(search: ArraySearch, gap: float) -> ArrayBound:
     options = SolveOptions(gap=max(_INSIDE * gap, _LEAST_GAP), node_limit=_MOST_BOXES)
     outcome = solve_and_prove(family, [AxisField.vertical()], options)
     assert outcome.upper_bound is not None, "a proof was asked for"
-    value = search.elements * outcome.upper_bound * (1.0 + _ROUNDING)
-    return ArrayBound(value=value, boxes=outcome.nodes)
+    return ArrayBound(value=search.elements * outcome.upper_bound * (1.0 + _ROUNDING), boxes=outcome.nodes)

@@ -247,6 +247,5 @@ def _ratios(solution: Result, fields: Mapping[str, AxisField]) -> tuple[float, f
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
     family = build_family(solution.scenario, any_antenna=True, any_channel=True)
     place = exact(pose.position_m)
-    gains = excess_at(family, place)
-    value = float(smallest_ratio(family, place, axis, *profiles_of(fields), gains=gains))
+    value = float(smallest_ratio(family, place, axis, *profiles_of(fields), gains=excess_at(family, place)))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))

@@ -135,8 +135,7 @@ def sensitivity(scenario: Scenario, pose: Pose, sizes: ErrorSizes | None = None)
     """
     sizes, quantity = sizes or ErrorSizes(), Quantity.of(scenario)
     worst = [quantity.of_ratio(float(ratio)) for ratio in _Search(scenario, pose, sizes).worst()]
-    values = dict(zip(("nominal", *_KINDS), worst, strict=True))
-    return Sensitivity(quantity=quantity, sizes=sizes, **values)
+    return Sensitivity(quantity=quantity, sizes=sizes, **dict(zip(("nominal", *_KINDS), worst, strict=True)))
 
 
 class _Search:

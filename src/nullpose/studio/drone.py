@@ -156,8 +156,7 @@ def _tubes(ends_m: NDArray[np.float64], radius_m: NDArray[np.float64]) -> Mesh:
 def _coincides(pose: Pose, first: Pose, size_m: float) -> bool:
     """Tell whether a pose's cone would be drawn into that of the first drone."""
     away_m = np.linalg.norm(pose.position_m - first.position_m)
-    along = abs(pose.antenna_axis @ first.antenna_axis)
-    return bool(away_m < _SAME * size_m and along > math.cos(_SAME))
+    return bool(away_m < _SAME * size_m and abs(pose.antenna_axis @ first.antenna_axis) > math.cos(_SAME))
 
 
 def _has_null(antenna: Antenna) -> bool:

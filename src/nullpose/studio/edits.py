@@ -224,8 +224,7 @@ def with_typed(state: State, entry: Entry, text: str) -> State:
     if path.endswith(
         ".name"
     ):  # by itself in the text, where a point that moves too would be taken for another
-        renamed = apply_overrides(scenario, [Override(path, typed or None)])
-        return state.written.with_scenario(renamed).written
+        return state.written.with_scenario(apply_overrides(scenario, [Override(path, typed or None)])).written
     if path == "airframe.tilt_max_deg" and typed in ("", _ANY):
         override = _FREE
     elif entry.options or not typed:

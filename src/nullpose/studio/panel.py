@@ -65,8 +65,7 @@ class Panel(SimpleNamespace):
                     self._add(gui, control)
                 continue
             kind, label, hint, more = control
-            options = more | ({"hint": hint} if hint else {})
-            setattr(self, name, getattr(gui, f"add_{kind}")(label, **options))
+            setattr(self, name, getattr(gui, f"add_{kind}")(label, **more | ({"hint": hint} if hint else {})))
 
     def render(self, history: History) -> None:
         """Show the present state, and whether there is a step to undo or to redo.

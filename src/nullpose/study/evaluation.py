@@ -119,13 +119,12 @@ def evaluated(result: Result, scenario: Scenario, pose: Pose, upper_bound: float
     links, quantity = tuple(evaluate(scenario, pose)), Quantity.of(scenario)
     ratio_bound = 2.0**upper_bound if upper_bound is not None and quantity.is_rate else upper_bound
     rigour = None if upper_bound is None else result.rigour
-    objective = objective_of(scenario, quantity.least(links), ratio_bound, rigour)
     return replace(
         result,
         scenario=scenario,
         scheme="given",
         status=Status.POSE_GIVEN,
-        objective=objective,
+        objective=objective_of(scenario, quantity.least(links), ratio_bound, rigour),
         pose=pose,
         links=links,
         reason="",

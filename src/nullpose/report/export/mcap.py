@@ -32,8 +32,7 @@ def require_foxglove(_: Scenario) -> None:
     Raises:
         UsageError: it is not installed.
     """
-    need = "--export: .mcap needs foxglove-sdk; "
-    require_usage(find_spec("foxglove"), need + install_command("flight"))
+    require_usage(find_spec("foxglove"), "--export: .mcap needs foxglove-sdk; " + install_command("flight"))
 
 
 def mcap_file(result: Result) -> bytes:

@@ -16,7 +16,6 @@ def json_file(result: Result) -> bytes:
     """Write a pose as JSON: ENU, body forward-left-up, with its value, bound and certificate's digest."""
     scenario, objective = result.scenario, result.objective
     frames, quantity, bound = pose_frames(scenario, result.pose), objective.quantity, objective.upper_bound
-    origin = scenario.origin and scenario.origin.model_dump(exclude_none=True)
     content = {
         "case": result.label,
         "world_frame": "ENU",
@@ -26,7 +25,7 @@ def json_file(result: Result) -> bytes:
         **_angles_deg(frames.enu),
         "mount_deg": math.degrees(result.pose.mount_rad),
         "antenna_axis": result.pose.antenna_axis.tolist(),
-        "origin": origin,
+        "origin": scenario.origin and scenario.origin.model_dump(exclude_none=True),
         "place": frames.geodetic and frames.geodetic.to_dict(),
         "quantity": quantity.name,
         "unit": quantity.unit,

@@ -163,5 +163,4 @@ def _draw_surface(
     axes.set(xlim=(-0.8, 0.8), ylim=(-0.8, 0.8), zlim=(-0.8, 0.8), box_aspect=(1.0, 1.0, 1.0))
     axes.view_init(elev=25.0, azim=35.0)
     axes.set_axis_off()
-    bar = figure.colorbar(ScalarMappable(norm, _COLOURS), ax=axes, shrink=0.6)
-    bar.ax.set_title("dBi", fontsize=8.5)
+    figure.colorbar(ScalarMappable(norm, _COLOURS), ax=axes, shrink=0.6).ax.set_title("dBi", fontsize=8.5)

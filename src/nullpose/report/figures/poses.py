@@ -144,8 +144,7 @@ def _draw_legend(figure: Figure, stage: Stage, surface: str) -> None:
             break
         legend.remove()
     if stage.key:
-        wide_inch = figure.get_figwidth()
-        figure.set_figheight(_keyed_height(stage, wide_inch, height_px / figure.dpi))
+        figure.set_figheight(_keyed_height(stage, figure.get_figwidth(), height_px / figure.dpi))
 
 
 def _keyed_height(stage: Stage, wide_inch: float, key_inch: float) -> float:
@@ -250,9 +249,8 @@ def draw_array(result: Result, width: str | None = None) -> Figure:
     azimuth_deg = max(sides_deg, key=lambda deg: abs(math.sin(yaw_rad - math.radians(deg))))
     value = with_unit(quantity.in_unit(result.objective.value), quantity)
     yaw = f"yaw {math.degrees(yaw_rad):.1f}°".replace("-", MINUS)
-    view = replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM)
     return draw_panels(
-        Stage.of(result, view, is_narrow=is_column(width)),
+        Stage.of(result, replace(ALONE, azimuth_deg=azimuth_deg, pattern=_BEAM), is_narrow=is_column(width)),
         lambda axes, stage, pose: _draw_elements(axes, stage, pose, elements, weights),
         surface=f"gain of the beam for {result.binding_node}, horizontal cut as a line",
         head=f"{result.scenario.name}\n{result.label}: {quantity.smallest} {value}, {yaw}; "

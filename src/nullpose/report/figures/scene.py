@@ -107,8 +107,7 @@ def _draw_zone(axes: Axes3D, zone: NoFlyZone | None, corners_m: FloatArray, *, i
 
 def draw_set(axes: Axes3D, point: Jammer | Eavesdropper, colour: str, label: str) -> None:
     """Draw wires on the surface ``{position + A x : |x| = 1}`` of the set that a point may be anywhere in."""
-    around = np.linspace(0.0, math.tau, _MERIDIANS * _STEPS + 1)
-    ball, _ = ball_rings((_PARALLELS + 1) * _STEPS + 1, around)
+    ball, _ = ball_rings((_PARALLELS + 1) * _STEPS + 1, np.linspace(0.0, math.tau, _MERIDIANS * _STEPS + 1))
     away_m = np.tensordot(point.uncertainty_matrix_m, ball, 1)
     look = {"color": colour, "linewidth": 0.6, "alpha": 0.75, "zorder": 5.5, "label": label}
     axes.plot_wireframe(*(away_m.T + point.position_m).T, rstride=_STEPS, cstride=_STEPS, **look)

@@ -182,11 +182,10 @@ class Inner:
         points = family.denominator_point[entries]
         noise, node = float(family.denominator_isotropic[group]), family.numerator_point[ratio]
         channels = family.channels[[*points, node]] if len(family.channels) else family.channels
-        node_m = family.points_m[node] - p
         numbers = Ratio(
             isotropic=float(family.numerator_isotropic[ratio]) / noise,
             weight=float(family.numerator_weight[ratio]) / noise,
-            node=tuple(node_m.tolist()),
+            node=tuple((family.points_m[node] - p).tolist()),
             shares=family.denominator_weight[entries] / noise,
             centres=family.points_m[points] - p,
             sets=Sets(

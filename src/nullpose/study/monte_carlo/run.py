@@ -87,8 +87,7 @@ class _Tally:
     def tell(self, note: str = "") -> None:
         """Call the callback."""
         fresh, spent = self.at.done - self._before, time.monotonic() - self._began
-        rate = fresh / spent if fresh and spent > 0.0 else 0.0
-        self._on_progress(replace(self.at, rate=rate, note=note))
+        self._on_progress(replace(self.at, rate=fresh / spent if fresh and spent > 0.0 else 0.0, note=note))
 
 
 def run_study(

@@ -164,8 +164,7 @@ class StudySpec(Section):
         }
         for case in [each for each in values["cases"] if "mount_scenes" in each]:
             case["airframe"].pop("mount_deg", None)  # the scenes choose it, so it follows from the rest
-        text = json.dumps(values, sort_keys=True, separators=(",", ":"))
-        return hashlib.sha256(text.encode()).hexdigest()
+        return hashlib.sha256(json.dumps(values, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
 def require_number(noun: str, number: int, least: int, most: int) -> int:
