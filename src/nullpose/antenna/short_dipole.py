@@ -17,8 +17,11 @@ def short_dipole(null_depth_db: float | None = None) -> QuadraticAntenna:
     """
     if null_depth_db is None:
         return SHORT_DIPOLE
-    label = f"{SHORT_DIPOLE.label} with a null of {null_depth_db:g} dB"
-    return QuadraticAntenna(name=SHORT_DIPOLE.name, label=label, leak=10.0 ** (-null_depth_db / 10.0))
+    return QuadraticAntenna(
+        name=SHORT_DIPOLE.name,
+        label=f"{SHORT_DIPOLE.label} with a null of {null_depth_db:g} dB",
+        leak=10.0 ** (-null_depth_db / 10.0),
+    )
 
 
 DIPOLE = AntennaKind("a short dipole", short_dipole, ("null_depth_db",))

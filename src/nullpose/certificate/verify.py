@@ -124,8 +124,11 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
         with np.errstate(all="ignore"):  # infinities and undefined numbers fail their comparisons
             reason = _tree_fault(family, fields[tree.axis], tree, certificate.upper_bound, checked)
         done += len(tree.leaves)
-    message = f"rejected: {reason}" if reason else sentence(certificate, total)
-    return Verdict(proved=not reason, message=message, leaves=done)
+    return Verdict(
+        proved=not reason,
+        message=f"rejected: {reason}" if reason else sentence(certificate, total),
+        leaves=done,
+    )
 
 
 def _tree_fault(

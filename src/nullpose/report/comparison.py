@@ -165,8 +165,12 @@ def _values(
     )
     if rule:
         cells.insert(rule, {})
-    title = f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
-    return table(title, cells, bold=bold, left=["suffices", "status"])
+    return table(
+        f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})",
+        cells,
+        bold=bold,
+        left=["suffices", "status"],
+    )
 
 
 def _texts(numbers: FloatArray, digits: int) -> list[str | None]:

@@ -38,8 +38,10 @@ def sensitivity_view(result: Result) -> View | None:
         f"lowest {quantity.short} ({quantity.unit})": [number(value, quantity) for value in values],
         f"change ({quantity.unit})": [number(value - nominal, quantity) for value in values],
     }
-    title = "If things are off (found by a search: the true lowest value can be lower)"
-    return document(table(title, rows(columns)), sensitivity_words(result))
+    return document(
+        table("If things are off (found by a search: the true lowest value can be lower)", rows(columns)),
+        sensitivity_words(result),
+    )
 
 
 def sensitivity_caption(result: Result) -> str:

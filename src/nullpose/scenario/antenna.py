@@ -100,8 +100,9 @@ class Antenna(Section):
             return
         kind = ANTENNAS[self.kind]
         strange = raw.keys() - {"kind", "gain_dbi", *kind.keys}
-        message = f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
-        yield from key_faults(raw, strange, message)
+        yield from key_faults(
+            raw, strange, f'has no meaning with kind = "{self.kind}"; remove it, or state another kind'
+        )
         if self.gain_dbi and kind.read is not None and self.normalise == "none":
             yield (
                 ("gain_dbi",),

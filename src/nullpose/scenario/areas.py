@@ -175,8 +175,9 @@ def areas_of(
         found = area_of(feature, reach, counts, fence is None) if is_kept else []
         for area in found:
             area.role, area.unknown = role, unknown
-            is_fence = fence is None and role != STAY_OUT
-            area.limits, area.remarks = altitude_limits(feature, ground_m, is_fence=is_fence)
+            area.limits, area.remarks = altitude_limits(
+                feature, ground_m, is_fence=fence is None and role != STAY_OUT
+            )
             area.name = unique(area.name, taken)
         return found
 

@@ -147,8 +147,10 @@ def _noises(scenario: Scenario, points: Mapping[str, GroundPoint]) -> Iterator[F
         if 0.0 < noise_w < watts_from_dbm(_FAINTEST_DBM)
     )
     if (hz := scenario.receiver.frequency_hz or math.inf) < _LOWEST_HZ:
-        words = f"{hz:g} Hz is below 1 MHz, as if it were in kHz or MHz; {hz:g} MHz is written {1e6 * hz:g}"
-        yield Fault("receiver.frequency_hz", words)
+        yield Fault(
+            "receiver.frequency_hz",
+            f"{hz:g} Hz is below 1 MHz, as if it were in kHz or MHz; {hz:g} MHz is written {1e6 * hz:g}",
+        )
 
 
 def _gains(points: Mapping[str, GroundPoint]) -> Iterator[Fault]:

@@ -230,10 +230,11 @@ def verified(solution: Result, on_progress: Callable[[int, int], None] | None = 
         UsageError: nothing was proved, or the scheme has no certificate for this scenario.
     """
     verdict = verify(certificate_of(solution), on_progress)
-    rigour = Rigour.VERIFIED if verdict.proved else Rigour.FLOATING_POINT
     return replace(
         solution,
-        objective=replace(solution.objective, rigour=rigour),
+        objective=replace(
+            solution.objective, rigour=Rigour.VERIFIED if verdict.proved else Rigour.FLOATING_POINT
+        ),
         reason=solution.reason if verdict.proved else f"its certificate is {verdict.message}",
     )
 

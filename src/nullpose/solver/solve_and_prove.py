@@ -72,8 +72,9 @@ def solve_and_prove(
 
     def searched(field: AxisField, proof_follows: bool) -> Incumbent:
         settings = search_settings(proof_follows, field)
-        deadline = began + options.time_limit_s
-        found = multistart(family, field, seed=options.seed, settings=settings, deadline=deadline)
+        found = multistart(
+            family, field, seed=options.seed, settings=settings, deadline=began + options.time_limit_s
+        )
         searches.append(found)
         return searches[-1]
 

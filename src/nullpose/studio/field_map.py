@@ -96,8 +96,9 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
         name="footprint_db",
     )
     unlike = " without errors" if answer.case.robust else ""
-    best = replace(best, title=f"{best.title}{unlike}")
-    return FieldMap(version=answer.version, best=best, footprint=footprint)
+    return FieldMap(
+        version=answer.version, best=replace(best, title=f"{best.title}{unlike}"), footprint=footprint
+    )
 
 
 def _ground_gain(scenario: Scenario, pose: Pose, places_m: FloatArray) -> FloatArray:

@@ -242,8 +242,10 @@ class Page:
 
     async def _clicked(self, event: SceneClickEvent) -> None:  # in order, since it runs in the loop
         eye_m, direction = np.array(event.ray_origin), np.array(event.ray_direction)
-        name = "The fence" if self.session.state.corners_m else "The new point"
-        self.change(lambda state: clicked(state, self.stage.size_m, eye_m, direction), name=name)
+        self.change(
+            lambda state: clicked(state, self.stage.size_m, eye_m, direction),
+            name="The fence" if self.session.state.corners_m else "The new point",
+        )
 
     def _pointed(self, place: str) -> None:
         state, camera, key, lines = self.session.state, self._client.camera, None, list[str]()
@@ -300,8 +302,10 @@ class Page:
             return state.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
 
         if not self.change(loaded, name=file.name):  # viser has said by now that the file has arrived
-            words = "It arrived, but its faults are listed in the panel, and the scene is as it was."
-            self._notify(f"{file.name} was not taken", words)
+            self._notify(
+                f"{file.name} was not taken",
+                "It arrived, but its faults are listed in the panel, and the scene is as it was.",
+            )
 
     def _notify(self, title: str, text: str) -> None:
         self._client.add_notification(title, text, color="red", auto_close_seconds=_NOTICE_S)

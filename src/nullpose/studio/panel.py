@@ -49,8 +49,9 @@ class Panel(SimpleNamespace):
         self.faults = gui.add_html("")
         self.selected_values = gui.add_folder("Selected", visible=False)
         with self.selected_values:
-            hint = "Take it out of the scene (key: Delete)."
-            self.delete = gui.add_button("Delete", order=1e6, hint=hint, color="gray")
+            self.delete = gui.add_button(
+                "Delete", order=1e6, hint="Take it out of the scene (key: Delete).", color="gray"
+            )
         tabs = gui.add_tab_group()
         for tab, controls in TABS.items():
             with tabs.add_tab(tab):

@@ -41,22 +41,31 @@ class History:
             return replace(self, present=replace(state, version=now.version, events=now.events))
         if gesture and gesture == self.gesture:
             return replace(self, present=self._next(state), future=())
-        past = (*self.past, replace(now, events={}))[-_MOST_STEPS:]
-        return History(present=self._next(state), past=past, gesture=gesture)
+        return History(
+            present=self._next(state),
+            past=(*self.past, replace(now, events={}))[-_MOST_STEPS:],
+            gesture=gesture,
+        )
 
     def undone(self) -> History:
         """Return the history one step back; itself if there is none."""
         if not self.past:
             return self
-        present = self._next(self.present.with_scene_of(self.past[-1]))
-        return History(present=present, past=self.past[:-1], future=(*self.future, self.present))
+        return History(
+            present=self._next(self.present.with_scene_of(self.past[-1])),
+            past=self.past[:-1],
+            future=(*self.future, self.present),
+        )
 
     def redone(self) -> History:
         """Return the history one step forward again; itself if there is none."""
         if not self.future:
             return self
-        present = self._next(self.present.with_scene_of(self.future[-1]))
-        return History(present=present, past=(*self.past, self.present), future=self.future[:-1])
+        return History(
+            present=self._next(self.present.with_scene_of(self.future[-1])),
+            past=(*self.past, self.present),
+            future=self.future[:-1],
+        )
 
     def _next(self, state: State) -> State:
         """Return a state as the next version; the proofs of cases that are not shown would take up memory."""

@@ -66,8 +66,11 @@ def _page(result: Result, *, dark: bool) -> str:
         not hasattr(result.details, "weights"),
         "show: given the result of an array; allowed: of one antenna. Try plot.plan(result)",
     )
-    scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM
-    case = Case(label=result.label, scheme=scheme, robust=isinstance(result.details, RobustDetails))
+    case = Case(
+        label=result.label,
+        scheme=result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM,
+        robust=isinstance(result.details, RobustDetails),
+    )
     state = State(scenario=result.scenario, case=case)
     answer = with_errors(answer_of(state.version, case, result))
     return scene_html(

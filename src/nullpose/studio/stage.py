@@ -140,8 +140,9 @@ def _map_shapes(scale: Scale, map_alpha: int, contour: Rgb | None) -> Shapes:
     for level in list(contours)[:: max(1, len(contours) // _MOST_LABELS)]:
         points = np.concatenate(contours[level])
         x, y = points[np.argmax(points[:, 0])]  # eastmost: in front, beside the labels of the points
-        text = f"{level:g} {field.unit}".replace("-", MINUS)
-        shapes[f"/map/level-{level:g}"] = label(text, (x, y, altitude_m), 0.7, "center-center")
+        shapes[f"/map/level-{level:g}"] = label(
+            f"{level:g} {field.unit}".replace("-", MINUS), (x, y, altitude_m), 0.7, "center-center"
+        )
     return shapes
 
 

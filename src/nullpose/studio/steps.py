@@ -109,5 +109,8 @@ def power_curves(state: State, go_on: Callable[[], None] = lambda: None) -> Iter
         for scheme in schemes:
             go_on()
             rows.append(ResultRow.of(power_db, solve(scenario, scheme, certify=False)))
-        table = ResultTable(path=POWER_LABEL, rows=tuple(rows))
-        yield PowerCurve(version=state.version, table=table, complete=done == _CURVE_POINTS)
+        yield PowerCurve(
+            version=state.version,
+            table=ResultTable(path=POWER_LABEL, rows=tuple(rows)),
+            complete=done == _CURVE_POINTS,
+        )

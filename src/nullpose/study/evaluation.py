@@ -110,8 +110,10 @@ def require_one_antenna(scenario: Scenario, verb: str) -> None:
     Raises:
         UsageError: it has one.
     """
-    message = f"{verb}: given a scenario with an [array]; allowed: one antenna; remove [array]"
-    require_usage(scenario.array is None, message)
+    require_usage(
+        scenario.array is None,
+        f"{verb}: given a scenario with an [array]; allowed: one antenna; remove [array]",
+    )
 
 
 def evaluated(result: Result, scenario: Scenario, pose: Pose, upper_bound: float | None = None) -> Result:
@@ -145,8 +147,11 @@ def _against(best: Result, pose: Pose) -> Result:
         *([] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]),
         f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m",
     ]
-    details = GivenDetails(best=best, below_bound=below, not_allowed=not_allowed)
-    return replace(result, note="\n".join(notes), details=details)
+    return replace(
+        result,
+        note="\n".join(notes),
+        details=GivenDetails(best=best, below_bound=below, not_allowed=not_allowed),
+    )
 
 
 def pose_faults(scenario: Scenario, pose: Pose) -> Iterable[str]:

@@ -75,8 +75,11 @@ def _entities(result: Result) -> Iterator[PlainTable]:
         place = _pose_message(result, Pose(np.asarray(position_m), 0.0, 0.0))
         looks = {"pose": place, "color": Color(**_COLOURS.get(kind, _COLOURS["jammer"]))}
         sphere = SpherePrimitive(size=Vector3(x=size_m, y=size_m, z=size_m), **looks)
-        text = TextPrimitive(text=name, font_size=0.5 * size_m, **looks)
-        yield {"id": f"{kind} {name}", "spheres": [sphere], "texts": [text]}
+        yield {
+            "id": f"{kind} {name}",
+            "spheres": [sphere],
+            "texts": [TextPrimitive(text=name, font_size=0.5 * size_m, **looks)],
+        }
 
 
 def _pose_message(result: Result, pose: Pose) -> Any:

@@ -76,8 +76,9 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
             number = "" if stage.key else stage.numbers.get(point.name, "")
             write_name(axes, name, place, number=number, is_bold=point.name in stage.worst)
         if stage.uncertain and not isinstance(point, Node):
-            words = f"where the {kind} may be"
-            axes.plot(*_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=words)
+            axes.plot(
+                *_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=f"where the {kind} may be"
+            )
     reach = AXIS * stage.view.pattern * stage.extent_m * pose.antenna_axis[:2]
     ends = pose.position_m[:2] + np.stack([-reach, reach])
     is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None

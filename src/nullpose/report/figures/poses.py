@@ -97,8 +97,12 @@ def draw_panels(
                 draw_panel(axes, stage, pose, draw_vehicle)
             else:
                 draw_plan(axes, stage, pose)
-            words = title.replace(", ", "\n") if is_narrow else title
-            axes.set_title(words, fontsize="small" if is_narrow else "medium", y=0.96, parse_math=True)
+            axes.set_title(
+                title.replace(", ", "\n") if is_narrow else title,
+                fontsize="small" if is_narrow else "medium",
+                y=0.96,
+                parse_math=True,
+            )
         if plan:
             draw_plan(figure.add_subplot(grid[:, 0]), stage, stage.poses[0])
         if width is None:

@@ -187,8 +187,9 @@ def draw_curve(
         every: which points have a marker, as Matplotlib has it; all without.
     """
     heights = np.where(np.isfinite(heights), heights, np.nan)
-    drawstyle = "steps-post" if steps else "default"
-    axes.plot(across, heights, drawstyle=drawstyle, markevery=every, **line_style(look))
+    axes.plot(
+        across, heights, drawstyle="steps-post" if steps else "default", markevery=every, **line_style(look)
+    )
     if band is not None:
         finite = np.isfinite(band[0]) & np.isfinite(band[1])
         shade: Look = {"color": look.colour, "alpha": 0.12, "linewidth": 0.0, "zorder": 1.0}

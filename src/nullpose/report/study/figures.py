@@ -113,11 +113,15 @@ def _gains(summary: Summary, points: Sequence[int]) -> Figure:
 
     names = " or ".join(sorted(set(summary.cases.loc[compared, "against"])))
     across = f"gain in the {summary.quantity.smallest} over {names} ({summary.quantity.unit})"
-    note = (
-        f"Disc: median gain. Diamond: gain in the worst tenth. Lines: {percent(CONFIDENCE)} confidence. "
-        "Bar: 10th to 90th percentile."
+    return _panels(
+        summary,
+        points,
+        draw,
+        across=across,
+        note=f"Disc: median gain. Diamond: gain in the worst tenth. Lines: {percent(CONFIDENCE)} confidence. "
+        "Bar: 10th to 90th percentile.",
+        height=0.6 + 0.27 * len(compared),
     )
-    return _panels(summary, points, draw, across=across, note=note, height=0.6 + 0.27 * len(compared))
 
 
 def _looks(cases: pd.DataFrame) -> list[Curve]:
@@ -151,8 +155,10 @@ def _panels(
     down = -(-len(points) // columns)
     with house_style(), rc_context({"text.parse_math": False}):  # names are shown as they are
         high = 1.3 + height * down
-        layout = ConstrainedLayoutEngine(rect=(0.0, 2.0 * _NOTE / high, 1.0, 1.0 - 2.0 * _NOTE / high))
-        figure = Figure(figsize=(_WIDTH, high), layout=layout)
+        figure = Figure(
+            figsize=(_WIDTH, high),
+            layout=ConstrainedLayoutEngine(rect=(0.0, 2.0 * _NOTE / high, 1.0, 1.0 - 2.0 * _NOTE / high)),
+        )
         panels = list(figure.subplots(down, columns, sharex=True, sharey=True, squeeze=False).flat)
         for axes, point in zip(panels, points, strict=False):
             axes.set_title(point_words(summary.spec, point), loc="left", fontsize=9.0, wrap=True)
@@ -160,8 +166,12 @@ def _panels(
         for axes in panels[len(points) :]:
             axes.remove()
         if looks:
-            handles = [Line2D([], [], **line_style(look)) for look in looks]
-            figure.legend(handles=handles, loc="outside upper center", ncols=3, fontsize=8.5)
+            figure.legend(
+                handles=[Line2D([], [], **line_style(look)) for look in looks],
+                loc="outside upper center",
+                ncols=3,
+                fontsize=8.5,
+            )
         figure.supylabel(up, fontsize=9.5)
         figure.supxlabel(across, y=_NOTE / high, va="bottom", fontsize=9.5)
         figure.text(0.012, 0.008, note, fontsize=7.5, color=GREY, va="bottom", ha="left")

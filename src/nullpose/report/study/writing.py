@@ -126,8 +126,12 @@ def report_study(
         data,
         *(path for pair in figures.values() for path in pair),
     )
-    notes = tuple(filter(None, (unfinished, *sentences[1:])))
-    return StudyReport(answer=sentences[0], notes=notes, summary=summary, files=files)
+    return StudyReport(
+        answer=sentences[0],
+        notes=tuple(filter(None, (unfinished, *sentences[1:]))),
+        summary=summary,
+        files=files,
+    )
 
 
 def _requirement(quantity: Quantity, in_db: float | None, in_bps_hz: float | None) -> float | None:

@@ -114,8 +114,9 @@ def _sweep_faults(draws: Draws, spec: StudySpec, index: int) -> list[Fault]:
         step = max(1, len(values) // _TRIED_VALUES)
         for value in dict.fromkeys((*values[::step], values[-1])):
             for fault in _faults_at(draws, index, {path: value}):
-                message = f"{fault.message} (at {value:g})"
-                faults_by_path.setdefault((path, fault.path), Fault(path_of(("sweep", path)), message))
+                faults_by_path.setdefault(
+                    (path, fault.path), Fault(path_of(("sweep", path)), f"{fault.message} (at {value:g})")
+                )
     return list(faults_by_path.values())
 
 
