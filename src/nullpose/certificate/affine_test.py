@@ -14,12 +14,14 @@ import numpy as np
 
 from nullpose.certificate.allowed import Weighted, negative_where_allowed
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import Excess, Interval3, excess
 from nullpose.certificate.forms import (
     COLUMN,
     COUNTED,
-    IDENTITY,
+    IDENTITIES,
+    LAST,
+    NEXT,
     PLACE,
     ROW,
     adjugate,
@@ -31,12 +33,13 @@ from nullpose.certificate.forms import (
 from nullpose.certificate.interval import Interval, dot, stack, swapped, where
 from nullpose.certificate.jets import Jet
 from nullpose.certificate.weighted_sum import weighted_sum
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 
 _SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01)
 _UNIT = Interval(np.eye(3)[:, :, None])
-_AFTER, _LAST = [1, 2, 0], [2, 0, 1]
 
 
 def link_jet(
@@ -92,7 +95,7 @@ def _dipole_jet(
         ahead = dot(matrix, r[:, None]) - u
         gradient = slope * s - r * uv * 2.0 - ahead * vr + v * ur
         bent = both[ROW, COLUMN] * vr - outer(slope, r) * 2.0 + outer(ahead, v)
-        return dot(_cross(u, r), _cross(v, r)), gradient, bent + uv * 2.0 * IDENTITY[:, None]
+        return dot(_cross(u, r), _cross(v, r)), gradient, bent + uv * 2.0 * IDENTITIES
 
     u, r = _axis_and_offset(field, points, Interval(boxes.centre.T))
     product, gradient, bend = parts(u, r)
@@ -142,7 +145,7 @@ def _isotropic_jet(
 
 
 def _cross(x: Interval, y: Interval) -> Interval:
-    return x[_AFTER] * y[_LAST] - x[_LAST] * y[_AFTER]
+    return x[NEXT] * y[LAST] - x[LAST] * y[NEXT]
 
 
 def _axis_and_offset(
@@ -182,7 +185,7 @@ def _quotient(
     fall = -(beta + sigma * power)  # l, of the log of w = 1 / (b s^power)
     bent = (swapped(squares(swapped(slopes))).total() + dot(bend, cross[:, None])) * 2.0
     q = squares(beta) * 2.0 + outer(beta, sigma) * power + squares(sigma) * (power * (power + 1.0))
-    q = q - 2.0 * power * IDENTITY[:, None] / s
+    q = q - 2.0 * power * IDENTITIES / s
     q = q - dot(matrix[:, ROW], matrix[:, COLUMN]) * 2.0 / b
     # w (n'' + n' l + l' n + n q)
     return n / weight, (dn + n * fall) / weight, (bent + outer(dn, fall) + n * q) / weight
@@ -224,7 +227,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         middle, steep, bent = value[rows], slopes[:, rows], hessian[:, rows]
         for nu, bound in constraints:
             middle, steep = middle + bound.value * nu, steep + bound.slopes * nu
-            bent = bent + (2.0 * nu * bound.bend)[ROW] * IDENTITY[:, None]
+            bent = bent + (2.0 * nu * bound.bend)[ROW] * IDENTITIES
         return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
     holds = (ranged.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, slopes.middle)
@@ -254,7 +257,7 @@ def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hes
 
 
 def _dual_negative(rest: Interval, g: Interval, middle: FloatArray, mu: FloatArray) -> np.ndarray:
-    a = Interval(mu[ROW] * IDENTITY[:, None]) - middle
+    a = Interval(mu[ROW] * IDENTITIES) - middle
     _, positive, det = definite(a)
     form = (squares(g) * adjugate(a) * COUNTED[:, None]).total()
     return np.asarray(positive & (((rest + Interval(mu).total() * 0.5) * det + form * 0.5).high < 0.0))

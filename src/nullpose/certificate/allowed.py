@@ -8,9 +8,11 @@ from typing import TypeAlias
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import Constraint, zone_alternatives
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
 # Constraints with a multiplier, not negative, for each box.
@@ -67,8 +69,7 @@ def _guesses(constraints: tuple[Constraint, ...], gradient: FloatArray) -> Itera
     gram = np.einsum("ikb,jkb->ijb", normals, normals)
     pull = -np.einsum("ikb,kb->ib", normals, gradient)
     alone = _usable(pull / np.einsum("iib->ib", gram))
-    for chosen in np.eye(len(alone)):
-        yield alone * chosen[:, None]
+    yield from (alone * chosen[:, None] for chosen in np.eye(len(alone)))
     if len(alone) == 2:
         det = gram[0, 0] * gram[1, 1] - gram[0, 1] ** 2
         yield _usable((pull * gram[[1, 0], [1, 0]] - pull[::-1] * gram[0, 1]) / det)

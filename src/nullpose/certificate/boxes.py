@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nullpose.certificate.certificate import PROFILE, FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import PROFILE, Leaves
 from nullpose.certificate.interval import Interval
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -116,6 +118,5 @@ def uncovered(leaves: Leaves) -> str:
         side = finer[0]
         bit = indices[members, side] >> (depths[members, side] - depth[side] - 1) & 1
         deeper = (*depth[:side], depth[side] + 1, *depth[side + 1 :])
-        for half in range(2):
-            todo.append((members[bit == half], deeper, on_face, f"{path}/{'xyzab'[side]}{half}"))
+        todo += [(members[bit == half], deeper, on_face, f"{path}/{'xyzab'[side]}{half}") for half in (0, 1)]
     return ""

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.certificate.profile import ProfileField
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.schemes import RECORDS
 from nullpose.scenario import Scenario
-
-FloatArray: TypeAlias = NDArray[np.float64]
-IntArray: TypeAlias = NDArray[np.int64]
 
 WORLD = 0  # any axis, in the world frame
 TOWARDS = 1  # any axis, in a frame that turns towards a point

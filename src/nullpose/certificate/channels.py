@@ -13,13 +13,14 @@ from typing import TypeAlias, TypeVar
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, IntArray
 from nullpose.certificate.elementary import arctan, exp, log
 from nullpose.certificate.forms import COLUMN, IDENTITY, ROW, outer, squares
 from nullpose.certificate.interval import Interval, stack, where
 from nullpose.certificate.jets import Jet
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, KNOTS
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
 

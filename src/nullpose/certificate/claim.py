@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from nullpose.certificate.certificate import Certificate, FloatArray
+from nullpose.certificate.certificate import Certificate
 from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import (
     Exact,
@@ -22,6 +22,7 @@ from nullpose.certificate.pose_value import (
 )
 from nullpose.certificate.profile import profiles_of
 from nullpose.objectives import Quantity
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.scenario import Airframe, Scenario

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import excess
 from nullpose.certificate.forms import (
     COLUMN,
     COUNTED,
+    IDENTITIES,
     IDENTITY,
     ROW,
     Linear,
@@ -23,12 +24,13 @@ from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import ROUNDING, VECTOR_BEND, VECTOR_SLOPE
 from nullpose.certificate.shear import Shear, link_vector, shear_of, sheared, size_of, smaller
 from nullpose.certificate.weighted_sum import Multiple, weighted_sum
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
 _MOST_ETA = 0.25
 _SHARE = 0.1
 _TINY = 1e-290
-_IDENTITIES = IDENTITY[:, None]
 
 
 def dipole_sum(
@@ -88,11 +90,10 @@ def _vectors(family: Family, shear: Shear, boxes: Boxes, point: IntArray) -> lis
     points_m, axes = family.points_m[point], family.ground_axes[point]
     has = np.any(axes != 0.0, axis=1)
     near = boxes.nearest(points_m)
-    jets = []
-    for i in range(1 if np.all(has) else 3):
-        direction = np.where(has[:, None], axes if i == 0 else 0.0, np.eye(3)[i])
-        jets.append(sheared(link_vector(points_m, direction, boxes), shear, near))
-    return jets
+    directions = (
+        np.where(has[:, None], axes if i == 0 else 0.0, np.eye(3)[i]) for i in range(1 if np.all(has) else 3)
+    )
+    return [sheared(link_vector(points_m, direction, boxes), shear, near) for direction in directions]
 
 
 def square_over(jet: Jet, boxes: Boxes, top: FloatArray, scale: Interval, sign: float) -> Linear:
@@ -121,7 +122,7 @@ def square_over(jet: Jet, boxes: Boxes, top: FloatArray, scale: Interval, sign: 
     eta = np.clip(total.high / np.maximum(ahead, 1e-300), 1e-12, _MOST_ETA)
     near = scale * (Interval(eta) * sign + 1.0)
     far = scale * (1.0 / Interval(eta) + (1.0 if sign > 0.0 else 0.0)) * total
-    rest = _spread(parts, weight) * far + _IDENTITIES * (ball * far)
+    rest = _spread(parts, weight) * far + IDENTITIES * (ball * far)
     form = squares(value)
     slopes = outer(jet.slopes, value[:, None])
     if sign > 0.0:
@@ -205,7 +206,7 @@ def _beside_null(
 
 def identity_form(shear: Shear) -> Linear:
     """Return ``(I + E)^T (I + E)`` in the basis, to first order."""
-    return constant_form(shear, Interval(np.repeat(_IDENTITIES, len(shear.on), axis=1)))
+    return constant_form(shear, Interval(np.repeat(IDENTITIES, len(shear.on), axis=1)))
 
 
 def constant_form(shear: Shear, q: Interval) -> Linear:

@@ -11,7 +11,8 @@ from math import factorial
 
 import numpy as np
 
-from nullpose.certificate.interval import ANY, FloatArray, Interval, where
+from nullpose.certificate.interval import ANY, Interval, where
+from nullpose.physics.types import FloatArray
 
 LN2_HIGH = 2977044471 / 2**32  # 32 bits: its product with an integer below 2^21 is exact
 LN2_LOW = Interval(

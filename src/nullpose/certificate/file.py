@@ -76,20 +76,28 @@ def _unpacked(data: bytes) -> bytes:
     packed, stream = data.startswith(_GZIP_MAGIC), zlib.decompressobj(_GZIP)
     start = stream.decompress(data, _START) if packed else data[:_START]
     if FORMAT.encode() not in start:  # most of what grows a thousandfold ends here
-        if b"[airspace]" in start or b"[receiver]" in start:
-            raise CertificateError(
-                "is a scenario, not a certificate; nullpose solve with --certificate FILE writes one"
-            )
+        _require(
+            b"[airspace]" not in start and b"[receiver]" not in start,
+            "is a scenario, not a certificate; nullpose solve with --certificate FILE writes one",
+        )
         raise CertificateError(
             f"is no certificate: its first {_START} bytes do not name the format {FORMAT!r}"
         )
     if packed:
         data = start + stream.decompress(stream.unconsumed_tail, _MOST_BYTES)
-        if stream.unconsumed_tail:
-            raise CertificateError(f"it grows beyond {_MOST_BYTES / 1e6:g} MB, the most that is read")
-        if not stream.eof or stream.unused_data:
-            raise CertificateError("is no certificate: it is cut off, or something follows it")
+        _require(
+            not stream.unconsumed_tail, f"it grows beyond {_MOST_BYTES / 1e6:g} MB, the most that is read"
+        )
+        _require(
+            stream.eof and not stream.unused_data,
+            "is no certificate: it is cut off, or something follows it",
+        )
     return data
+
+
+def _require(holds: object, message: str) -> None:
+    if not holds:
+        raise CertificateError(message)
 
 
 def scenario_digest(data: Mapping[str, object]) -> str:
@@ -153,15 +161,19 @@ def parse_certificate(text: str) -> Certificate:
         data = parse_json(text, parse_constant=_finite, parse_float=_finite)
     except ScenarioError as error:
         raise CertificateError(f"is no certificate: {error}") from error
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise CertificateError(f"is no certificate: its format must be {FORMAT!r}")
-    if type(data.get("version")) is not int or data["version"] != VERSION:
-        raise CertificateError(f"version: must be {VERSION}; solve again with --certificate to have one")
+    _require(
+        isinstance(data, dict) and data.get("format") == FORMAT,
+        f"is no certificate: its format must be {FORMAT!r}",
+    )
+    _require(
+        type(data.get("version")) is int and data["version"] == VERSION,
+        f"version: must be {VERSION}; solve again with --certificate to have one",
+    )
     scenario = _table(data.get("scenario", _MISSING), "scenario")
-    if scenario_digest(scenario) != data.get("scenario_sha256"):
-        raise CertificateError(
-            "scenario_sha256: the scenario is not the one that the certificate was made for"
-        )
+    _require(
+        scenario_digest(scenario) == data.get("scenario_sha256"),
+        "scenario_sha256: the scenario is not the one that the certificate was made for",
+    )
     data = _read(data, "", _LAYOUT)
     return Certificate(
         scenario=Scenario.from_dict(scenario, "scenario"),
@@ -237,10 +249,10 @@ def _leaves(value: object, path: str) -> dict[str, Any]:
     """Return columns of equal length."""
     columns = _read(value, path, _LEAVES)
     for name in COLUMNS:
-        if len(columns[name]) != len(columns["test"]):
-            raise CertificateError(
-                f"{path}.{name}: must have an entry for each of {len(columns['test'])} tests"
-            )
+        _require(
+            len(columns[name]) == len(columns["test"]),
+            f"{path}.{name}: must have an entry for each of {len(columns['test'])} tests",
+        )
     return columns
 
 
@@ -249,10 +261,9 @@ def _read(value: object, path: str, layout: Mapping[str, Reader]) -> dict[str, A
     place = f"{path}." if path else ""
     table = _table(value, path)
     for key in table:
-        if key not in layout:
-            raise CertificateError(
-                f"{place}{printable(key)}: unknown key; the keys here are {', '.join(layout)}"
-            )
+        _require(
+            key in layout, f"{place}{printable(key)}: unknown key; the keys here are {', '.join(layout)}"
+        )
     return {key: read(table.get(key, _MISSING), place + key) for key, read in layout.items()}
 
 

@@ -7,17 +7,21 @@ from itertools import product
 
 import numpy as np
 
-from nullpose.certificate.certificate import FloatArray, IntArray
 from nullpose.certificate.interval import Interval, dot, stack
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 
 IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+IDENTITIES = IDENTITY[:, None]
+"""The same for any number of boxes."""
 ROW, COLUMN = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
 """Row and column of each of the six."""
 
 # Where among the six a row and a column are.
 PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 
-_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
+NEXT, LAST = [1, 2, 0], [2, 0, 1]
+"""The two axes other than each."""
 
 # How often each of the six is in the matrix.
 COUNTED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
@@ -141,7 +145,7 @@ def _dominant(a: Interval) -> np.ndarray:
     # the axes themselves must span the space: their products are those of an orthonormal basis, about
     for form in (congruence(a, axes)[0], gram(axes)):
         off = form.magnitude()[PLACE]
-        rest = Interval(off[_NEXT, range(3)]) + off[_LAST, range(3)]
+        rest = Interval(off[NEXT, range(3)]) + off[LAST, range(3)]
         holds &= np.all(form.low[:3] > rest.high, axis=0)
     return holds
 

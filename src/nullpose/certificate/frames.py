@@ -12,14 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import TOWARDS, Leaves
 from nullpose.certificate.channels import Amplitude, amplitude
 from nullpose.certificate.forms import COLUMN, Linear, congruence, gram, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
 from nullpose.certificate.lemmas import DIRECTION_BEND
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
-_UNIT = np.eye(3)[:, :, None]  # the world's axes, for any number of boxes
+UNIT = np.eye(3)[:, :, None]
+"""The world's axes, for any number of boxes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,7 +82,7 @@ def axes_across(third: FloatArray, mask: np.ndarray) -> FloatArray:
     """Build bases, (3, 3, b), whose first two columns are across vectors, (3, b); else the world's axes."""
     chosen = third[:, mask].T
     pairs = np.stack([chosen, np.eye(3)[np.argmin(np.abs(chosen), axis=1)]], axis=-1)
-    axes = np.tile(_UNIT, third.shape[1])
+    axes = np.tile(UNIT, third.shape[1])
     axes[:, :2, mask] = np.moveaxis(np.linalg.qr(pairs, "complete")[0][:, :, 1:], 0, -1)
     return axes
 
@@ -103,8 +106,8 @@ def expansion(
     shape = anchor_shape(family, frames)
     form = where(anchored, shape / s, (frames.gram * s - twice) / s.squared())
     # b' = -e + (e (d.a) - d (a.e)) / rho for the three axes e, and rho d for the anchor itself
-    swing = (dot(frames.direction, a) * _UNIT - frames.direction[:, None] * a) / frames.rho
-    step = where(frames.turning, swing, 0.0) - _UNIT
+    swing = (dot(frames.direction, a) * UNIT - frames.direction[:, None] * a) / frames.rho
+    step = where(frames.turning, swing, 0.0) - UNIT
     rate = dot(a[:, None], step) * 2.0
     turned = less_leak(outer(frames.turned(step), seen[:, None]), family)
     bent = turned + rate * frames.gram[:, None]

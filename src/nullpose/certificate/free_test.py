@@ -9,13 +9,15 @@ import numpy as np
 
 from nullpose.certificate.allowed import Weighted, negative_where_allowed
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import TOWARDS, WORLD, FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import TOWARDS, WORLD, Leaves
 from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import COUNTED, IDENTITY, Linear, quadratic, side_form, top_vectors
 from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.lemmas import CONSTANT_SWING, SPREAD_OVER_NORM
 from nullpose.certificate.weighted_sum import weighted_sum
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 

@@ -7,12 +7,12 @@ floating-point number on either side encloses the exact result. Nothing else is 
 from __future__ import annotations
 
 from functools import reduce
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray: TypeAlias = NDArray[np.float64]
+from nullpose.physics.types import FloatArray
 
 
 def _down(x: FloatArray) -> FloatArray:

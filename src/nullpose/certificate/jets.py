@@ -7,8 +7,8 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
-from nullpose.certificate.certificate import FloatArray
 from nullpose.certificate.interval import ANY, Interval, where
+from nullpose.physics.types import FloatArray
 
 PAIRS = np.array(list(combinations_with_replacement(range(5), 2)))
 """Coordinates of each second derivative that is kept, (15, 2)."""

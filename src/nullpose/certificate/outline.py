@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nullpose.certificate.certificate import FloatArray
 from nullpose.certificate.interval import Interval
+from nullpose.physics.types import FloatArray
 
 Point: TypeAlias = tuple[Fraction, ...]
 

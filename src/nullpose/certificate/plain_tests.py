@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, Leaves
+from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import most_excess
 from nullpose.certificate.forms import cell_ends
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 

@@ -7,20 +7,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.antenna import PatternAntenna
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import sine_cosine
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
-
-FloatArray: TypeAlias = NDArray[np.float64]
-IntArray: TypeAlias = NDArray[np.int64]
 
 _CELLS = 4096  # of the cosine: a power of two, so that ends and middles are exact
 _ORDER = 7  # of the Taylor series in each, whose remainder is bounded by the next derivative

@@ -7,9 +7,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nullpose.certificate.certificate import FloatArray
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.jets import PAIRS, Jet, flat
+from nullpose.physics.types import FloatArray
 
 PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
 _TERMS, _REST = 9, 3e-18  # of the series: (pi / 4)^18 / 18! is less

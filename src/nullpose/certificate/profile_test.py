@@ -19,13 +19,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import DEEPEST, FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import DEEPEST, Leaves
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.jets import PAIRS, largest
 from nullpose.certificate.plain_tests import kept_out_holds
 from nullpose.certificate.profile import Profile, ProfileField
 from nullpose.certificate.profile_links import PI, Link, about, links_of, sine_cosine
 from nullpose.certificate.weighted_sum import Multiple, weighted_sum
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 

@@ -12,18 +12,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import TOWARDS, FloatArray, IntArray, Leaves
-from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITY, ROW, gram, squares
-from nullpose.certificate.frames import axes_across
+from nullpose.certificate.certificate import TOWARDS, Leaves
+from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITIES, ROW, gram, squares
+from nullpose.certificate.frames import UNIT, axes_across
 from nullpose.certificate.interval import Interval, dot, stack, swapped, where
 from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import DIRECTION_THIRD, ROUNDING, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
 _UPRIGHT = 0.4
 _SHARP = 1e-8  # how well an anchor's vector must be known, so that the basis is orthonormal but for ROUNDING
-_UNIT = np.eye(3)[:, :, None]
-_IDENTITIES = IDENTITY[:, None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,14 +72,14 @@ def link_vector(points_m: FloatArray, axes: FloatArray, boxes: Boxes) -> Jet:
     cube, ahead = s * s.sqrt(), dot(r, v)
     value = (v * s - r * ahead) / cube
     ri, vi = r[None], v[None]
-    first = (v[:, None] * ri + _UNIT * ahead + r[:, None] * vi - r[:, None] * ri * (ahead * 3.0 / s)) / cube
+    first = (v[:, None] * ri + UNIT * ahead + r[:, None] * vi - r[:, None] * ri * (ahead * 3.0 / s)) / cube
     i, j = ROW, COLUMN
-    along_v = r[i] * r[j] * 3.0 / s - _IDENTITIES
+    along_v = r[i] * r[j] * 3.0 / s - IDENTITIES
     along_i, along_j = (r[k] * (ahead * 3.0 / s) - v[k] for k in (j, i))
-    along_r = (v[i] * r[j] + v[j] * r[i] + _IDENTITIES * ahead) * 3.0 / s
+    along_r = (v[i] * r[j] + v[j] * r[i] + IDENTITIES * ahead) * 3.0 / s
     along_r = along_r - r[i] * r[j] * (ahead * 15.0 / s.squared())
     second = v[:, None] * along_v + r[:, None] * along_r
-    second = (second + _UNIT[:, i] * along_i + _UNIT[:, j] * along_j) / cube
+    second = (second + UNIT[:, i] * along_i + UNIT[:, j] * along_j) / cube
     return Jet(value, first, second, (VECTOR_THIRD / boxes.nearest(points_m).squared().squared()).most())
 
 
@@ -122,7 +122,7 @@ def _turn(
     way = (Interval(points_m) - boxes.centre).T
     pairs = (
         (jet.value, way),
-        (jet.slopes, -_UNIT),
+        (jet.slopes, -UNIT),
         (jet.bends, 0.0),
         (slope, 1.0),
         (bend, 0.0),
@@ -155,7 +155,7 @@ def _turn(
 
 def _basis(on: np.ndarray, is_dipole: np.ndarray, d0: Interval) -> tuple[Interval, Interval]:
     """Return the bases, and ``d0 d0^T`` in them for dipoles, which has one entry exactly."""
-    third = np.where(on, d0.middle(), _UNIT[2])
+    third = np.where(on, d0.middle(), UNIT[2])
     third = third / np.linalg.norm(third, axis=0)
     axes = axes_across(third, on)
     axes[:, 2, on] = third[:, on]

@@ -19,7 +19,6 @@ from nullpose.certificate.certificate import (
     TOWARDS,
     WORLD,
     Certificate,
-    IntArray,
     Leaves,
     Tree,
     claimed_axes,
@@ -31,6 +30,7 @@ from nullpose.certificate.profile import ProfileField, loudest
 from nullpose.certificate.profile_test import profile_holds
 from nullpose.certificate.subject import sentence
 from nullpose.errors import checked
+from nullpose.objectives.ratios import IntArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family

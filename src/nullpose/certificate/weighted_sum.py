@@ -6,8 +6,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nullpose.certificate.certificate import FloatArray, IntArray, Leaves
+from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.interval import Interval, where
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
 # A ground point for each box, and by what its form is multiplied: exactly zero where it does not count.

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.certificate import FloatArray, IntArray
 from nullpose.certificate.interval import Interval, dot, stack
 from nullpose.certificate.outline import Outline, may_meet
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.airspace import FENCE, FORBIDDEN_CYLINDER
 from nullpose.problem.family import Family
 
@@ -130,8 +131,8 @@ def _beyond_edges(family: Family, zone: int, rows: IntArray, boxes: Boxes) -> It
     outline = Outline.of(edges, bool(family.zone_kind[zone] == FENCE))
     low, high = boxes.hull.low[:2].T, boxes.hull.high[:2].T
     for row, meets, south_west, north_east in zip(rows, may_meet(edges, low, high), low, high, strict=True):
-        for chosen in outline.alternatives(np.flatnonzero(meets).tolist(), south_west, north_east):
-            yield int(row), *(int(first) + e for e in chosen)
+        alternatives = outline.alternatives(np.flatnonzero(meets).tolist(), south_west, north_east)
+        yield from ((int(row), *(int(first) + e for e in chosen)) for chosen in alternatives)
 
 
 def _right_of(boxes: Boxes, edges: FloatArray, sign: FloatArray) -> Constraint:

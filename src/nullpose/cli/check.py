@@ -15,9 +15,9 @@ def check(scene: SceneOptions, json_output: JsonOutput = False) -> None:
     scenario = scene.read()
     if json_output:
         show_json(summarise(scenario))
-        return
-    show(scenario_view(scenario))
-    say(f"{scene.file}: no faults")
+    else:
+        show(scenario_view(scenario))
+        say(f"{scene.file}: no faults")
 
 
 def schema() -> None:

@@ -52,9 +52,15 @@ def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Floa
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    links = (scenario.node_antennas, scenario.node_channels)
-    nodes = (scenario.node_positions_m, *links, scenario.node_noise_w)
-    return _snr(scenario, position_m, axis, *nodes)
+    return _snr(
+        scenario,
+        position_m,
+        axis,
+        scenario.node_positions_m,
+        scenario.node_antennas,
+        scenario.node_channels,
+        scenario.node_noise_w,
+    )
 
 
 def eavesdropper_snr(
@@ -75,10 +81,15 @@ def eavesdropper_snr(
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    points_m = scenario.eavesdropper_positions_m if points_m is None else points_m
-    links = (scenario.eavesdropper_antennas, scenario.eavesdropper_channels)
-    eavesdroppers = (points_m, *links, scenario.eavesdropper_noise_w)
-    return _snr(scenario, position_m, axis, *eavesdroppers)
+    return _snr(
+        scenario,
+        position_m,
+        axis,
+        scenario.eavesdropper_positions_m if points_m is None else points_m,
+        scenario.eavesdropper_antennas,
+        scenario.eavesdropper_channels,
+        scenario.eavesdropper_noise_w,
+    )
 
 
 def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:

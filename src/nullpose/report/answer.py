@@ -40,9 +40,12 @@ def answer_lines(comparison: ResultTable) -> list[str]:
     }
     kinds["array"] = [row for row in comparison.rows if row.case.array is not None]
     lines = [_least_line(comparison, kind, found) for kind, found in kinds.items() if found]
-    for row in [row for row in comparison.rows if row.name == FILE_VEHICLE]:
-        verdict = _VERDICTS[verdict_on(comparison, row)]
-        lines.append(f"{capitalised(row.case.phrase)} {verdict}: it {_reach(comparison, row)}.")
+    lines += [
+        f"{capitalised(row.case.phrase)} {_VERDICTS[verdict_on(comparison, row)]}: "
+        f"it {_reach(comparison, row)}."
+        for row in comparison.rows
+        if row.name == FILE_VEHICLE
+    ]
     return [*lines, "The least tilt for each mount of the dipole: nullpose vehicle FILE"]
 
 

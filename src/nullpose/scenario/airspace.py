@@ -236,8 +236,10 @@ class Airspace(Section):
         counted = f", its margin of {self.margin_m:g} m counted" if self.margin_m else ""
         if len(fence_m := self.inner.geofence_outline_m):
             yield f"outside the geofence{counted}", depth_m(position[..., :2], fence_m)
-        for zone in self.inner.no_fly:
-            yield f"inside the no-fly zone {zone.name}{counted}", -zone.depth_m(position, self.altitude_m)
+        yield from (
+            (f"inside the no-fly zone {zone.name}{counted}", -zone.depth_m(position, self.altitude_m))
+            for zone in self.inner.no_fly
+        )
 
     @property
     def _ranges_m(self) -> tuple[tuple[float, float] | None, ...]:

@@ -64,8 +64,11 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     yield from _objective_faults(scenario, points)
     for named in (points, zones, buildings):
         yield from shared_names(named)
-    for place in [place for place, building in buildings.items() if building.buildings_from is not None]:
-        yield (*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it"
+    yield from (
+        ((*place, "buildings_from"), f"{ONLY_LOCAL}, in place of its own buildings; remove it")
+        for place, building in buildings.items()
+        if building.buildings_from is not None
+    )
     yield from _antenna_faults(scenario, points)
     yield from _gain_faults(scenario, points)
     yield from _channel_faults(scenario, {(): scenario, **points})
@@ -151,10 +154,11 @@ def _channel_faults(
     receiver: Receiver | None = scenario.receiver
     keep_out_m = getattr(scenario.airspace, "keep_out_m", None)
     channels = {place: table.channel for place, table in tables.items() if table.channel is not None}
-    for place in [
-        place for place, channel in channels.items() if place and channel.shadow_margin_m is not None
-    ]:
-        yield (*place, "channel", "shadow_margin_m"), "counts for all points; write it in the table [channel]"
+    yield from (
+        ((*place, "channel", "shadow_margin_m"), "counts for all points; write it in the table [channel]")
+        for place, channel in channels.items()
+        if place and channel.shadow_margin_m is not None
+    )
     for place, channel in {} if scenario.buildings else channels.items():
         if channel.model == "elevation" and channel.is_by_sight and channel.average is None:
             words = "power, db or guaranteed, unless buildings decide on line of sight"
@@ -192,8 +196,9 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
         others = [f'"{other.name}"' for other in RECORDS.values() if unused not in other.unused]
         advice = f"remove it, or write objective = {' or '.join(others)}"
         for _, _, present in _places_of(unused, scenario, points):
-            for place in present:
-                yield place, f'has no meaning with objective = "{record.name}"; {advice}'
+            yield from (
+                (place, f'has no meaning with objective = "{record.name}"; {advice}') for place in present
+            )
 
 
 def _places_of(
@@ -210,12 +215,14 @@ def _places_of(
     if not quantity:
         table = table_of(type(scenario), kind)
         yield (kind,), [table.heading() if table else kind], [(kind,)] if getattr(scenario, kind) else []
-        return
-    ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
-    keys = [key for group in ways.groups for key in group]
-    for place, point in points.items():
-        if place[0] == kind:
-            yield place, keys, [(*place, key) for key in keys if getattr(point, key) is not None]
+    else:
+        ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
+        keys = [key for group in ways.groups for key in group]
+        yield from (
+            (place, keys, [(*place, key) for key in keys if getattr(point, key) is not None])
+            for place, point in points.items()
+            if place[0] == kind
+        )
 
 
 def shared_names(tables: Mapping[Place, Any]) -> Iterator[tuple[Place, str]]:

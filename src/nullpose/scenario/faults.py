@@ -71,6 +71,12 @@ def rejection(message: str) -> PydanticCustomError:
     return PydanticCustomError(_KIND, "{message}", {"message": message})
 
 
+def require_value(holds: object, message: str) -> None:
+    """Refuse a value in a validator, in exactly these words, unless a condition holds."""
+    if not holds:
+        raise rejection(message)
+
+
 def collected(title: str, faults: Iterable[tuple[Place, str]]) -> ValidationError:
     """Return pydantic's exception that carries all the faults together."""
     details = [InitErrorDetails(type=rejection(message), loc=place, input=None) for place, message in faults]

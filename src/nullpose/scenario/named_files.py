@@ -193,12 +193,12 @@ class NamedFiles:
             if not isinstance(table, dict) or _BUILDINGS_KEY not in table:
                 self._places[f"buildings[{len(whole)}]"] = place
                 whole.append(table)
-                continue
-            self._keys.append(f"{place}.{_BUILDINGS_KEY}")
-            with self._reading(place, "."):
-                rules = Building.from_dict(table)
-                fill = partial(buildings_of, rules=rules, origin=origin, names=names, first=len(whole))
-                whole += self._filled(self._keys[-1], rules.buildings_from, fill) or []
+            else:
+                self._keys.append(f"{place}.{_BUILDINGS_KEY}")
+                with self._reading(place, "."):
+                    rules = Building.from_dict(table)
+                    fill = partial(buildings_of, rules=rules, origin=origin, names=names, first=len(whole))
+                    whole += self._filled(self._keys[-1], rules.buildings_from, fill) or []
         return whole
 
     def _nodes(self, file: object) -> list[PlainTable]:

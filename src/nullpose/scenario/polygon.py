@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import AfterValidator
 
 from nullpose.scenario.arrays import Floats, read_only
-from nullpose.scenario.faults import rejection
+from nullpose.scenario.faults import require_value
 from nullpose.scenario.rules import ListOf
 from nullpose.scenario.units import LatLon, PlanePoint
 
@@ -91,11 +91,11 @@ def _judged(corners: _Vertices) -> tuple[str, _Vertices]:
 def _outline(value: _Vertices) -> _Vertices:
     """Return the vertices without doubled ones, or raise the fault that keeps them from one area."""
     fault, corners = _judged(value)
-    if fault:
-        raise rejection(
-            f"the border crosses or touches itself, or has no area ({fault}); list every vertex once, in "
-            "order around the area (the last is joined to the first)"
-        )
+    require_value(
+        not fault,
+        f"the border crosses or touches itself, or has no area ({fault}); list every vertex once, in "
+        "order around the area (the last is joined to the first)",
+    )
     return value if len(corners) == len(value) else corners
 
 

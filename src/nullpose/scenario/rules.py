@@ -11,7 +11,7 @@ from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, Type
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from nullpose.scenario.faults import rejection
+from nullpose.scenario.faults import rejection, require_value
 from nullpose.scenario.wording import described, plain, suggestion
 
 MOST_MEMBERS = 10_000
@@ -195,11 +195,11 @@ class NumberOr(Rule):
 
 def ascending(value: tuple[float, float]) -> tuple[float, float]:
     """Return two numbers, or raise the fault that the second is less than the first."""
-    if value[0] > value[1]:
-        raise rejection(
-            f"got {list(value)}, which is reversed and so holds nothing; must have the lowest first; "
-            f"try {list(value[::-1])}"
-        )
+    require_value(
+        value[0] <= value[1],
+        f"got {list(value)}, which is reversed and so holds nothing; must have the lowest first; "
+        f"try {list(value[::-1])}",
+    )
     return value
 
 

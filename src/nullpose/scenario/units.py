@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BeforeValidator, WithJsonSchema
 
-from nullpose.scenario.faults import EXCHANGED, rejection
+from nullpose.scenario.faults import EXCHANGED, rejection, require_value
 from nullpose.scenario.rules import ListOf, Quantity, ascending
 from nullpose.scenario.wording import described
 
@@ -130,11 +130,11 @@ LatLon = Annotated[
 
 
 def _pointing(value: tuple[float, float, float]) -> tuple[float, float, float]:
-    if not any(value):
-        raise rejection(
-            f"got {list(value)}, which has length 0 and no direction; must be a direction of any other "
-            "length; [0, 0, 1] is upright"
-        )
+    require_value(
+        any(value),
+        f"got {list(value)}, which has length 0 and no direction; must be a direction of any other "
+        "length; [0, 0, 1] is upright",
+    )
     return value
 
 
@@ -167,19 +167,21 @@ def ratio_from_db(ratio_db: float) -> float:
 def _line(value: object) -> str:
     if not isinstance(value, str):
         raise rejection(f"got {described(value)}, must be text in quotes")
-    if not value.isprintable() or value != value.strip():
-        raise rejection(
-            f"got {described(value)}, must be text on one line, without control characters "
-            "and without blanks at its ends"
-        )
+    require_value(
+        value.isprintable() and value == value.strip(),
+        f"got {described(value)}, must be text on one line, without control characters "
+        "and without blanks at its ends",
+    )
     return str(value)
 
 
 def _name(value: object) -> str:
     if value is None:
         return ""  # left out: named by its place
-    if isinstance(value, str) and not value.strip():
-        raise rejection(f"got {described(value)}, must be a name with at least one visible character")
+    require_value(
+        not isinstance(value, str) or value.strip(),
+        f"got {described(value)}, must be a name with at least one visible character",
+    )
     return _line(value)
 
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, PROFILE, TOWARDS, WORLD
@@ -15,6 +14,8 @@ from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
 from nullpose.certificate.profile import profiles_of
 from nullpose.errors import UsageError, checked, require_usage
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
@@ -22,9 +23,6 @@ from nullpose.solver.branch_and_bound import MOST_LEAVES
 from nullpose.solver.proof import MOST_HALVINGS, Proof
 from nullpose.solver.result import Result
 from nullpose.solver.rigour import Rigour, bound_above
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 def leaves_of(proof: Proof, axis: str) -> Leaves:

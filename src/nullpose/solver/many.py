@@ -177,9 +177,9 @@ def solve_many(
         for column, (vehicle, outcome) in enumerate(zip(vehicles, outcomes, strict=True)):
             if outcome is None:
                 results.reason[row, column] = NOWHERE
-                continue
-            pose = Pose.of_airframe(vehicle, outcome.incumbent.position_m, outcome.incumbent.axis)
-            _fill(results, (row, column), scenario, pose, outcome, of_scene.target)
+            else:
+                pose = Pose.of_airframe(vehicle, outcome.incumbent.position_m, outcome.incumbent.axis)
+                _fill(results, (row, column), scenario, pose, outcome, of_scene.target)
         if on_progress is not None:
             on_progress(row + 1, len(scenarios))
     return results

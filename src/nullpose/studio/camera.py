@@ -7,18 +7,17 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from nullpose.physics import Pose
+from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 from nullpose.studio.ground import airspace_outline_m, grid_m, scene_size_m, ticks_m
 
 if TYPE_CHECKING:
     from viser import CameraHandle, InitialCameraConfig
 
-FloatArray = NDArray[np.float64]
 
 NARROW_PX = 600.0
 """Width of the canvas below which it is a phone's."""

@@ -34,9 +34,7 @@ class Case:
         Args:
             scenario: as stated.
         """
-        if self.vehicle is not None:
-            return self.vehicle.on(scenario)
-        return scenario if scenario.array is None else scenario.model_copy(update={"array": None})
+        return scenario.without_array if self.vehicle is None else self.vehicle.on(scenario)
 
     def missing(self, scenario: Scenario) -> str | None:
         """Name the reason for which the solver refuses the case for a scenario, or None.

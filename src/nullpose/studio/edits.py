@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import count
 
@@ -156,7 +155,7 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
         key: which, or None.
     """
     if key is None:
-        return tuple(_vehicle_entries(state.scenario))
+        return _vehicle_entries(state.scenario)
     kind, index = key
     member, path = state.members(kind)[index], f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
     labels = {"name": "name"} | _keys(member)
@@ -183,7 +182,7 @@ def _keys(member: GroundPoint | NoFlyZone) -> dict[str, str]:
     return {key: label for key, label in keys.items() if key in type(member).model_fields}
 
 
-def _vehicle_entries(scenario: Scenario) -> Iterator[Entry]:
+def _vehicle_entries(scenario: Scenario) -> tuple[Entry, ...]:
     airframe, airspace = scenario.airframe or Airframe(preset="omnidirectional"), scenario.airspace
     tilt_deg = math.degrees(airframe.tilt_max_rad)
     values = (
@@ -194,8 +193,8 @@ def _vehicle_entries(scenario: Scenario) -> Iterator[Entry]:
         airspace.margin_m,
         airspace.keep_out_m,
     )
-    for (path, label), value in zip(_VEHICLE.items(), values, strict=True):
-        yield Entry(path, label, _text(value))
+    rows = zip(_VEHICLE.items(), values, strict=True)
+    return tuple(Entry(path, label, _text(value)) for (path, label), value in rows)
 
 
 def _text(value: object) -> str:

@@ -8,10 +8,10 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.channel import PointChannels, excess_gain
 from nullpose.physics import Pose, antenna_gain
+from nullpose.physics.types import FloatArray
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
 from nullpose.solver.background_compiler import BackgroundCompiler
@@ -20,8 +20,6 @@ from nullpose.studio.case import new_scenario
 from nullpose.studio.look import scale_range
 from nullpose.study import Field, value_map
 from nullpose.study.value_map import CELLS, in_decibels, map_grid_m
-
-FloatArray = NDArray[np.float64]
 
 MAPS = ("best value at each place", "pattern's footprint")
 """What the two maps are called, the first being that of the best values."""

@@ -7,9 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from nullpose.physics import to_db
+from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import outline_m as zone_outline_m
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import Building, Eavesdropper, GroundPoint, Jammer, Scenario
@@ -19,8 +19,6 @@ from nullpose.studio.look import Look, Rgb, round_steps
 from nullpose.studio.meshes import MARKS, level_mesh, merged, prism_edges, prism_mesh, sphere_mesh
 from nullpose.studio.state import POWER_DB, Key, State
 from nullpose.study.value_map import map_extent_m
-
-FloatArray = NDArray[np.float64]
 
 CROWD = 4  # with more nodes than this only the worst, the selected and the point pointed at have labels
 _LABELS = ((0.0, 0.0, 0.062), "bottom-center"), ((0.0, 0.035, 0.0), "center-left")

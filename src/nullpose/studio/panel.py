@@ -64,9 +64,10 @@ class Panel(SimpleNamespace):
             if isinstance(control, dict):
                 with gui.add_folder(name):
                     self._add(gui, control)
-                continue
-            kind, label, hint, more = control
-            setattr(self, name, getattr(gui, f"add_{kind}")(label, **more | ({"hint": hint} if hint else {})))
+            else:
+                kind, label, hint, more = control
+                add = getattr(gui, f"add_{kind}")
+                setattr(self, name, add(label, **more | ({"hint": hint} if hint else {})))
 
     def render(self, history: History) -> None:
         """Show the present state, and whether there is a step to undo or to redo.
@@ -145,10 +146,9 @@ class _Fields:
         return field
 
     def _typed(self, look: _Look, text: str) -> None:
-        if look not in self._entries:
-            return  # something else is selected by now
-        self._on_typed(self._entries[look], text)
-        self._fields[look].value = self._entries[look].text  # also if viser has it already
+        if look in self._entries:  # unless something else is selected by now
+            self._on_typed(self._entries[look], text)
+            self._fields[look].value = self._entries[look].text  # also if viser has it already
 
 
 def put(handle: object, **values: object) -> None:

@@ -34,7 +34,7 @@ _ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field
 POWER_DB = (-30.0, 40.0)
 """Range of the strongest jammer's power over the nodes' that a page offers, dB."""
 
-_E = TypeVar("_E", bound=Event)
+AnyEvent = TypeVar("AnyEvent", bound=Event)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,12 +95,12 @@ class State:
             events.pop((Notice, None), None)
         return replace(self, events=events)
 
-    def latest(self, kind: type[_E], case: Case | None = None) -> _E | None:
+    def latest(self, kind: type[AnyEvent], case: Case | None = None) -> AnyEvent | None:
         """Look up the latest event of a kind, of whatever version; None without one."""
         event = self.events.get((kind, case))
         return event if isinstance(event, kind) else None
 
-    def present(self, kind: type[_E], case: Case | None = None) -> _E | None:
+    def present(self, kind: type[AnyEvent], case: Case | None = None) -> AnyEvent | None:
         """Look up the event of a kind for the present version of the scene; None without one."""
         event = self.latest(kind, case)
         return event if event is not None and event.version == self.version else None
@@ -151,9 +151,11 @@ class State:
 
     def points(self) -> Iterator[tuple[Key, GroundPoint]]:
         """Yield every ground point with its key."""
-        for kind in KINDS[:-1]:
-            for index, point in enumerate(getattr(self.scenario, kind)):
-                yield (kind, index), point
+        yield from (
+            ((kind, index), point)
+            for kind in KINDS[:-1]
+            for index, point in enumerate(getattr(self.scenario, kind))
+        )
 
     def members(self, kind: Kind) -> tuple[GroundPoint | NoFlyZone, ...]:
         """Return a list of the scenario."""

@@ -65,8 +65,7 @@ def proved_answers(state: State, case: Case, on_progress: Callable[[float, int],
         answer = answer_of(state.version, case, proved)
         yield answer
         yield with_errors(answer)
-        return
-    for certify in (False, True):
+    for certify in (False, True) if case.robust else ():
         guarded = solve(
             scenario, robust=True, certify=certify, time_limit_s=_ROBUST_LIMIT_S, on_progress=on_progress
         )

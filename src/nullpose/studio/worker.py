@@ -8,7 +8,6 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TypeVar
 
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
@@ -16,7 +15,7 @@ from nullpose.solver import announce_compiling
 from nullpose.studio.answer import Event, Notice, Progress
 from nullpose.studio.case import Case
 from nullpose.studio.field_map import field_map, map_compiler
-from nullpose.studio.state import State
+from nullpose.studio.state import AnyEvent, State
 from nullpose.studio.steps import least_tilts, power_curves, proved_answers, quick_answers
 
 REST_S = 0.35
@@ -26,7 +25,6 @@ _COMPILING = "compiling the solver for this machine, once for each kind of scene
 
 _PROGRESS_S = 0.1  # between two reports of a proof
 
-_E = TypeVar("_E", bound=Event)
 
 _log = logging.getLogger("nullpose.studio")
 
@@ -110,8 +108,8 @@ class Worker:
             self._publish_all(state, best.case, least_tilts(state, self._go_on))
 
     def _publish_all(
-        self, state: State, case: Case, events: Iterable[_E], *, late: bool = False
-    ) -> _E | None:
+        self, state: State, case: Case, events: Iterable[AnyEvent], *, late: bool = False
+    ) -> AnyEvent | None:
         """Publish events and return the last; a failure is published in their place, and None returned."""
         last = None
         try:

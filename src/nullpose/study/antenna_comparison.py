@@ -8,6 +8,7 @@ from typing import Unpack
 
 from nullpose.errors import require_usage
 from nullpose.scenario import Antenna, Scenario
+from nullpose.scenario.origin import POINT_LISTS
 from nullpose.solver import Result, solve
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.result import provenance
@@ -15,8 +16,6 @@ from nullpose.study.case import Case
 from nullpose.study.evaluation import evaluated
 from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import ResultRow, ResultTable
-
-_POINTS = ("nodes", "jammers", "eavesdroppers")
 
 
 def compare_antennas(
@@ -73,6 +72,6 @@ def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
         ground: whether to keep those on the ground.
     """
     changed: dict[str, object] = {} if drone else {"antenna": Antenna(gain_dbi=scenario.antenna_gain_dbi)}
-    for kind in () if ground else _POINTS:
+    for kind in () if ground else POINT_LISTS:
         changed[kind] = tuple(point.isotropic for point in getattr(scenario, kind))
     return scenario.model_copy(update=changed)

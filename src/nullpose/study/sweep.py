@@ -19,6 +19,7 @@ from nullpose.errors import Fault, ScenarioError, UsageError, checked, require_u
 from nullpose.objectives import Quantity
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Override, Scenario, apply_overrides
+from nullpose.scenario.faults import raise_all
 from nullpose.solver import Result, SolveKeywords, SolveOptions, Status, solve
 from nullpose.solver.objective import status_of
 from nullpose.solver.result import Stats
@@ -217,8 +218,7 @@ def _scenarios_along(
         except ScenarioError as error:
             for fault in error.faults:
                 faults[fault.path].append((value, fault.message))
-    if faults:
-        raise ScenarioError([_first(place, wrong) for place, wrong in faults.items()], f"sweep of {path}")
+    raise_all([_first(place, wrong) for place, wrong in faults.items()], f"sweep of {path}")
     return tuple(varied)
 
 

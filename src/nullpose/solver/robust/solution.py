@@ -223,9 +223,11 @@ def in_words(scenario: Scenario, axis: FloatArray, case: ErrorCase) -> str:
     moved = [("drone", case.position_offset_m)]
     moved += zip(scenario.jammer_names, case.jammer_offsets_m, strict=True)
     moved += zip(scenario.eavesdropper_names, case.eavesdropper_offsets_m, strict=True)
-    for name, offset_m in moved:
-        if (distance_m := float(np.linalg.norm(offset_m))) > _LEAST_M:
-            parts.append(f"{name} {distance_m:.3g} m off, {_direction(offset_m)}")
+    parts += [
+        f"{name} {distance_m:.3g} m off, {_direction(offset_m)}"
+        for name, offset_m in moved
+        if (distance_m := float(np.linalg.norm(offset_m))) > _LEAST_M
+    ]
     return "; ".join(parts) if parts else "everything as stated"
 
 

@@ -11,7 +11,7 @@ from nullpose.files import PlainTable
 from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
-from nullpose.scenario.faults import call_each, path_of
+from nullpose.scenario.faults import call_each, path_of, raise_all
 from nullpose.scenario.toml_file import FileKind, file_text, inside, tables_of
 from nullpose.study.case import Case
 from nullpose.study.monte_carlo.draw import Draws
@@ -49,8 +49,7 @@ def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> S
         spec = StudySpec.from_dict(tables)
     except ScenarioError as error:
         raise ScenarioError([*faults, *error.faults], source) from None
-    if faults:
-        raise ScenarioError(faults, source)
+    raise_all(faults, source)
     require_sound(spec, source)
     return spec
 
@@ -95,8 +94,7 @@ def require_sound(spec: StudySpec, source: str = "study") -> None:
         faults = faults or _cases_faults(spec, [draws.at(sound[0], 0), draws.at(sound[0], -1)])
     else:
         faults = [Fault(f"scene 0: {each.path}", each.message) for each in unsound[0]]
-    if faults:
-        raise ScenarioError(faults, source)
+    raise_all(faults, source)
 
 
 def _faults_at(draws: Draws, index: int, values: Mapping[str, float]) -> tuple[Fault, ...]:

@@ -102,9 +102,12 @@ class SceneBase(Section):
         if self.file or self.files or self.scenarios:
             message = "given together with a file, which states it; remove one, or state it in the file"
             yield from (((key,), message) for key in tables)
-            return
-        for key in [key for key in ("airspace", "receiver") if key not in tables]:
-            yield (key,), f"missing; add a table headed [scene.{key}], or name a scenario file (file)"
+        else:
+            yield from (
+                ((key,), f"missing; add a table headed [scene.{key}], or name a scenario file (file)")
+                for key in ("airspace", "receiver")
+                if key not in tables
+            )
 
     @property
     def size(self) -> int:

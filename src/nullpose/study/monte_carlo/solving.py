@@ -156,8 +156,7 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
     vehicles: dict[Airframe | None, dict[At, Scenario]] = defaultdict(dict)  # by the scene's own
     for at, scene in scenes.items():
         if not scene.objective_record.transmits:
-            plain = scene if scene.array is None else scene.model_copy(update={"array": None})
-            vehicles[scene.airframe][at] = plain
+            vehicles[scene.airframe][at] = scene.without_array
     rows = (
         row
         for cases in alike.values()

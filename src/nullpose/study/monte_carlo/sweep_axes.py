@@ -9,7 +9,7 @@ from typing import Annotated
 from pydantic_core import PydanticCustomError
 
 from nullpose.errors import UsageError
-from nullpose.scenario.faults import Place, collected, path_of, rejection
+from nullpose.scenario.faults import Place, collected, path_of, rejection, require_value
 from nullpose.scenario.rules import Choice, Count, Quantity, Rule
 from nullpose.scenario.wording import described, plain, unknown
 from nullpose.study.sweep import spaced
@@ -41,8 +41,11 @@ class _Axes(Rule):
                 faults.append(((path,), str(error).replace("\n  ", "; ")))
         if faults:
             raise collected("sweep", faults)
-        if (size := math.prod(len(values) for _, values in axes)) > MOST_POINTS:
-            raise rejection(f"the grid has {size} combinations of values, at most {MOST_POINTS} are allowed")
+        size = math.prod(len(values) for _, values in axes)
+        require_value(
+            size <= MOST_POINTS,
+            f"the grid has {size} combinations of values, at most {MOST_POINTS} are allowed",
+        )
         return tuple(axes)
 
 
@@ -62,8 +65,7 @@ def _values(raw: object) -> tuple[float, ...]:
     """Return the values that a list or a table of from, to, points and spacing states."""
     if isinstance(raw, list | tuple) and len(raw) > 0:
         values = tuple(_VALUE.read(value) for value in raw)
-        if len(set(values)) < len(values):
-            raise rejection("a value is given twice; keep one")
+        require_value(len(set(values)) == len(values), "a value is given twice; keep one")
         return values
     if not isinstance(raw, Mapping):
         raise rejection(
@@ -72,9 +74,9 @@ def _values(raw: object) -> tuple[float, ...]:
         )
     for key in [each for each in raw if each not in _KEYS]:
         raise rejection(f"{key}: {unknown('key', str(key), _KEYS)}")
-    if missing := [key for key in ("from", "to", "points") if key not in raw]:
-        raise rejection(
-            f"{', '.join(missing)} missing; a table here has from, to, points and perhaps spacing"
-        )
+    missing = [key for key in ("from", "to", "points") if key not in raw]
+    require_value(
+        not missing, f"{', '.join(missing)} missing; a table here has from, to, points and perhaps spacing"
+    )
     start, stop, points, spacing = (rule.read(raw.get(key, "linear")) for key, rule in _KEYS.items())
     return spaced(start, stop, points, log=spacing == "log")
