@@ -93,8 +93,9 @@ class _DoubledKeyError(ValueError):
 
 def json_text(value: object, indent: int | None = 2) -> str:
     """Write plain data as JSON in ASCII; a number that JSON lacks (NaN, infinities) becomes null."""
-    read_back = json.loads(json.dumps(value, default=dict), parse_constant=lambda _: None)
-    return json.dumps(read_back, indent=indent)
+    return json.dumps(
+        json.loads(json.dumps(value, default=dict), parse_constant=lambda _: None), indent=indent
+    )
 
 
 def check_outputs(inputs: Mapping[str, Path], outputs: Iterable[tuple[str, Path | None]]) -> None:

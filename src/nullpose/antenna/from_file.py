@@ -49,8 +49,9 @@ def pattern_antenna(
     of_file = f" of {PurePath(file).name}" if file else ""
     at = "" if frequency_hz is None else f" at {frequency_hz / 1e6:.7g} MHz"
     estimate = "" if two_cuts is None else f" ({ESTIMATE})"
-    label = f"{kind}{of_file}{at}{estimate}"
-    return PatternAntenna(kind, label, normalised(found) if normalise == "peak" else found)
+    return PatternAntenna(
+        kind, f"{kind}{of_file}{at}{estimate}", normalised(found) if normalise == "peak" else found
+    )
 
 
 def _read_profile(path: Path, _: PlainTable) -> tuple[PlainTable, tuple[str, ...]]:

@@ -92,13 +92,14 @@ def streams_checked() -> Iterator[None]:
 def _as_json(error: NullposeError, code: int) -> str:
     """Write an error as one line of JSON."""
     faults = error.faults if isinstance(error, ScenarioError) else (Fault("", str(error)),)
-    content = {
-        "error": type(error).__name__,
-        "source": getattr(error, "source", ""),
-        "faults": [{"path": fault.path, "message": fault.message} for fault in faults],
-        "exit_code": code,
-    }
-    return json.dumps(content)
+    return json.dumps(
+        {
+            "error": type(error).__name__,
+            "source": getattr(error, "source", ""),
+            "faults": [{"path": fault.path, "message": fault.message} for fault in faults],
+            "exit_code": code,
+        }
+    )
 
 
 def _plain_choice(message: str) -> str:

@@ -121,8 +121,9 @@ def array_channels(
     Returns:
         Array of shape ``(..., m, K)``, in the square root of a watt.
     """
-    sources = (points_m, powers_w, reference_gain)
-    power_w = received_power_w(position_m, axis, *sources, ground=ground, channels=links)
+    power_w = received_power_w(
+        position_m, axis, points_m, powers_w, reference_gain, ground=ground, channels=links
+    )
     return np.asarray(
         np.sqrt(power_w)[..., None] * steering_vectors(position_m, elements_wavelengths, points_m)
     )

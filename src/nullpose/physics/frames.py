@@ -118,8 +118,9 @@ def pose_frames(scenario: Scenario, pose: Pose) -> PoseFrames:
     north_east_down = _frame_pose(ned_from_enu(pose.position_m), pose.roll_rad, -pose.pitch_rad, heading_rad)
     if scenario.origin is None:
         return PoseFrames(enu=east_north_up, ned=north_east_down)
-    place = Geodetic(**scenario.origin.place(pose.position_m))
-    return PoseFrames(enu=east_north_up, ned=north_east_down, geodetic=place)
+    return PoseFrames(
+        enu=east_north_up, ned=north_east_down, geodetic=Geodetic(**scenario.origin.place(pose.position_m))
+    )
 
 
 def frd_from_flu(vector: ArrayLike) -> FloatArray:

@@ -50,8 +50,9 @@ def zero_interference_sinr(scenario: Scenario, position_m: ArrayLike) -> FloatAr
     if len(scenario.jammers) != 1:
         raise ValueError(f"eq. 3.2 is for one jammer; this scenario has {len(scenario.jammers)}")
     p = np.asarray(position_m, dtype=float)
-    axis = zero_interference_axis(p, scenario.jammer_positions_m[0])
-    received_w = received_from_sources_w(scenario, p, axis)
+    received_w = received_from_sources_w(
+        scenario, p, zero_interference_axis(p, scenario.jammer_positions_m[0])
+    )
     if scenario.antenna_record.leak == 0.0:
         received_w[..., -1] = 0.0  # as it is but for rounding
     return np.asarray(received_w[..., :-1] / (received_w[..., -1:] + scenario.receiver.noise_power_w))

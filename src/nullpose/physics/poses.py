@@ -97,8 +97,9 @@ class Poses:
         return (self[index] for index in range(len(self)))
 
     def __getitem__(self, index: int) -> Pose:
-        angles = (self.roll_rad, self.pitch_rad, np.asarray(self.yaw_rad))
-        roll, pitch, yaw = (float(angle[index]) for angle in angles)
+        roll, pitch, yaw = (
+            float(angle[index]) for angle in (self.roll_rad, self.pitch_rad, np.asarray(self.yaw_rad))
+        )
         return Pose(self.position_m[index], roll, pitch, yaw, self.mount_rad)
 
     def orientation(self, antenna: Antenna) -> FloatArray:

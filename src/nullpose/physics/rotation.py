@@ -34,12 +34,13 @@ def rotation_world_from_body(roll_rad: ArrayLike, pitch_rad: ArrayLike, yaw_rad:
     cr, sr = np.cos(roll), np.sin(roll)
     cp, sp = np.cos(pitch), np.sin(pitch)
     cy, sy = np.cos(yaw), np.sin(yaw)
-    rows = [
-        [cy * cp, cy * sp * sr - sy * cr, cr * sp * cy + sr * sy],
-        [sy * cp, sy * sp * sr + cy * cr, cr * sp * sy - sr * cy],
-        [-sp, cp * sr, cr * cp],
-    ]
-    matrix = np.array(rows)
+    matrix = np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cr * sp * cy + sr * sy],
+            [sy * cp, sy * sp * sr + cy * cr, cr * sp * sy - sr * cy],
+            [-sp, cp * sr, cr * cp],
+        ]
+    )
     return matrix.transpose(*range(2, matrix.ndim), 0, 1)
 
 

@@ -62,8 +62,9 @@ def table(
     from rich.table import Table
 
     is_headed = any(map(str.strip, rows[0]))
-    rules = box.SIMPLE_HEAD if is_headed else None
-    view = Table(box=rules, show_header=is_headed, show_edge=False, pad_edge=False)
+    view = Table(
+        box=box.SIMPLE_HEAD if is_headed else None, show_header=is_headed, show_edge=False, pad_edge=False
+    )
     for index, heading in enumerate(rows[0]):
         cells = [row[heading] for row in rows if row]
         is_words = index == 0 or heading in left

@@ -132,8 +132,9 @@ class Airspace(Section):
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the faults of what has no place on the Earth, of named files and of too large a margin."""
         yield from unplaced(self, raw)
-        names = ("geofence_from", "no_fly_from")
-        yield from key_faults(raw, names, f"{ONLY_LOCAL}, in place of its own areas; remove one")
+        yield from key_faults(
+            raw, ("geofence_from", "no_fly_from"), f"{ONLY_LOCAL}, in place of its own areas; remove one"
+        )
         fence_m, margin_m = self.geofence_outline_m, self.margin_m or 0.0
         if margin_m and self.geofence_m and (parts := len(offset_outlines_m(fence_m, -margin_m))) != 1:
             yield (

@@ -172,8 +172,9 @@ def _joined(
             height_m, over, off_m = end
             ends_m[side] = height_m + shift_m(feature.place, over, key, ground_m)
             ends_m[side] += outwards * (off_m if side else -off_m)
-    is_left = ends_m[0] <= ends_m[1] or outwards > 0.0
-    require(is_left, feature.place, f"no altitude is left of it: it {_WEATHER}")
+    require(
+        ends_m[0] <= ends_m[1] or outwards > 0.0, feature.place, f"no altitude is left of it: it {_WEATHER}"
+    )
     return {key: ends_m}
 
 

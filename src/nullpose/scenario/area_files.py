@@ -59,8 +59,9 @@ def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     """
     listed, place = list(airspace.get("no_fly", ())), _place(origin)
     names = {str(zone.get("name")) for zone in listed if isinstance(zone, Mapping)}
-    has_fence = not FENCES.isdisjoint(airspace)
-    areas, counts, remarks = areas_of(features, reach_deg(origin), _ground_m(origin), names, fence=has_fence)
+    areas, counts, remarks = areas_of(
+        features, reach_deg(origin), _ground_m(origin), names, fence=not FENCES.isdisjoint(airspace)
+    )
     require(counts["area"], "", f"nothing in it is a zone: {'; '.join(notes_on(areas, counts, remarks))}")
     bounds: PlainTable = {}
     words = ""

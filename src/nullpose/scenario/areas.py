@@ -222,8 +222,9 @@ def area_of(feature: Feature, reach: Polygon, counts: Counter[str], is_fence: bo
         elif part.geom_type == "LineString" and not (part.is_closed and len(part.coords) > 3):
             counts["line"] += 1
         else:
-            ring = part if part.geom_type == "Polygon" else shapely.Polygon(part.coords)
-            polygons.append(near(ring, middle_deg))
+            polygons.append(
+                near(part if part.geom_type == "Polygon" else shapely.Polygon(part.coords), middle_deg)
+            )
     within = [polygon for polygon in polygons if polygon.envelope.intersects(reach)]
     checked = [sound(polygon, feature.place, is_fence) for polygon in within]
     counts["crossing"] += sum(is_crossing for _, is_crossing in checked)

@@ -142,8 +142,9 @@ class Building(Section):
         yield from unplaced(self, raw)
         is_file = raw.get("buildings_from") is not None
         other = "without buildings_from, for one building" if is_file else "with buildings_from"
-        strange = _OF_ONE if is_file else _OF_FILES
-        yield from key_faults(raw, strange, f"has a meaning only {other}; remove it")
+        yield from key_faults(
+            raw, _OF_ONE if is_file else _OF_FILES, f"has a meaning only {other}; remove it"
+        )
         properties = [key for key in ("roof_property", "ground_property") if raw.get(key) is not None]
         if is_file and len(properties) == 1:
             yield (properties[0],), "given without the other of roof_property and ground_property; add it"

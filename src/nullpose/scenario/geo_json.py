@@ -75,8 +75,9 @@ def _members_of_plan(plan: PlainTable) -> PlainTable:
     require(not unread, "geoFence", f"{', '.join(unread)} is not read; save the plan anew")
     found: PlainTable = {}
     if isinstance(home, list) and len(home) == 3:
-        origin = dict(zip(("lat_deg", "lon_deg", "alt_msl_m"), home, strict=True))
-        found[HOME] = _feature("Point", home, {"origin": origin})
+        found[HOME] = _feature(
+            "Point", home, {"origin": dict(zip(("lat_deg", "lon_deg", "alt_msl_m"), home, strict=True))}
+        )
     for kind in ("polygon", "circle"):
         listed = value_of(fence, f"{kind}s") or []
         for index, each in enumerate(listed if isinstance(listed, list) else [listed]):

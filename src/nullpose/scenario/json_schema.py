@@ -66,6 +66,7 @@ def _rules(kind: type[Section]) -> list[PlainTable]:
     silent = [name for name, record in RECORDS.items() if "nodes.power" not in record.needs]
     if issubclass(kind, Scenario):
         powers = {"properties": {"nodes": {"items": POWER.schema()}}}
-        named = {"properties": {"objective": {"enum": silent}}, "required": ["objective"]}
-        rules.append({"if": named, "else": powers})
+        rules.append(
+            {"if": {"properties": {"objective": {"enum": silent}}, "required": ["objective"]}, "else": powers}
+        )
     return rules

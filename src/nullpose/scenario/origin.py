@@ -102,8 +102,9 @@ class Origin(Section):
         lat_deg, lon_deg, height_m = geodetic_from_enu(position_m, self.geodetic).tolist()
         bases_m = {"alt_m": self.alt_m, "alt_msl_m": self.alt_msl_m}
         zero_m = float(self.geodetic[2])
-        altitudes = {key: height_m + (base - zero_m) for key, base in bases_m.items() if base is not None}
-        return {"lat_deg": lat_deg, "lon_deg": lon_deg} | altitudes
+        return {"lat_deg": lat_deg, "lon_deg": lon_deg} | {
+            key: height_m + (base - zero_m) for key, base in bases_m.items() if base is not None
+        }
 
     def position_m(self, place: Mapping[str, float]) -> Floats:
         """Convert a place on the Earth to east, north and up from the origin [m], (3,).

@@ -145,8 +145,9 @@ def offset_outlines_m(outline_m: Floats, by_m: float) -> list[tuple[tuple[float,
 
     moved = Polygon(outline_m).buffer(by_m * (1.0 + _SLACK), join_style="mitre", mitre_limit=_MITRE_LIMIT)
     moved = moved.simplify(_SIMPLER * abs(by_m))  # edges of no length have no direction
-    parts = getattr(moved, "geoms", [moved])
-    return [tuple(part.exterior.coords[:-1]) for part in parts if not part.is_empty]
+    return [
+        tuple(part.exterior.coords[:-1]) for part in getattr(moved, "geoms", [moved]) if not part.is_empty
+    ]
 
 
 def largest_margin_m(outline_m: Floats, below_m: float) -> float:

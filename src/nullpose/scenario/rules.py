@@ -207,8 +207,9 @@ class Members(ListOf):
     """A list of tables, of which each that leaves its name out is named by its letter and its place."""
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        members = super().__get_pydantic_core_schema__(source, handler)
-        return core_schema.no_info_after_validator_function(_named_by_place, members)
+        return core_schema.no_info_after_validator_function(
+            _named_by_place, super().__get_pydantic_core_schema__(source, handler)
+        )
 
 
 def _named_by_place(value: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -261,8 +261,9 @@ class Scenario(Section, PointArrays):
     @property
     def states_antennas(self) -> bool:
         """Whether any antenna has another pattern than the paper's: the drone's, or one on the ground."""
-        on_ground = any(point.antenna != "isotropic" for point in self.points)
-        return self.antenna_record != SHORT_DIPOLE or on_ground
+        return self.antenna_record != SHORT_DIPOLE or any(
+            point.antenna != "isotropic" for point in self.points
+        )
 
     @property
     def is_uncertain(self) -> bool:

@@ -184,8 +184,9 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
         kernel(family.arrays, position, axis)
     else:
         fixed = family.at(position)
-        options = SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)
-        axis = solve_and_prove(fixed, [AxisField.within(*band)], options).incumbent.axis
+        axis = solve_and_prove(
+            fixed, [AxisField.within(*band)], SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)
+        ).incumbent.axis
     return Pose.of_airframe(scenario, position, axis)
 
 

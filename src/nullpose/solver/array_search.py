@@ -41,8 +41,9 @@ class ArraySearch(EpigraphSearch):
         super().__init__(family, float(array.elements), seed)
         places = element_positions(array.elements, array.layout, array.spacing_wavelengths)
         strengths_m2 = np.concatenate([family.numerator_weight, family.denominator_weight])
-        base = np.ascontiguousarray(places[:, :2])
-        self.problem = ArrayProblem(family.arrays, strengths_m2, len(scenario.nodes), base)
+        self.problem = ArrayProblem(
+            family.arrays, strengths_m2, len(scenario.nodes), np.ascontiguousarray(places[:, :2])
+        )
         self.elements = array.elements
         # by how many equal rotations the elements come to lie on each other
         self.symmetry = max(2, array.elements) if array.layout == "circular" else 2

@@ -91,8 +91,9 @@ class CustomSearch(PositionSearch):
         """Bound the excess gain of each point over a box, (m,) and (m,): least and most."""
         low, high = np.ones((2, len(self.family.points_m)))
         for j, law in self.laws.items():
-            point_m = self.family.points_m[j]
-            low[j], high[j] = law.excess_range(point_m, centre_m, half_m, self.family.domain.keep_out_m)
+            low[j], high[j] = law.excess_range(
+                self.family.points_m[j], centre_m, half_m, self.family.domain.keep_out_m
+            )
         return low, high
 
     def root(self) -> tuple[FloatArray, FloatArray]:

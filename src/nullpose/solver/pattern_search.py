@@ -92,8 +92,9 @@ class PatternSearch(EpigraphSearch):
 
         count = len(self.family.numerator_point)
         logs, slopes = np.empty(count), np.empty((count, 6))
-        problem = self.family.arrays, self.pattern, self.reach
-        fill_slopes(*problem, state, step, self.unit_m(state), logs, slopes)
+        fill_slopes(
+            self.family.arrays, self.pattern, self.reach, state, step, self.unit_m(state), logs, slopes
+        )
         self.evaluations += 13
         return logs, slopes
 

@@ -143,8 +143,9 @@ class _Search:
 
     def __init__(self, scenario: Scenario, pose: Pose, sizes: ErrorSizes) -> None:
         self.sizes, self.random = sizes, np.random.default_rng(0)
-        orientation = pose.orientation(scenario.antenna_record)
-        self.ratios_under = partial(ratios_under, scenario, pose.position_m, orientation)
+        self.ratios_under = partial(
+            ratios_under, scenario, pose.position_m, pose.orientation(scenario.antenna_record)
+        )
         if scenario.array is not None:
             self.ratios_under = partial(array_ratios_under, scenario, pose)
         point = scenario.objective_record.interferers.removesuffix("s")

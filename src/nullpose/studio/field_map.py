@@ -76,8 +76,9 @@ def field_map(answer: Answer, go_on: Callable[[], None] = lambda: None) -> Field
     """
     scenario, pose = answer.result.scenario, answer.result.pose
     best = value_map(answer.result, go_on=go_on)
-    cells = CELLS if scenario.prisms is None else _FINER_CELLS
-    east_m, north_m = map_grid_m(scenario, pose.position_m, cells)
+    east_m, north_m = map_grid_m(
+        scenario, pose.position_m, CELLS if scenario.prisms is None else _FINER_CELLS
+    )
     ground = np.stack(np.broadcast_arrays(*np.meshgrid(east_m, north_m), 0.0), -1)
     gain = np.empty(ground.shape[:2])
     for places_m, row in zip(ground, gain, strict=True):

@@ -73,8 +73,9 @@ def ground_shapes(state: State, size_m: float, look: Look) -> Shapes:
         sides = np.stack([corners[:-1], corners[1:]], axis=1)
         shapes["/sketch"] = lines(np.concatenate([first, sides]), look.colours["sketch"], 4.0)
         for i, (start, end) in enumerate(sides):
-            length = f"{np.linalg.norm(end - start):.1f} m"
-            shapes[f"/sketch/side-{i}"] = label(length, 0.5 * (start + end), 0.9, "center-center")
+            shapes[f"/sketch/side-{i}"] = label(
+                f"{np.linalg.norm(end - start):.1f} m", 0.5 * (start + end), 0.9, "center-center"
+            )
     return shapes
 
 
@@ -98,8 +99,9 @@ def _point(key: Key, point: GroundPoint, state: State, size_m: float, look: Look
             sphere_mesh(6, 10), look.colours["wire"], wireframe=True, scale=keep_out_m
         )
     if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
-        near = sphere_mesh(10, 16).placed(point.uncertainty_matrix_m)
-        shapes[f"{name}/uncertainty"] = mesh(near, colour, wireframe=True)
+        shapes[f"{name}/uncertainty"] = mesh(
+            sphere_mesh(10, 16).placed(point.uncertainty_matrix_m), colour, wireframe=True
+        )
     if kind == "jammers" and (radius_m := _ring_radius_m(key, state, size_m)) > 0.0:
         rings = _circle(radius_m) * _RINGS[:, None, None, None]
         rings[..., 2] = _RING_LIFT_M - point.position_m[2]
@@ -159,9 +161,10 @@ def _airspace(scenario: Scenario, look: Look) -> Shapes:
     for i, zone in enumerate(airspace.no_fly):
         low_m, high_m = max(0.0, zone.floor_m), max(0.0, zone.floor_m, min(ceiling_m, zone.ceiling_m))
         outline, name, colour = zone_outline_m(zone), f"/airspace/zone-{i}", look.colours["zone"]
-        floor = level_mesh(shapely.Polygon(outline), low_m)
         shapes |= {
-            f"{name}/floor": mesh(floor, colour, opacity=0.25, side="double"),
+            f"{name}/floor": mesh(
+                level_mesh(shapely.Polygon(outline), low_m), colour, opacity=0.25, side="double"
+            ),
             f"{name}/edges": lines(prism_edges(outline, low_m, high_m), colour, 1.8),
             f"{name}/label": label(f"no-fly {zone.name}", (*outline.mean(axis=0), high_m)),
         }

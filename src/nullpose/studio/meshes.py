@@ -58,8 +58,9 @@ def revolved_mesh(radius_m: ArrayLike, height_m: ArrayLike, around: int, open_ra
         around: steps about the axis.
         open_rad: angle that is left out, its middle along x, radians.
     """
-    line = np.column_stack([radius_m, height_m])
-    surface = trimesh.creation.revolve(line, math.tau - open_rad, sections=around, process=False)
+    surface = trimesh.creation.revolve(
+        np.column_stack([radius_m, height_m]), math.tau - open_rad, sections=around, process=False
+    )
     return Mesh(surface.vertices, surface.faces).placed(rotation_world_from_body(0.0, 0.0, 0.5 * open_rad))
 
 

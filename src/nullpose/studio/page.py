@@ -207,8 +207,9 @@ class Page:
             ("Begin or end presenting", self._present, "P", None),
         ]
         for label, act, key, modifier in commands:
-            command = client.gui.add_command(label, hotkey=key, modifier=modifier)
-            command.on_trigger(lambda event, act=act: act())
+            client.gui.add_command(label, hotkey=key, modifier=modifier).on_trigger(
+                lambda event, act=act: act()
+            )
         client.camera.on_update(self._looked)
         client.scene.on_click()(self._clicked)
 

@@ -66,8 +66,9 @@ def power_plot_svg(
         (frame.at(tick_db, 0.0)[0], f"{tick_db:g}".replace("-", MINUS))
         for tick_db in np.arange(POWER_DB[0], POWER_DB[1] + 1.0, 10.0)
     ]
-    steps = round_steps(*frame, 6)[1:-1]
-    values = [(frame.at(0.0, step)[1], f"{step:g}".replace("-", MINUS)) for step in steps]
+    values = [
+        (frame.at(0.0, step)[1], f"{step:g}".replace("-", MINUS)) for step in round_steps(*frame, 6)[1:-1]
+    ]
     curves = [_curve(scheme, points, frame) for scheme, points in lines.items()]
     return str(template.plot(state, unit, curves, powers, values, now, RING))
 

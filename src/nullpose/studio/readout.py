@@ -69,8 +69,9 @@ def node_rows(answer: Answer) -> Iterator[tuple[str, list[str], bool]]:
     for link in answer.result.links:
         if guarded is not None:
             lower = min(ratio.lower for ratio in guarded.guarantee.ratios if ratio.node == link.node)
-            both = quantity.at(link), quantity.of_ratio(lower)
-            numbers = [signed(quantity.in_unit(number)) for number in both]
+            numbers = [
+                signed(quantity.in_unit(number)) for number in (quantity.at(link), quantity.of_ratio(lower))
+            ]
         else:
             numbers = [f"{signed(link.sinr_db)} dB"]
             if link.margin_db is not None:
@@ -128,7 +129,8 @@ def macros(template: str = "page.html.jinja") -> TemplateModule:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    filters = (signed, tone, letter, node_rows, attitude_words)
-    environment.filters |= {function.__name__: function for function in filters}
+    environment.filters |= {
+        function.__name__: function for function in (signed, tone, letter, node_rows, attitude_words)
+    }
     environment.globals["colours"] = {name: either(*map(css, pair)) for name, pair in COLOURS.items()}
     return environment.get_template(template).module

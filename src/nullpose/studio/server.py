@@ -63,8 +63,9 @@ class Studio:
 
     async def _connect(self, client: ClientHandle) -> None:
         # the preference is known here, in the websocket's task, but to make a page would hold up all others
-        arguments = (client, PREFERS_DARK.get())
-        threading.Thread(target=self._serve, args=arguments, name="nullpose-studio-page", daemon=True).start()
+        threading.Thread(
+            target=self._serve, args=(client, PREFERS_DARK.get()), name="nullpose-studio-page", daemon=True
+        ).start()
 
     def _serve(self, client: ClientHandle, dark: bool) -> None:
         from nullpose.studio.page import Page

@@ -52,8 +52,9 @@ def _shapes(answer: Answer, size_m: float, kinds: tuple[tuple[str, Rgb], ...]) -
             strings = area & hatching
             if not point.is_interferer and area.area > 0.0:
                 ends_m = np.column_stack([box_m, [0.0, 2.0 * size_m]])
-                lift_m = _LIFT * size_m * len(shapes)
-                shapes[f"/shadows/{kind}-{index}"] = _filled(area, colour, lift_m, ends_m)
+                shapes[f"/shadows/{kind}-{index}"] = _filled(
+                    area, colour, _LIFT * size_m * len(shapes), ends_m
+                )
             elif strings.length > 0.0:
                 shapes[f"/shadows/{kind}-{index}"] = _hatched(strings, colour)
     return shapes

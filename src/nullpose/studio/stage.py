@@ -135,8 +135,9 @@ def _map_shapes(scale: Scale, map_alpha: int, contour: Rgb | None) -> Shapes:
         return shapes
     if contours := _contours(field, low, high):
         segments = [np.stack([line[:-1], line[1:]], axis=1) for level in contours.values() for line in level]
-        raised = np.insert(np.concatenate(segments), 2, altitude_m + 1e-3 * width, axis=-1)
-        shapes["/map/contours"] = lines(raised, contour, 1.3)
+        shapes["/map/contours"] = lines(
+            np.insert(np.concatenate(segments), 2, altitude_m + 1e-3 * width, axis=-1), contour, 1.3
+        )
     for level in list(contours)[:: max(1, len(contours) // _MOST_LABELS)]:
         points = np.concatenate(contours[level])
         x, y = points[np.argmax(points[:, 0])]  # eastmost: in front, beside the labels of the points

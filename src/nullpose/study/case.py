@@ -135,9 +135,10 @@ class Case(Section):
             message = "has no meaning without airframe; add one with "
             yield from key_faults(raw, ("mount_scenes",), f'{message}mount_deg = "best"')
             yield from key_faults(raw, ("reach",), f'{message}tilt_max_deg = "least"')
-        proving = ("certify", "gap", "time_limit_s") if self.pose is not None else ()
         yield from key_faults(
-            raw, proving, "has no meaning with a pose, of which nothing is proved; remove it"
+            raw,
+            ("certify", "gap", "time_limit_s") if self.pose is not None else (),
+            "has no meaning with a pose, of which nothing is proved; remove it",
         )
 
     @property
@@ -204,8 +205,9 @@ class Case(Section):
             mount_deg: of the airframe that the case states.
             changes: of the case, by key.
         """
-        airframe = {**self.to_dict()["airframe"], "mount_deg": mount_deg}
-        return self.model_copy(update={"airframe": airframe, **changes})
+        return self.model_copy(
+            update={"airframe": {**self.to_dict()["airframe"], "mount_deg": mount_deg}, **changes}
+        )
 
     def on(self, scenario: Scenario) -> Scenario:
         """Put this case's vehicle into a scenario; an array of the scenario's goes."""

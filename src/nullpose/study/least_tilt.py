@@ -189,8 +189,9 @@ def tilt_search(scenario: Scenario, share: float, options: SolveKeywords) -> Til
         SolveError: no pose reaches every node.
     """
     gap = min(max(0.1 * (1.0 - share), LEAST_GAP), _GAP) if options.get("gap") is None else options["gap"]
-    free = scenario.without_array.model_copy(update={"airframe": None})
-    search = TiltSearch(free, share, options | {"gap": gap})
+    search = TiltSearch(
+        scenario.without_array.model_copy(update={"airframe": None}), share, options | {"gap": gap}
+    )
     uninterrupted(search.whole)
     return search
 

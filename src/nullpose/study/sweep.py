@@ -144,8 +144,9 @@ def sweep(
             f"mounts: given {[*mounts_deg] or 'best'} along {path}; allowed: angles in degrees, without "
             "schemes, along a setting other than the airframe's",
         )
-        found_tilts = _least_tilts(scenarios, dict.fromkeys(mounts_deg), share, on_progress, options)
-        return ResultTable(path, tuple(found_tilts))
+        return ResultTable(
+            path, tuple(_least_tilts(scenarios, dict.fromkeys(mounts_deg), share, on_progress, options))
+        )
     every = Scheme if schemes is None else map(Scheme, schemes)
     reasons = {scheme: _meaningless(scheme, scenarios) for scheme in every}
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}

@@ -233,8 +233,9 @@ class ResultTable:
             OutputError: the file cannot be written.
         """
         records = self._records()
-        heading = list(records[0]) if records else [self.path]
-        return write_csv(path, [heading, *(record.values() for record in records)])
+        return write_csv(
+            path, [list(records[0]) if records else [self.path], *(record.values() for record in records)]
+        )
 
     def frame(self) -> pd.DataFrame:
         """Return the table as a data frame of pandas with the columns of the CSV file.

@@ -29,8 +29,9 @@ def read_ffd(lines: Lines) -> Iterator[Block]:
             f"got {steps:g} angles, must be a whole number from 1 to {_MOST_ANGLES}",
             line,
         )
-    angles = [np.linspace(first, last, int(steps)) for first, last, steps in ranges]
-    theta, phi = np.meshgrid(*angles, indexing="ij")
+    theta, phi = np.meshgrid(
+        *[np.linspace(first, last, int(steps)) for first, last, steps in ranges], indexing="ij"
+    )
     at, found, announced, frequency_hz = 2, 0, None, None
     while at < len(lines):
         if heading := _frequency(lines, at):

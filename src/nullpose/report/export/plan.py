@@ -103,8 +103,9 @@ def _fence(origin: Origin, airspace: Airspace, pose: Pose) -> PlainTable:
     zones = [zone for zone in airspace.no_fly if not _is_over_or_under(zone, pose)]
     shapes: list[PlainTable] = [_shape(origin, zone) for zone in zones]
     if airspace.geofence_m is not None:
-        corners = _corners(origin, airspace.geofence_outline_m)
-        shapes.insert(0, {"polygon": corners, "inclusion": True, "version": 1})
+        shapes.insert(
+            0, {"polygon": _corners(origin, airspace.geofence_outline_m), "inclusion": True, "version": 1}
+        )
     parts = {f"{kind}s": [shape for shape in shapes if kind in shape] for kind in ("polygon", "circle")}
     return {**parts, "version": 2}
 

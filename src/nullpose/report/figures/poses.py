@@ -84,8 +84,9 @@ def draw_panels(
     with house_style(width), rc_context({"text.parse_math": False}):
         # the name of z is beyond its panel
         layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0 if is_narrow else 0.98, 1.0))
-        size = inches(usual, width, _COLUMN_SHARES[plan] if is_narrow else _PAGE_SHARE)
-        figure = Figure(figsize=size, layout=layout)
+        figure = Figure(
+            figsize=inches(usual, width, _COLUMN_SHARES[plan] if is_narrow else _PAGE_SHARE), layout=layout
+        )
         shares = [_PLAN_SHARES[is_narrow] if not stage.key else _KEYED_SHARE] * plan + [1.0] * count
         grid = figure.add_gridspec(2, len(shares), width_ratios=shares, height_ratios=_ROWS)
         rows = slice(1 if is_narrow and plan and not stage.key else 2)  # the legend has the corner below
@@ -178,8 +179,9 @@ def draw_poses(scenario: Scenario, rows: Sequence[ResultRow]) -> Figure:
 
 def draw_result(result: Result, width: str | None = None) -> Figure:
     """Draw the figure of a result of any kind: in print, ``width`` is a key of ``WIDTHS_MM``."""
-    drawings = {RobustDetails: draw_robust, ArrayDetails: draw_array}
-    return drawings.get(type(result.details), draw_pose)(result, width)
+    return {RobustDetails: draw_robust, ArrayDetails: draw_array}.get(type(result.details), draw_pose)(
+        result, width
+    )
 
 
 def draw_pose(result: Result, width: str | None = None) -> Figure:
@@ -213,8 +215,9 @@ def draw_robust(result: Result, width: str | None = None) -> Figure:
         for name, pose in poses.items()
     ]
     head = f"{scenario.name}\n{quantity.smallest}; errors: {error_words(scenario)}"
-    both = (details.robust.pose, details.nominal.pose)
-    stage = Stage(scenario=scenario, poses=both, view=PAIR, uncertain=True)
+    stage = Stage(
+        scenario=scenario, poses=(details.robust.pose, details.nominal.pose), view=PAIR, uncertain=True
+    )
     return draw_panels(stage, draw_dipole, surface=_SURFACE, head=head, titles=titles, width=width)
 
 

@@ -82,5 +82,6 @@ def shown_points(spec: StudySpec) -> list[int]:
 
 def point_words(spec: StudySpec, point: int) -> str:
     """Write a combination of swept values, as in "jammers.M.power_w = 100 W"; empty if nothing is swept."""
-    values = spec.points[point].items()
-    return ", ".join(f"{path} = {value:.6g} {unit_of(path)}".rstrip() for path, value in values)
+    return ", ".join(
+        f"{path} = {value:.6g} {unit_of(path)}".rstrip() for path, value in spec.points[point].items()
+    )

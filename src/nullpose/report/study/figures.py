@@ -40,8 +40,9 @@ def figures_of(summary: Summary) -> dict[str, Figure]:
     points = [point for point in shown_points(summary.spec) if not np.all(np.isnan(summary.value[:, point]))]
     if not points:
         return {}
-    figures = {"distribution": _distributions(summary, points)}
-    return figures | ({"gain": _gains(summary, points)} if summary.compared else {})
+    return {"distribution": _distributions(summary, points)} | (
+        {"gain": _gains(summary, points)} if summary.compared else {}
+    )
 
 
 def step_curve(numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -112,12 +113,11 @@ def _gains(summary: Summary, points: Sequence[int]) -> Figure:
         axes.grid(visible=False, axis="y")
 
     names = " or ".join(sorted(set(summary.cases.loc[compared, "against"])))
-    across = f"gain in the {summary.quantity.smallest} over {names} ({summary.quantity.unit})"
     return _panels(
         summary,
         points,
         draw,
-        across=across,
+        across=f"gain in the {summary.quantity.smallest} over {names} ({summary.quantity.unit})",
         note=f"Disc: median gain. Diamond: gain in the worst tenth. Lines: {percent(CONFIDENCE)} confidence. "
         "Bar: 10th to 90th percentile.",
         height=0.6 + 0.27 * len(compared),

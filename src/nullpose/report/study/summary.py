@@ -143,8 +143,9 @@ def _with_ends(name: str, numbers: FloatArray, ends: Iterable[tuple[float, float
 
 
 def _quantiles(name: str, numbers: FloatArray, share: float) -> Columns:
-    ends = (quantile_interval(column, share) for column in numbers.T)
-    return _with_ends(name, quantiles(numbers, share), ends)
+    return _with_ends(
+        name, quantiles(numbers, share), (quantile_interval(column, share) for column in numbers.T)
+    )
 
 
 def _shares(name: str, hits: FloatArray, counts: FloatArray) -> Columns:

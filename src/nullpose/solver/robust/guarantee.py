@@ -227,8 +227,9 @@ class Inner:
         self, u: FloatArray, y: FloatArray, offset: FloatArray, points: IntArray, moved: FloatArray
     ) -> ErrorCase:
         offsets_m = np.array(getattr(self.none, self.moved))
-        certain = self.radii[points] == 0.0
-        offsets_m[points - len(self.scenario.nodes)] = np.where(certain[:, None], 0.0, moved)
+        offsets_m[points - len(self.scenario.nodes)] = np.where(
+            (self.radii[points] == 0.0)[:, None], 0.0, moved
+        )
         case = replace(self.none, **{self.moved: offsets_m})
         if self.reach_m > 0.0:  # what cannot err has no rounding error either
             case = replace(case, position_offset_m=offset)

@@ -218,8 +218,9 @@ def in_words(scenario: Scenario, axis: FloatArray, case: ErrorCase) -> str:
     up = axis if axis[2] >= 0.0 else -axis
     parts = []
     if case.rotation_rad > _LEAST_RAD:
-        lean = case.rotation_world @ up - up
-        parts.append(f"axis {math.degrees(case.rotation_rad):.3g} deg off, {_direction(lean)}")
+        parts.append(
+            f"axis {math.degrees(case.rotation_rad):.3g} deg off, {_direction(case.rotation_world @ up - up)}"
+        )
     moved = [("drone", case.position_offset_m)]
     moved += zip(scenario.jammer_names, case.jammer_offsets_m, strict=True)
     moved += zip(scenario.eavesdropper_names, case.eavesdropper_offsets_m, strict=True)

@@ -96,8 +96,9 @@ class Drawn(Rule):
         return Distribution(fixed=self.quantity.read(value))
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        drawn = Rule.__get_pydantic_core_schema__(self, source, handler)
-        return core_schema.no_info_after_validator_function(self._sound, drawn)
+        return core_schema.no_info_after_validator_function(
+            self._sound, Rule.__get_pydantic_core_schema__(self, source, handler)
+        )
 
     def _sound(self, value: Distribution) -> Distribution:
         """Refuse a distribution that draws a number which is not allowed."""

@@ -103,8 +103,9 @@ class DrawnChannel(Section):
         Args:
             chance: gives the stream of each key.
         """
-        values = {key: each.draw(chance(key), 1).tolist()[0] for key, each in self._distributions}
-        return {"model": self.model, "average": self.average} | values
+        return {"model": self.model, "average": self.average} | {
+            key: each.draw(chance(key), 1).tolist()[0] for key, each in self._distributions
+        }
 
     @property
     def _distributions(self) -> Iterable[tuple[str, Distribution | Environments]]:

@@ -92,8 +92,9 @@ class StudyTable:
         frame = self.frame().drop(columns="point").astype({"case": object})
         arrays = frame.set_index(["scene", *spec.swept, "case"]).to_xarray()
         swept = {path: list(values) for path, values in spec.sweep}
-        in_order = arrays.reindex({**swept, "case": list(spec.case_names)})
-        return in_order.assign_attrs(name=spec.name, objective=self.manifest["objective"])
+        return arrays.reindex({**swept, "case": list(spec.case_names)}).assign_attrs(
+            name=spec.name, objective=self.manifest["objective"]
+        )
 
     def _as_frame(self, table: pa.Table) -> pd.DataFrame:
         frame = table.to_pandas()

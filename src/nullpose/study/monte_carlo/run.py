@@ -148,8 +148,9 @@ def run_study(
             if is_new:
                 size = _size(spec, crew, study) if chunk is None else chunk
                 versions = {name: version(name) for name in _LIBRARIES}
-                code = {"python": platform.python_version(), "code": fingerprint()}
-                folder.write_manifest(spec, size, versions | code)
+                folder.write_manifest(
+                    spec, size, versions | {"python": platform.python_version(), "code": fingerprint()}
+                )
                 to_do = _resume(folder, spec, tally)
             for (first, last), content in _solved(crew, study, to_do, tally):
                 tally.count(folder.add(first, last, content))
