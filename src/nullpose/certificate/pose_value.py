@@ -67,7 +67,7 @@ def band_excess(band: tuple[float, float], axis: Exact) -> Fraction:
     """
     (cosine, sine), least, most = (
         (square_root(x), square_root(1 - x))
-        for x in ((axis[2] ** 2 / (axis @ axis)), Fraction(band[0]), Fraction(band[1]))
+        for x in (axis[2] ** 2 / (axis @ axis), Fraction(band[0]), Fraction(band[1]))
     )
     # angles from the vertical: nearer than the upper end allows, or farther than the lower one
     return max(cosine * most[1] - sine * most[0], sine * least[0] - cosine * least[1])

@@ -25,7 +25,7 @@ def pattern_view(summary: PatternSummary) -> View:
         ("polarisation", polarisation),
         ("degree used", f"{summary.degree}; the grid resolves {summary.supported_degree}"),
         ("grid", f"steps of {summary.step_deg:g} degrees, {field}"),
-        ("", (f"fine enough for antennas within {largest_m:.2g} m of the origin" if largest_m else None)),
+        ("", f"fine enough for antennas within {largest_m:.2g} m of the origin" if largest_m else None),
     ]
     return document(head(table.source), pairs("", rows), *table.notes)
 

@@ -179,9 +179,8 @@ def draw_poses(scenario: Scenario, rows: Sequence[ResultRow]) -> Figure:
 
 def draw_result(result: Result, width: str | None = None) -> Figure:
     """Draw the figure of a result of any kind: in print, ``width`` is a key of ``WIDTHS_MM``."""
-    return {RobustDetails: draw_robust, ArrayDetails: draw_array}.get(type(result.details), draw_pose)(
-        result, width
-    )
+    drawings = {RobustDetails: draw_robust, ArrayDetails: draw_array}
+    return drawings.get(type(result.details), draw_pose)(result, width)
 
 
 def draw_pose(result: Result, width: str | None = None) -> Figure:
