@@ -6,6 +6,7 @@ import pytest
 
 from nullpose import Airframe, Array, Scenario, load
 from nullpose.study import AIRFRAME_CASES, cases_of
+from nullpose.study.case import SHARE, Case
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LEVELS = ("level", "tilt-10", "tilt-20", "tilt-30")
@@ -74,3 +75,10 @@ def test_arrays_are_compared_with_the_papers_antennas_only() -> None:
     urban = data | {"channel": {"model": "power-law", "exponent": 2.5}}
     for other in (leaking, circular, urban):
         assert not any(case.array for case in cases_of(Scenario.from_dict(other)))
+
+
+def test_a_case_may_state_the_least_tilt_and_the_best_mount() -> None:
+    """Both words become numbers of one airframe, to be found, beside the shares and counts that find them."""
+    case = Case.from_dict({"airframe": {"tilt_max_deg": "least", "mount_deg": "best"}})
+    assert case.airframe == Airframe(tilt_max_deg=180.0, mount_deg=0.0)
+    assert (case.reach, case.mount_scenes) == (SHARE, 64)

@@ -30,11 +30,16 @@ def test_no_other_mount_is_better(spec: Spec, tmp_path: Path) -> None:
     """The number is chosen before the parts, is kept with the study, and is found again when it goes on."""
     study = spec(scenes=8, cases=CASES, sweep=POWERS)
     notes: list[str] = []
-    run_study(study, tmp_path / "best", workers=0, on_progress=lambda progress: notes.append(progress.note))
+    run_study(
+        study, tmp_path / "best", workers=0, chunk=8, on_progress=lambda progress: notes.append(progress.note)
+    )
     case = read_study(tmp_path / "best").spec.cases[0]
     assert case.airframe is not None
     assert any("best" in note for note in notes)
+    found_db = _levels_db(tmp_path / "best")
+    sorted((tmp_path / "best" / "parts").iterdir())[-1].unlink()
     run_study(study, tmp_path / "best", workers=0)
+    assert _levels_db(tmp_path / "best") == found_db
     others = sorted({*range(0, 91, 15), case.airframe.mount_deg - 1.0, case.airframe.mount_deg + 1.0})
     fixed = [
         {"name": str(mount), "airframe": {"tilt_max_deg": 0.0, "mount_deg": mount}, "certify": False}
