@@ -204,12 +204,17 @@ def _template(kind: str, *states: dict[str, Any]) -> dict[str, Any]:
     return {"airspace": {"altitude_m": [8.0, 30.0]}, "receiver": receiver, **other, **tables}
 
 
+COLLINEAR = [[-90.0, -20.0], [0.0, 3.0], [90.0, -20.0]]
 STATES: list[tuple[str, dict[str, Any]]] = [
     ("nodes", {"power_dbm": 20.0, "min_sinr_db": 3.0, **WHIP}),
     ("nodes", {"power_w": 2.0, "weight": 2.0, "antenna": "circular"}),
     ("nodes", DOWNLINK),
     ("nodes", {"noise_w": 1e-5, "jamming_w": 1e-5}),
     ("jammers", {"power_w": 3.0, **WHIP, **BALL}),
+    (
+        "jammers",
+        {"power_w": 3.0, "antenna": "profile", "antenna_file": "whip.csv", "antenna_profile": COLLINEAR},
+    ),
     ("jammers", {"power_dbm": 33.0, "channel": {"model": "free-space"}}),
     ("eavesdroppers", {"noise_dbm": -90.0, **WHIP, **BALL}),
     ("eavesdroppers", {"noise_w": 1e-5}),
