@@ -64,7 +64,7 @@ def test_a_jet_encloses_the_link(
         return float(free * excess_gain(PointChannels.of([channel]), POINT - p)[0] / channel.strength)
 
     ratios = ratios_over(POINT, leak, dipole, through, channel)
-    for centre, half in boxes(3, 40):
+    for centre, half in boxes(3, 16):
         link_jet(ratios, 0, True, field.arrays, centre, half, jet)
         if channel is not None and jet[0] > at(centre) * (1.0 + 1e-9):  # the end of its range, in a large box
             assert np.max(half) > 0.3
@@ -72,7 +72,7 @@ def test_a_jet_encloses_the_link(
         assert jet[0] == pytest.approx(at(centre), rel=1e-9, abs=1e-15)
         slopes = [(at(centre + 1e-4 * e) - at(centre - 1e-4 * e)) / 2e-4 for e in np.eye(3)]
         np.testing.assert_allclose(jet[1:4], slopes, rtol=1e-5, atol=1e-9)
-        for p in centre + rng.uniform(-1.0, 1.0, size=(6, 3)) * half:
+        for p in centre + rng.uniform(-1.0, 1.0, size=(3, 3)) * half:
             assert jet[16] * (1.0 - 1e-12) <= at(p) <= jet[17] * (1.0 + 1e-12)
             for entry, (i, k) in enumerate(PAIRS):
                 a, b = step * np.eye(3)[i], step * np.eye(3)[k]
