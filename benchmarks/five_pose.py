@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.channel.model import WIDTH
 from nullpose.objectives import Ratios
 from nullpose.physics import Pose
 from nullpose.problem.build import build_family
@@ -51,7 +52,7 @@ def unpack(reals, counts):
         0.0,
         np.zeros((0, 3)),
         np.zeros(0),
-        np.zeros((0, 6)),
+        np.zeros((0, WIDTH)),
         np.zeros(1, np.int64),
         np.zeros(1, np.int64),
         np.zeros((0, 5)),

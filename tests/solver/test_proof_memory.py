@@ -9,7 +9,15 @@ import pytest
 
 from nullpose import Scenario, UsageError, load, solve
 from nullpose.certificate.certificate import DEEPEST
+from nullpose.problem.axis_field import AxisField
+from nullpose.problem.build import build_family
+from nullpose.scenario import Airframe
 from nullpose.solver.certificate_from_proof import certificate_of
+from nullpose.solver.kernels.bounds import node
+from nullpose.solver.kernels.bounds.branch import branch
+from nullpose.solver.kernels.bounds.records import Goal
+from nullpose.solver.kernels.bounds.root import fill_root
+from nullpose.solver.multistart import multistart
 
 PROOF = import_module("nullpose.solver.proof")
 
@@ -64,6 +72,35 @@ def test_a_proof_in_little_memory_has_the_same_bound(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr("nullpose.solver.certificate_from_proof.MOST_LEAVES", 1)
     with pytest.raises(UsageError, match="too many leaves"):
         certificate_of(dropped)
+
+
+def test_boxes_still_to_do_end_a_proof_before_they_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the bound that it has, and the reason."""
+    monkeypatch.setattr("nullpose.solver.branch_and_bound._MOST_BYTES", 1e4)
+    result = solve(whips(1), gap=1e-3)
+    assert result.status == "gap-not-reached"
+    assert result.objective.upper_bound >= result.objective.value
+    assert "boxes may take" in result.reason
+
+
+def test_cells_of_axes_are_no_finer_than_their_box_tells() -> None:
+    """Halved for ever, they would leave the boxes behind them: a vehicle that tilts by 20 degrees."""
+    scenario = load("examples/paper.toml", overrides=["jammers.M.power_w=1e4"])
+    scenario = scenario.model_copy(update={"airframe": Airframe(tilt_max_deg=20.0, mount_deg=0.0)})
+    family, band = build_family(scenario), AxisField.within(*scenario.axis_band)
+    incumbent = multistart(family, band, seed=0)
+    row, rows = np.zeros(node.COLUMNS), np.zeros((4096, node.COLUMNS))
+    weights, level = incumbent.multipliers.copy(), np.exp(incumbent.log_value) * (1.0 + 1e-6)
+    fill_root(family.arrays, family.domain, incumbent.log_value, 1e-6, np.inf, weights, row)
+    rows[0] = row
+    goal, at_once = Goal(np.exp(incumbent.log_value), row, 1e9), 3_000  # axes are split before positions
+    problem = family.arrays, family.domain, band.arrays
+    leaves, pose = np.zeros((4096, node.COLUMNS)), (np.zeros(3), np.zeros(3))
+    _, top, *_ = branch(*problem, level, goal, rows, 1, leaves, 0, at_once, *pose)
+    in_cells = rows[:top][rows[:top, node.FACE] >= 0.0]
+    sides = in_cells[:, node.CELL + 1 : node.SIDE : 2] - in_cells[:, node.CELL : node.SIDE : 2]
+    assert np.all(sides.max(axis=1) > 1e-9)
+    assert top < 500
 
 
 def test_leaves_too_thin_for_a_certificate_are_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -119,9 +119,9 @@ def _turn(
         (VECTOR_BEND / near / near.squared()).most(), (size_of(jet.bends) + jet.over * reach).most()
     )
     slope = smaller((VECTOR_SLOPE / near.squared()).most(), (size_of(jet.slopes) + bend * reach).most())
-    way = (Interval(points_m) - boxes.centre).T
+    to_point = (Interval(points_m) - boxes.centre).T
     pairs = (
-        (jet.value, way),
+        (jet.value, to_point),
         (jet.slopes, -UNIT),
         (jet.bends, 0.0),
         (slope, 1.0),

@@ -52,14 +52,14 @@ def joined(parts_m: Sequence[FloatArray]) -> list[FloatArray]:
     parts = {index: [tuple(vertex) for vertex in part.tolist()] for index, part in enumerate(parts_m)}
     owners = {edge: index for index, part in parts.items() for edge in edges_of(part)}
     for begin, end in list(owners):
-        one, other = owners[begin, end], owners.get((end, begin))
-        if other is None or other == one:
+        part, other = owners[begin, end], owners.get((end, begin))
+        if other is None or other == part:
             continue
-        first, second = _from(parts[one], end), _from(parts[other], begin)
+        first, second = _from(parts[part], end), _from(parts[other], begin)
         both = [*first, *second[1:-1]]
         if is_convex(np.array(both)):
-            owners |= dict.fromkeys(edges_of(second), one)
-            parts[one] = both
+            owners |= dict.fromkeys(edges_of(second), part)
+            parts[part] = both
             del parts[other]
     return [np.array(part) for part in parts.values()]
 

@@ -116,6 +116,21 @@ def padded(rows: Iterable[Sequence[float] | FloatArray]) -> FloatArray:
     return np.ascontiguousarray(np.array([*columns], dtype=np.float64).T[1:])
 
 
+_ELEVATIONS_RAD = np.radians(np.linspace(-90.0, 90.0, 721))
+
+
+def largest_excess_gain(channels: PointChannels, distance_m: FloatArray) -> FloatArray:
+    """Evaluate the largest of ``strength * excess`` at a distance, at elevations a quarter of a degree apart.
+
+    Args:
+        channels: of the points.
+        distance_m: of the drone from each, (m,).
+    """
+    level, up = np.cos(_ELEVATIONS_RAD), np.sin(_ELEVATIONS_RAD)
+    to_points = np.column_stack([level, np.zeros(len(up)), -up])[:, None]
+    return np.asarray(excess_gain(channels, np.asarray(distance_m)[:, None] * to_points).max(axis=0))
+
+
 def excess_gain(
     channels: PointChannels, to_points_m: FloatArray, points_m: FloatArray | None = None
 ) -> FloatArray:

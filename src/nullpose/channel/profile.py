@@ -65,6 +65,17 @@ def log_gain(row: ArrayLike, elevation_rad: ArrayLike) -> FloatArray:
     return np.asarray(log + step * (slope + 0.5 * (last - slope) / (end - angle) * step))
 
 
+def profile_gain(rows: FloatArray, to_points_m: FloatArray) -> FloatArray:
+    """Evaluate the gains of ground antennas over their peaks, (m,), towards the drone; 1 without a profile.
+
+    Args:
+        rows: (m, w) numbers of the points' channels.
+        to_points_m: (m, 3) from the drone to each point, metres.
+    """
+    east_m, north_m, down_m = to_points_m.T
+    return np.exp(log_gain(rows.T, np.arctan2(-down_m, np.hypot(east_m, north_m))))
+
+
 def mean_gain(elevation_deg: ArrayLike, gain_dbi: ArrayLike) -> float:
     """Return the mean gain of a table over the sphere: what is radiated of the power that is fed."""
     knots = knots_of(elevation_deg, gain_dbi)

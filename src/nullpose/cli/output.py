@@ -28,7 +28,9 @@ class Plain(Protocol):
 
 
 Found = TypeVar("Found", bound=Plain)
-_COMPILING = "Compiling kernels for this machine, once for each kind of scene ..."
+_COMPILING = (
+    "Compiling kernels for this machine, once for dipoles, patterns, arrays and robust poses each ..."
+)
 
 
 def tell(

@@ -97,10 +97,8 @@ def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[dict[
     """
     groups = [(getattr(scenario, f"{k}_channels"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
     parts = [(c.rows, c.strengths) if c else (np.zeros((n, WIDTH)), np.ones(n)) for c, n in groups]
-    rows, strengths = (
-        padded([row for rows, _ in parts for row in rows]),
-        np.concatenate([s for _, s in parts]),
-    )
+    rows = padded([row for rows, _ in parts for row in rows])
+    strengths = np.concatenate([strengths for _, strengths in parts])
     if np.isin(rows[:, 0], (CONSTANT, CUSTOM)).all() and scenario.prisms is None:
         return {}, strengths
     rows = np.pad(rows, ((0, others), (0, 0)))

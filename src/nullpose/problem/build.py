@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.channel import excess_gain
+from nullpose.channel.model import largest_excess_gain
 from nullpose.errors import require_usage
 from nullpose.objectives import FloatArray, IntArray
 from nullpose.problem.airspace import airspace_zones
@@ -63,10 +63,8 @@ def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
     distance_m = np.maximum(distance_m, family.keep_out_m)
     over_noise = family.denominator_weight / distance_m**2
-    if channels is not None:  # without a profile its gain is largest right below the drone
-        angle = np.radians(np.arange(-90.0, 91.0))
-        below = np.column_stack([np.cos(angle), np.zeros(len(angle)), -np.sin(angle)])[:, None]
-        over_noise *= excess_gain(channels, distance_m[:, None] * below).max(axis=0) / channels.strengths
+    if channels is not None:
+        over_noise *= largest_excess_gain(channels, distance_m) / channels.strengths
     if not (over_noise > LOUDEST).any():
         return
     index = int(family.denominator_point[np.argmax(over_noise)]) - len(scenario.nodes)

@@ -66,11 +66,8 @@ def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
     """Write how sure bounds are, a sentence for each rigour that occurs; labels may repeat."""
     labelled = list(rigours)
     counts, among = Counter(labelled), Counter(label for label, _ in labelled)
-    shares = (
-        "" if count == among[label] else f"at {count} of {among[label]} points "
-        for (label, _), count in counts.items()
-    )
-    return grouped(
-        (label, "" if rigour is Rigour.NONE else f"{share}{rigour.message}.")
-        for (label, rigour), share in zip(counts, shares, strict=True)
-    )
+    sentences = []
+    for (label, rigour), count in counts.items():
+        share = "" if count == among[label] else f"at {count} of {among[label]} points "
+        sentences.append((label, "" if rigour is Rigour.NONE else f"{share}{rigour.message}."))
+    return grouped(sentences)

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
-from nullpose.channel.profile import log_gain
+from nullpose.channel.profile import profile_gain
 from nullpose.physics import Pose, antenna_gain, eavesdropper_snr, link_gain, to_db
 from nullpose.physics.sinr import received_from_sources_w
 from nullpose.report.document import View, cell, rows, table
@@ -35,9 +33,9 @@ def gain_columns(scenario: Scenario, pose: Pose) -> dict[str, Sequence[str | Non
     if scenario.node_antennas is not None:
         both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
         if scenario.node_channels is not None:
-            east_m, north_m, up_m = (pose.position_m - scenario.node_positions_m).T
-            at_rad = np.arctan2(up_m, np.hypot(east_m, north_m))
-            both = both * np.exp(log_gain(scenario.node_channels.rows.T, at_rad))
+            both = both * profile_gain(
+                scenario.node_channels.rows, scenario.node_positions_m - pose.position_m
+            )
         gains["with the ground's (dB)"] = both
     return {
         name: [f"{x:z.2f}" for x in scenario.antenna_gain_dbi + to_db(gain)] for name, gain in gains.items()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from nullpose.channel.model import BLOCKED
+from nullpose.channel.model import BLOCKED, PointChannels, largest_excess_gain
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.physics import to_db
@@ -27,7 +27,6 @@ from nullpose.scenario import (
     Scenario,
 )
 
-_ELEVATIONS = np.radians(np.linspace(-90.0, 90.0, 1801))
 _MOST_ROWS = 12  # of buildings; more are told of as one
 _Point = Node | Jammer | Eavesdropper
 _EARTHLY = {
@@ -95,8 +94,8 @@ def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray |
         if noises_w is not None and transmitter is not None:
             sent_w, noise_w = transmitter.transmit_power_w, float(noises_w[i])
             noise = {"noise_w": noise_w, "noise_dbm": _dbm(noise_w)}
-        channel = scenario.channel_of(point)  # without a profile it is largest right above the point
-        gain = channel.strength * float(np.max(channel.excess(channel.row, nearest_m, _ELEVATIONS, 0.0)))
+        channels = PointChannels.of([scenario.channel_of(point)])
+        (gain,) = largest_excess_gain(channels, np.array([nearest_m])).tolist()
         ratio = gain * point.largest_gain * scenario.reference_gain * sent_w / nearest_m**2 / noise_w
         rows.append(
             {

@@ -27,8 +27,8 @@ def state_of(feature: Feature) -> str:
         feature: of a file.
     """
     properties = feature.properties
-    stated = map(properties.get, ("building", "building:part", "class", "location", "status"))
-    words = {str(value).lower() for value in stated}
+    properties_of_state = map(properties.get, ("building", "building:part", "class", "location", "status"))
+    words = {str(value).lower() for value in properties_of_state}
     flags = {key.lower() for key, value in properties.items() if value in ("yes", "true", True)}
     words |= {flag.removeprefix("is_").removeprefix("has_") for flag in flags}
     if properties.keys().isdisjoint(("building", "building:part")):

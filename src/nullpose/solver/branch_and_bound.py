@@ -16,7 +16,7 @@ INTERRUPT = "an interrupt"
 """The reason of a run that was ended by Ctrl-C."""
 MOST_LEAVES = 250_000
 """Leaves that a certificate has at most; a proof with more goes on, and has none."""
-_MOST_BYTES = 8e9  # of boxes still to do, and of leaves where they are kept
+_MOST_BYTES = 4e9  # of boxes still to do, and of leaves where they are kept
 INSIDE = 1.0 - 1e-4
 """The gap that is aimed at, of the gap asked for: value and bound are rounded."""
 

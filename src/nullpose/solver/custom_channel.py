@@ -207,7 +207,8 @@ def _bounded(search: CustomSearch, options: SolveOptions, deadline: float) -> tu
                 options.on_progress(-heap[0][0] / value - 1.0, boxes)
             if limit_clock() > deadline:
                 reason = f"the time limit of {options.time_limit_s:g} s"
-            reason = f"the node limit of {options.node_limit}" if boxes >= options.node_limit else reason
+            elif boxes >= options.node_limit:
+                reason = f"the node limit of {options.node_limit}"
     except KeyboardInterrupt:
         reason = INTERRUPT
     return (None if heap[0][0] == -math.inf else -heap[0][0]), boxes, reason

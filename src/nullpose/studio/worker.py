@@ -21,7 +21,7 @@ from nullpose.studio.steps import least_tilts, power_curves, proved_answers, qui
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
 
-_COMPILING = "compiling the solver for this machine, once for each kind of scene"
+_COMPILING = "compiling the solver for this machine, once for dipoles and once for patterns"
 
 _PROGRESS_S = 0.1  # between two reports of a proof
 

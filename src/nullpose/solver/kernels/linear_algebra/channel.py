@@ -42,7 +42,7 @@ def steepness(row, gain):
 
 @inner_kernel
 def knot_below(row, angle):
-    """Return where in a channel's row the last knot of its profile at an elevation or below it begins."""
+    """Find the column of a channel's row in which the last knot at an elevation or below it begins."""
     low, high = 0, int(row[KNOTS]) - 1
     while high - low > 1:
         middle = (low + high) // 2
