@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MOST_PAGES = 8
 """How many pages a studio serves at a time; each has a thread that solves."""
 
-_RELOAD_S = 2.0  # a page that is loaded again comes before its old self is gone
+_RELOAD_S = 10.0  # a page that is loaded again comes before its old self is gone: its thread has 5 s to end
 
 _FULL = f"{MOST_PAGES} pages are open, and a studio serves no more. Close one, and load this one again."
 
