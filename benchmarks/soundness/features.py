@@ -13,6 +13,7 @@ from benchmarks.soundness.ends import channel_ends, narrow_airframe, quiet, resc
 from benchmarks.soundness.scenes import Scene
 from nullpose.channel import ENVIRONMENTS
 from nullpose.errors import ScenarioError
+from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
 
 FloatArray = NDArray[np.float64]
@@ -438,6 +439,8 @@ def make_feature_scene(feature: str, number: int) -> Scene:
         scheme = table.pop("scheme", "optimum")
         try:
             scenario = Scenario.from_dict(table | {"name": f"{feature} {number}"})
+            if scenario.array is None and scenario.antenna_record.is_quadratic:
+                build_family(scenario, any_channel=True)  # a jammer may be louder than a solver takes
         except ScenarioError:
             if feature not in ENDS:
                 raise
