@@ -11,6 +11,7 @@ from benchmarks.soundness.ends import subsets_of
 from benchmarks.soundness.scenes import Scene
 from benchmarks.soundness.search import best_value, feasible
 from nullpose.certificate import verify
+from nullpose.objectives import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.physics import objective_value
 from nullpose.solver import Rigour, solve
 from nullpose.solver.certificate_from_proof import certificate_of
@@ -75,10 +76,11 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
     within = max(
         _BELOW, scene.gap or 0.0, solution.provenance["gap"] if solution.status == "certified" else 0.0
     )
-    if objective.value < fast * (1.0 - within) and scene.cells is None:
+    floor = LEAST_RATE_BPS_HZ if Quantity.of(scene.scenario).is_rate else 0.0  # of what a gap is relative to
+    if objective.value < fast - within * max(fast, floor) and scene.cells is None:
         faults.append(f"the value {objective.value!r} is below that of the search alone, {fast!r}")
     if scene.cells is None:
-        faults += _below_subsets(scene, objective.value, within)
+        faults += _below_subsets(scene, objective.value, within, floor)
     promised = solution.rigour is Rigour.VERIFIABLE and bool(solution.proofs)
     checked = promised and sum(len(proof.leaves) for proof in solution.proofs) <= _MOST_LEAVES
     if checked:
@@ -98,12 +100,12 @@ def check_scene(scene: Scene, *, starts: int = 200, time_limit_s: float = 5.0) -
     )
 
 
-def _below_subsets(scene: Scene, value: float, within: float) -> list[str]:
+def _below_subsets(scene: Scene, value: float, within: float, floor: float = 0.0) -> list[str]:
     """Return where a search of some of the poses has more than the answer over all of them."""
     faults = []
     for words, scenario, scheme in subsets_of(scene.scenario, scene.scheme):
         less = solve(scenario, scheme, certify=False).objective.value
-        if value < less * (1.0 - within):
+        if value < less - within * max(less, floor):
             faults.append(f"the value {value!r} is below that {words}, {less!r}")
     return faults
 

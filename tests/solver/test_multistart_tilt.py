@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from benchmarks.soundness.features import make_feature_scene
 
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
@@ -64,3 +65,11 @@ def test_a_narrow_band_is_searched_in_as_few_steps_as_its_cone(scene: Callable, 
         airframe = Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
         evaluations.append(multistart(family, AxisField.within(*airframe.axis_band), seed=0).evaluations)
     assert evaluations[1] <= 3 * evaluations[0]
+
+
+def test_a_dipole_that_is_all_but_upright_has_the_vertical_ones_needle() -> None:
+    """A tilt of .002 degrees does not lose the best place of the vertical dipole, .6 % ahead of others."""
+    scenario = make_feature_scene("narrow", 2077).scenario
+    assert scenario.axis_band[0] < scenario.axis_band[1] == 1.0
+    less = solve(scenario, "vertical", certify=False).objective.value
+    assert solve(scenario, certify=False).objective.value >= less
