@@ -382,7 +382,7 @@ def _ground_profile(rng: np.random.Generator) -> Table:
         table["channel"] = channel | {"average": str(rng.choice(["power", "db", "guaranteed"]))}
     for point in [*table["nodes"], *table["jammers"], *table.get("eavesdroppers", [])]:
         if rng.uniform() < 0.7:
-            inner = np.unique(np.round(rng.uniform(-80.0, 80.0, int(rng.integers(0, 30))), 2))
+            inner = np.unique(np.round(rng.uniform(-80.0, 80.0, int(rng.integers(0, 30))), 1))
             gains_dbi = rng.normal(-4.0, float(rng.choice([1.0, 4.0, 8.0])), len(inner) + 2)
             rows = np.column_stack([[-90.0, *inner, 90.0], np.minimum(gains_dbi, 0.0)])
             point |= {"antenna": "profile", "antenna_profile": rows.tolist()}

@@ -15,6 +15,7 @@ FloatArray = NDArray[np.float64]
 
 _STEPS = 400
 _FAR_M = 80.0
+_FIRST_STEP = 0.125  # over how far around the points walks begin
 
 
 def axes_of(
@@ -86,10 +87,11 @@ def best_value(
     """
     rng = np.random.default_rng(seed)
     ground = ground_of(scenario)
-    low = np.maximum(scenario.airspace.lower_m, ground.min(axis=0) - _FAR_M)
-    high = np.minimum(scenario.airspace.upper_m, ground.max(axis=0) + _FAR_M)
+    far_m = max(_FAR_M, 2.0 * abs(scenario.airspace.lower_m[2]))
+    low = np.maximum(scenario.airspace.lower_m, ground.min(axis=0) - far_m)
+    high = np.minimum(scenario.airspace.upper_m, ground.max(axis=0) + far_m)
     return max(
-        _walks(scenario, axis, rng, starts, np.array([low, high]), near)
+        _walks(scenario, axis, rng, starts, np.array([low, high]), near, far_m * _FIRST_STEP)
         for axis in axes_of(scenario, scheme, null_jammer)
     )
 
@@ -101,6 +103,7 @@ def _walks(
     starts: int,
     bounds_m: FloatArray,
     near: tuple[FloatArray, FloatArray],
+    step_m: float,
 ) -> float:
     def values(p: FloatArray, u: FloatArray) -> FloatArray:
         directions = axis(p, u)
@@ -117,7 +120,7 @@ def _walks(
     u = rng.normal(size=(starts, len(near[1])))
     p[starts // 2 :], u[starts // 2 :] = near
     value = values(p, u)
-    scale = np.full(starts, 10.0)
+    scale = np.full(starts, step_m)
     scale[starts // 2 :] = 10.0 ** rng.uniform(-6.0, 1.0, size=starts - starts // 2)
     for _ in range(_STEPS):
         step = scale * 10.0 ** rng.uniform(-1.5, 0.3, size=starts)
