@@ -394,6 +394,49 @@ def _ground_profile(rng: np.random.Generator) -> Table:
     return table
 
 
+def _served(rng: np.random.Generator, objective: str) -> Table:
+    """Two to six nodes and up to three jammers, with what else a scene can state, and a transmitter."""
+    makers = (_plain, _airframe, _margins, _no_fly, _together, _antennas)
+    while "eavesdroppers" in (table := makers[int(rng.integers(len(makers)))](rng)):
+        pass
+    for kind, most in (("nodes", 6), ("jammers", 3)):
+        if len(table[kind]) < most and rng.uniform() < 0.3:
+            place = rng.uniform(0.0, [60.0, 60.0, 5.0]).tolist()
+            table[kind].append({"position_m": place, "power_w": float(10.0 ** rng.uniform(-0.5, 0.5))})
+    if rng.uniform() < 0.4:
+        table["channel"] = _channel(rng)
+    power_w = float(10.0 ** rng.uniform(-1.0, 1.5))
+    return table | {"objective": objective, "transmitter": {"power_w": power_w}}
+
+
+def _downlink(rng: np.random.Generator) -> Table:
+    """Nodes that receive, some with noise or jamming of their own, under every scheme that has a meaning."""
+    table = _served(rng, "downlink")
+    for node in table["nodes"]:
+        if rng.uniform() < 0.5:
+            node["noise_w"] = _NOISE_W * float(10.0 ** rng.uniform(-1.0, 1.0))
+        if rng.uniform() < 0.3:
+            node["jamming_w"] = _NOISE_W * float(10.0 ** rng.uniform(-1.0, 2.0))
+    upright = rng.uniform() < 0.2 and "airframe" not in table
+    return table | {"scheme": "vertical" if upright else "optimum"}
+
+
+def _relay(rng: np.random.Generator) -> Table:
+    """A destination like a node or like none of them, under every scheme."""
+    table = _served(rng, "relay")
+    low, high = ([0.0, 0.0, 0.0], [60.0, 60.0, 5.0]) if rng.uniform() < 0.5 else ([80.0, -30.0, 0.0], 120.0)
+    alike = table["nodes"][0]
+    keys = alike.keys() & {"antenna", "antenna_axis", "weight", "min_sinr_db"}
+    end = {key: alike[key] for key in sorted(keys)} | {"position_m": rng.uniform(low, high).tolist()}
+    end["noise_w"] = _NOISE_W * float(10.0 ** rng.uniform(-2.0, 1.0))
+    if rng.uniform() < 0.5:
+        end["jamming_w"] = _NOISE_W * float(10.0 ** rng.uniform(-1.0, 1.0))
+    some = ["optimum"] * 4
+    if "airframe" not in table:
+        some += ["vertical", "maximum-gain", *["zero-interference"] * len(table["jammers"])]
+    return table | {"destination": end, "scheme": str(rng.choice(some))}
+
+
 _SIDES = ("x_m", "y_m", "altitude_m")
 
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
@@ -422,6 +465,8 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "scales": _scales,
     "one-element": _one_element,
     "ground-profile": _ground_profile,
+    "downlink": _downlink,
+    "relay": _relay,
 }
 
 ENDS = ("channel-ends", "narrow", "depths", "scales", "one-element")

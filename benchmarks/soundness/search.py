@@ -27,8 +27,8 @@ def axes_of(
     if scheme == "zero-interference":
         named = zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True)
         return [lambda p, u, m=m: m - p for name, m in named if null_jammer in (None, name)]
-    if scheme == "maximum-gain" and len(scenario.nodes) == 2:
-        first, second = scenario.node_positions_m
+    if scheme == "maximum-gain" and len(scenario.terminals) == 2:
+        first, second = scenario.terminal_positions_m
         return [lambda p, u: np.cross(first - p, second - p)]
     if not scenario.antenna_record.is_quadratic:
         return [lambda p, u: nearest_in_tilt(scenario, u)]
@@ -59,9 +59,8 @@ def nearest_in_tilt(scenario: Scenario, quaternions: FloatArray) -> FloatArray:
 
 
 def ground_of(scenario: Scenario) -> FloatArray:
-    """Return the places of all nodes, jammers and eavesdroppers, (n, 3), metres."""
-    others = (scenario.jammer_positions_m, scenario.eavesdropper_positions_m)
-    return np.vstack([scenario.node_positions_m, *(points.reshape(-1, 3) for points in others)])
+    """Return the places of all points on the ground, (n, 3), metres."""
+    return np.array([point.position_m for point in scenario.points])
 
 
 def feasible(scenario: Scenario, positions_m: FloatArray) -> NDArray[np.bool_]:

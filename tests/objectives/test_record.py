@@ -30,13 +30,18 @@ def _scenario(name: str, rng: np.random.Generator) -> Scenario:
         data["nodes"][0]["weight"], data["nodes"][1]["min_sinr_db"] = 2.5, -4.0
     if "nodes.noise" not in record.unused:
         data["nodes"][0]["noise_dbm"], data["nodes"][1]["jamming_dbm"] = -5.0, -3.0
-    if record.transmits:
-        data["transmitter"] = {"power_w": 1.0}
-        data["eavesdroppers"] = [{"position_m": spot()} for _ in range(2)]
+    more = {
+        "transmitter": {"power_w": 1.0},
+        "eavesdroppers": [{"position_m": spot()} for _ in range(2)],
+        "destination": {"position_m": spot(), "noise_dbm": -2.0, "weight": 1.5},
+    }
+    data |= {key: more[key] for key in record.needs if key in more}
     channels = [{"model": "power-law", "exponent": float(rng.uniform(1.6, 4.0))}]
     channels += [{"model": "elevation", "environment": "urban", "average": each} for each in AVERAGES]
     data["channel"] = channels[rng.integers(len(channels))]
-    data["nodes"][2]["channel"] = data[record.interferers][1]["channel"] = "free-space"
+    data["nodes"][2]["channel"] = "free-space"
+    if record.interferers in data:
+        data[record.interferers][1]["channel"] = "free-space"
     return Scenario.from_dict(data)
 
 
@@ -55,7 +60,8 @@ def test_smallest_ratio_is_the_value_of_the_physics(name: str, seed: int) -> Non
         seen_rad = np.arcsin(-away[j, 2] / np.sqrt(squared[j]))
         link[j] *= EXCESS[int(row[0])](row, np.sqrt(squared[j]), seen_rad, 0.0)
     leaks = ratios.denominator_weight * link[ratios.denominator_point]
-    below = ratios.denominator_isotropic + np.add.reduceat(leaks, ratios.denominator_start[:-1])
+    sums = np.append(0.0, np.cumsum(leaks))[ratios.denominator_start]
+    below = ratios.denominator_isotropic + np.diff(sums)
     above = ratios.numerator_isotropic + ratios.numerator_weight * link[ratios.numerator_point]
     smallest = float(np.min(above / below[ratios.denominator_of]))
     quantity = Quantity.of(scenario)

@@ -150,12 +150,11 @@ def _with_errors(scenario: Scenario, sizes: ErrorSizes) -> Scenario:
     from nullpose.scenario import apply_overrides
     from nullpose.scenario.overrides import Override
 
-    points = scenario.objective_record.interferers
     disc_m = [sizes.jammers_m, sizes.jammers_m, 0.0]
     errors = {
         "receiver.attitude_error_deg": sizes.attitude_deg,
         "receiver.position_error_m": sizes.position_m,
-        **{f"{points}[{i}].uncertainty_m": disc_m for i in range(len(getattr(scenario, points)))},
+        **{f"{scenario.interferer}s[{i}].uncertainty_m": disc_m for i in range(len(scenario.interferers))},
     }
     return apply_overrides(scenario, [Override(path, size) for path, size in errors.items()])
 

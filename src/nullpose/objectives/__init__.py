@@ -6,9 +6,11 @@ in the line ``RECORDS`` below.
 
 from __future__ import annotations
 
+from nullpose.objectives.downlink import DOWNLINK
 from nullpose.objectives.min_sinr import MIN_SINR
 from nullpose.objectives.ratios import FloatArray, IntArray, Ratios
 from nullpose.objectives.record import LEAST_RATE_BPS_HZ, ObjectiveRecord, Quantity
+from nullpose.objectives.relay import RELAY
 from nullpose.objectives.secrecy_rate import SECRECY_RATE
 
 __all__ = [
@@ -22,7 +24,7 @@ __all__ = [
     "Ratios",
 ]
 
-RECORDS = {record.name: record for record in (MIN_SINR, SECRECY_RATE)}
+RECORDS = {record.name: record for record in (MIN_SINR, SECRECY_RATE, DOWNLINK, RELAY)}
 
 USUAL = MIN_SINR.name
 """The objective of a scenario that names none."""

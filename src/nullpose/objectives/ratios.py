@@ -71,42 +71,63 @@ class Ratios(NamedTuple):
     shadow_sides: FloatArray = np.zeros((0, 5))
 
 
-def ground_of(scenario: Scenario, *kinds: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the dipoles' axes, (m, 3), and leaks, (m,), empty without dipoles, and the largest gains, (m,).
+def points_of(scenario: Scenario, *kinds: str, others: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return the fields of ratios about their points: places, dipoles, channels and shadows.
+
+    There are none of dipoles without one, and none of channels where no link's gain over free space changes
+    with the position, functions in Python left aside.
 
     Args:
         scenario: with its points.
         kinds: of the points, in order, as in ``"node"``.
+        others: kinds of the points after them that are in no ratio, but to be kept clear of.
     """
-    groups = [(getattr(scenario, f"{k}_antennas"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
-    parts = [antennas or (np.zeros((n, 3)), np.ones(n), np.ones(n)) for antennas, n in groups]
-    axes, shares, leaks = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return (axes, leaks, shares) if np.any(axes) else (axes[:0], leaks[:0], shares)
+    every = [(kind, getattr(scenario, f"{kind}_positions_m")) for kind in (*kinds, *others)]
+    groups = [(getattr(scenario, f"{kind}_antennas"), len(points_m)) for kind, points_m in every]
+    antennas = [(each.axes, each.leaks) if each else (np.zeros((n, 3)), np.ones(n)) for each, n in groups]
+    axes, leaks = (np.concatenate(part) for part in zip(*antennas, strict=True))
+    count = len(axes) if np.any(axes) else 0
+    fields = {"points_m": np.vstack([points_m for _, points_m in every])}
+    fields |= {"ground_axes": axes[:count], "ground_leaks": leaks[:count]}
+    return fields | _channels_of(scenario, every[: len(kinds)], len(axes))
 
 
-def channels_of(scenario: Scenario, *kinds: str, others: int = 0) -> tuple[dict[str, Any], FloatArray]:
-    """Return the fields of ratios for the points' channels and buildings, and the strengths, (m,).
-
-    There are no fields where no link's gain over free space changes with the position, functions in Python
-    left aside.
-
-    Args:
-        scenario: with its points.
-        kinds: of the points, in order, as in ``"node"``.
-        others: the number of points after them that are in no ratio.
-    """
-    groups = [(getattr(scenario, f"{k}_channels"), len(getattr(scenario, f"{k}_positions_m"))) for k in kinds]
-    parts = [(c.rows, c.strengths) if c else (np.zeros((n, WIDTH)), np.ones(n)) for c, n in groups]
-    rows = padded([row for rows, _ in parts for row in rows])
-    strengths = np.concatenate([strengths for _, strengths in parts])
+def _channels_of(scenario: Scenario, kinds: list[tuple[str, FloatArray]], count: int) -> dict[str, Any]:
+    """Return the fields about the channels and shadows of some kinds of points, of so many points in all."""
+    groups = [(getattr(scenario, f"{kind}_channels"), len(points_m)) for kind, points_m in kinds]
+    rows = padded([row for c, n in groups for row in (c.rows if c else np.zeros((n, WIDTH)))])
     if np.isin(rows[:, 0], (CONSTANT, CUSTOM)).all() and scenario.prisms is None:
-        return {}, strengths
+        return {}
+    others = count - len(rows)
     rows = np.pad(rows, ((0, others), (0, 0)))
     if scenario.prisms is None:
-        return {"channels": rows}, strengths
-    points_m = np.vstack([getattr(scenario, f"{k}_positions_m").reshape(-1, 3) for k in kinds])
+        return {"channels": rows}
+    points_m = np.vstack([points_m for _, points_m in kinds])
     is_interferer = np.concatenate([c.is_interferer for c, _ in groups])
     of_point, start, sides = shadows_of(scenario.prisms, points_m, is_interferer)
     of_point = np.append(of_point, np.full(others, of_point[-1]))
-    shadows = {"shadows_of_point": of_point, "shadow_start": start, "shadow_sides": sides}
-    return {"channels": rows, **shadows}, strengths
+    return {"channels": rows, "shadows_of_point": of_point, "shadow_start": start, "shadow_sides": sides}
+
+
+def gains_of(scenario: Scenario, kind: str) -> FloatArray:
+    """Return the largest gain of each point's antenna times the strength of its channel, (m,).
+
+    Args:
+        scenario: with its points.
+        kind: of the points, as in ``"node"``.
+    """
+    antennas, channels = getattr(scenario, f"{kind}_antennas"), getattr(scenario, f"{kind}_channels")
+    shares = np.ones(len(getattr(scenario, f"{kind}s"))) if antennas is None else antennas.shares
+    return np.asarray(shares if channels is None else shares * channels.strengths)
+
+
+def snr_weights(scenario: Scenario, kind: str) -> FloatArray:
+    """Return ``g0 P / sigma_k^2`` of points that receive from the drone, times their gains, (m,), m^2.
+
+    Args:
+        scenario: with a transmitter.
+        kind: of the points, as in ``"node"``.
+    """
+    assert scenario.transmitter is not None, "validation lets no such objective through without it"
+    sent = scenario.reference_gain * scenario.transmitter.transmit_power_w
+    return np.asarray(sent * gains_of(scenario, kind) / getattr(scenario, f"{kind}_noise_w"))

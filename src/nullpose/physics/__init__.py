@@ -43,7 +43,7 @@ from nullpose.physics.rotation import (
     attitude_of_axis,
     rotation_world_from_body,
 )
-from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate
+from nullpose.physics.secrecy import destination_snr, eavesdropper_snr, node_snr, secrecy_rate
 from nullpose.physics.sinr import received_from_sources_w, received_power_w, sinr
 
 __all__ = [
@@ -61,6 +61,7 @@ __all__ = [
     "attitude_from_axis",
     "attitude_of_axis",
     "beam_sinr",
+    "destination_snr",
     "digital_sinr",
     "digital_weights",
     "dipole_gain",

@@ -23,7 +23,7 @@ class Link:
     """One node's link with the drone.
 
     Args:
-        node: the node's name.
+        node: the name of the node, or of a relay's destination.
         values: its numbers by name: ``sinr``, and what else the scenario's objective evaluates. A power ratio
             stands there in dB as well, ``sinr_db``; minus infinity where the null points at the node.
     """
@@ -35,7 +35,7 @@ class Link:
     def sinr(self) -> float:
         """Signal to interference-plus-noise ratio, a power ratio.
 
-        At the drone (paper eq. 2.1), or at the node where the scenario's objective is the secrecy rate.
+        At the drone (paper eq. 2.1), or at the node or the destination where the drone transmits to it.
         """
         return self.values["sinr"]
 
@@ -77,6 +77,8 @@ def evaluate(scenario: Scenario, pose: Poses) -> dict[str, FloatArray]: ...
 def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[str, FloatArray]:
     """Evaluate every node's link at a pose, in the scenario's order (paper eqs. 1.1 to 2.1).
 
+    Of a relay, the destination's link is the last.
+
     Of many poses the numbers of :class:`Link` as arrays, by name: ``evaluate(scenario, poses)["sinr_db"]``
     has a row for each pose and a column for each node.
 
@@ -99,17 +101,17 @@ def evaluate(scenario: Scenario, pose: Pose | Poses) -> tuple[Link, ...] | dict[
 
 
 def links_of(scenario: Scenario, values: Mapping[str, FloatArray]) -> tuple[Link, ...]:
-    """Make every node's link from its numbers, in the scenario's order.
+    """Make the link of every terminal from its numbers, in the scenario's order.
 
     Args:
         scenario: the nodes.
-        values: arrays of shape (n_nodes,) by name, as an objective evaluates them.
+        values: arrays of shape (n_terminals,) by name, as an objective evaluates them.
     """
     columns = with_decibels(values)
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return tuple(
         Link(name, dict(zip(columns, row, strict=True)))
-        for name, row in zip(scenario.node_names, rows, strict=True)
+        for name, row in zip(scenario.terminal_names, rows, strict=True)
     )
 
 

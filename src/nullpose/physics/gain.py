@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas, QuadraticAntenna
 from nullpose.physics.types import FloatArray
-from nullpose.scenario import GroundPoint, Node, Scenario
+from nullpose.scenario import GroundPoint, Scenario, Terminal
 
 
 def _unit(vectors: FloatArray) -> FloatArray:
@@ -145,9 +145,8 @@ def interferer_gains(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike)
     Returns:
         Array of shape ``(m,)``, between 0 and 1.
     """
-    point, antenna = scenario.objective_record.interferers.removesuffix("s"), scenario.antenna_record
-    points_m, ground = getattr(scenario, f"{point}_positions_m"), getattr(scenario, f"{point}_antennas")
-    gains = link_gain(position_m, axis, points_m.reshape(-1, 3), antenna, ground)
+    antenna, ground = scenario.antenna_record, scenario.of_interferers("antennas")
+    gains = link_gain(position_m, axis, scenario.of_interferers("positions_m"), antenna, ground)
     return np.asarray(gains / (antenna.peak if ground is None else antenna.peak * ground.shares))
 
 
@@ -160,9 +159,9 @@ def worst_polarised(scenario: Scenario) -> Scenario:
     Args:
         scenario: any.
     """
-    changed = {
+    changed: dict[str, object] = {
         kind: tuple(map(_worst, getattr(scenario, kind))) for kind in ("nodes", "jammers", "eavesdroppers")
-    }
+    } | {"destination": scenario.destination and _worst(scenario.destination)}
     changed = {kind: points for kind, points in changed.items() if points != getattr(scenario, kind)}
     return scenario.model_copy(update=changed) if changed else scenario
 
@@ -170,7 +169,7 @@ def worst_polarised(scenario: Scenario) -> Scenario:
 def _worst(point: GroundPoint) -> GroundPoint:
     if not 0.0 < point.leak < 1.0:
         return point
-    if not isinstance(point, Node):
+    if not isinstance(point, Terminal):
         return point.isotropic
     kept_db = 10.0 * math.log10(1.0 - point.leak)
     return point.model_copy(update={"null_depth_db": None, "gain_dbi": point.gain_dbi + kept_db})

@@ -1,4 +1,4 @@
-"""What the drone, the nodes and the eavesdroppers receive at a pose, and what an objective makes of it."""
+"""What the drone, and those on the ground, receive at a pose, and what an objective makes of it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.physics.error_case import ErrorCase
-from nullpose.physics.secrecy import eavesdropper_snr, node_snr, secrecy_rate_of
+from nullpose.physics.secrecy import destination_snr, eavesdropper_snr, node_snr, secrecy_rate_of
 from nullpose.physics.sinr import received_from_sources_w, sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -20,7 +20,7 @@ class Reception:
     """Everything that is received with the drone at one pose or at many, each number evaluated once.
 
     Args:
-        scenario: nodes, jammers, eavesdroppers, receiver and transmitter; one antenna, not an array.
+        scenario: all points, receiver and transmitter; one antenna, not an array.
         position_m: the commanded position, shape ``(..., 3)``, metres.
         axis: the commanded unit antenna axis, shape ``(..., 3)``; the attitude ``(..., 3, 3)`` of an antenna
             with a pattern.
@@ -41,6 +41,11 @@ class Reception:
     def node_snr(self) -> FloatArray:
         """Every node's SNR of the drone's signal, ``(..., n_nodes)``, power ratios."""
         return node_snr(self.scenario, *self._pose)
+
+    @cached_property
+    def destination_snr(self) -> FloatArray:
+        """The destination's SNR of the drone's signal, ``(..., 1)``, a power ratio."""
+        return destination_snr(self.scenario, *self._pose)
 
     @cached_property
     def eavesdropper_snr(self) -> FloatArray:
@@ -72,7 +77,7 @@ class Reception:
 def objective_value(
     scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase | None = None
 ) -> FloatArray:
-    """Evaluate the scenario's objective: the smallest SINR (paper eq. 2.2), margin or secrecy rate.
+    """Evaluate the scenario's objective: the smallest SINR (paper eq. 2.2), SNR, margin or secrecy rate.
 
     Args:
         scenario: nodes, jammers, eavesdroppers, receiver and transmitter; one antenna, not an array.
@@ -87,7 +92,7 @@ def objective_value(
 
 
 def node_values(reception: Reception) -> FloatArray:
-    """Evaluate the maximised quantity of every node, ``(..., n_nodes)``: power ratios, or bits/s/Hz."""
+    """Evaluate the maximised quantity of every terminal, ``(..., n_terminals)``: ratios, or bits/s/Hz."""
     record = reception.scenario.objective_record
     return np.asarray(record.evaluate(reception)[record.quantity(reception.scenario).field])
 

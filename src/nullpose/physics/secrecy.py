@@ -1,12 +1,10 @@
-"""The drone transmits: what nodes and eavesdroppers receive, and the rate that stays secret."""
+"""The drone transmits: what those on the ground receive, and the rate that stays secret."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import GroundAntennas
-from nullpose.channel import PointChannels
 from nullpose.errors import UsageError
 from nullpose.physics.sinr import received_power_w
 from nullpose.physics.types import FloatArray
@@ -17,19 +15,18 @@ def _snr(
     scenario: Scenario,
     position_m: ArrayLike,
     axis: ArrayLike,
-    points_m: FloatArray,
-    ground: GroundAntennas | None,
-    channels: PointChannels | None,
-    noise_w: FloatArray,
+    kind: str,
+    points_m: FloatArray | None = None,
 ) -> FloatArray:
     if scenario.transmitter is None:
         raise UsageError("scenario: it states no power of the drone; add a [transmitter]")
+    places_m = getattr(scenario, f"{kind}_positions_m") if points_m is None else points_m
     # The channel is reciprocal: a point receives from the drone what the drone would receive from it.
-    powers_w = np.full(points_m.shape[-2], scenario.transmitter.transmit_power_w)
+    powers_w = np.full(places_m.shape[-2], scenario.transmitter.transmit_power_w)
     link = (scenario.reference_gain, scenario.antenna_record)
-    return np.asarray(
-        received_power_w(position_m, axis, points_m, powers_w, *link, ground, channels) / noise_w
-    )
+    ground, channels = getattr(scenario, f"{kind}_antennas"), getattr(scenario, f"{kind}_channels")
+    received_w = received_power_w(position_m, axis, places_m, powers_w, *link, ground, channels)
+    return np.asarray(received_w / getattr(scenario, f"{kind}_noise_w"))
 
 
 def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
@@ -52,15 +49,24 @@ def node_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> Floa
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    return _snr(
-        scenario,
-        position_m,
-        axis,
-        scenario.node_positions_m,
-        scenario.node_antennas,
-        scenario.node_channels,
-        scenario.node_noise_w,
-    )
+    return _snr(scenario, position_m, axis, "node")
+
+
+def destination_snr(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Evaluate the SNR of the drone's signal at the destination, as :func:`node_snr` does at a node.
+
+    Args:
+        scenario: jammers, receiver, transmitter and destination.
+        position_m: the drone's position, shape ``(..., 3)``, metres.
+        axis: unit antenna axis, shape ``(..., 3)``.
+
+    Returns:
+        Array of shape ``(..., 1)``, a power ratio; ``(..., 0)`` without a destination.
+
+    Raises:
+        ValueError: the scenario has no transmitter.
+    """
+    return _snr(scenario, position_m, axis, "destination")
 
 
 def eavesdropper_snr(
@@ -81,15 +87,7 @@ def eavesdropper_snr(
     Raises:
         ValueError: the scenario has no transmitter.
     """
-    return _snr(
-        scenario,
-        position_m,
-        axis,
-        scenario.eavesdropper_positions_m if points_m is None else points_m,
-        scenario.eavesdropper_antennas,
-        scenario.eavesdropper_channels,
-        scenario.eavesdropper_noise_w,
-    )
+    return _snr(scenario, position_m, axis, "eavesdropper", points_m)
 
 
 def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:

@@ -57,7 +57,7 @@ def build_family(
 
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
-    channels = getattr(scenario, f"{scenario.objective_record.interferers.removesuffix('s')}_channels")
+    channels = scenario.of_interferers("channels")
     if channels is None and not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():
         return  # wherever they are
     distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]

@@ -94,7 +94,7 @@ def point_uncertainty_m(scenario: Scenario) -> FloatArray:
 
 def interferer_field(scenario: Scenario, kind: str) -> str:
     """Name a field about those in the denominators, as in ``"jammer_offsets_m"``."""
-    return f"{scenario.objective_record.interferers.removesuffix('s')}_{kind}_m"
+    return f"{scenario.interferer}_{kind}_m"
 
 
 def _of_points(nominal: Family, scenario: Scenario, of_interferers: FloatArray) -> FloatArray:

@@ -16,7 +16,6 @@ from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import bound_text, capitalised
 from nullpose.report.results import pose_cells, work_words
 from nullpose.report.words import requirement_words
-from nullpose.scenario import Eavesdropper, Jammer
 from nullpose.solver import Rigour, Status
 from nullpose.study import ResultRow, ResultTable
 from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
@@ -194,10 +193,7 @@ def numbers_of(comparison: ResultTable) -> FloatArray:
 
 def _null_cells(row: ResultRow) -> dict[str, str]:
     """Write how far the null is off what it is for."""
-    points: list[Jammer | Eavesdropper] = [*row.scenario.eavesdroppers]
-    if not row.objective.quantity.is_rate:
-        points += row.scenario.jammers
-    is_even = row.scenario.antenna_record.is_even
+    points, is_even = row.scenario.interferers, row.scenario.antenna_record.is_even
     angles_rad = [(point.name, axis_angle_rad(row.pose, point.position_m, is_even)) for point in points]
     return {f"axis to {name} (deg)": f"{math.degrees(angle_rad):.2f}" for name, angle_rad in angles_rad}
 

@@ -26,16 +26,25 @@ def binding_nodes(result: Result) -> frozenset[str]:
     return frozenset(link.node for link in result.links if quantity.at(link) <= most)
 
 
+def hop_words(result: Result) -> str:
+    """Say which hop of a relay binds; nothing under another objective."""
+    binding = sorted(binding_nodes(result))
+    if (end := result.scenario.destination) is None:
+        return ""
+    heard = [name for name in binding if name != end.name]
+    hops = [f"from {', '.join(heard)} to the drone"] * bool(heard)
+    hops += [f"from the drone to {end.name}"] * (end.name in binding)
+    return f"{'the hop that binds' if len(hops) == 1 else 'both hops bind'}: {', and '.join(hops)}"
+
+
 def gain_columns(scenario: Scenario, pose: Pose) -> dict[str, Sequence[str | None]]:
     """Write the gain of the drone's antenna towards each node, and with the node's antenna if it has one."""
-    at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.node_positions_m)
+    at = (pose.position_m, pose.orientation(scenario.antenna_record), scenario.terminal_positions_m)
     gains = {"antenna gain (dB)": antenna_gain(*at, scenario.antenna_record)}
-    if scenario.node_antennas is not None:
-        both = link_gain(*at, scenario.antenna_record, scenario.node_antennas)
-        if scenario.node_channels is not None:
-            both = both * profile_gain(
-                scenario.node_channels.rows, scenario.node_positions_m - pose.position_m
-            )
+    if scenario.terminal_antennas is not None:
+        both = link_gain(*at, scenario.antenna_record, scenario.terminal_antennas)
+        if (channels := scenario.terminal_channels) is not None:
+            both = both * profile_gain(channels.rows, scenario.terminal_positions_m - pose.position_m)
         gains["with the ground's (dB)"] = both
     return {
         name: [f"{x:z.2f}" for x in scenario.antenna_gain_dbi + to_db(gain)] for name, gain in gains.items()
@@ -51,12 +60,12 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
         numbers = [quantity.in_unit(quantity.at(link)) for link in links]
         counted[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
         counted[f"required {quantity.ratio} (dB)"] = [
-            cell(node.min_sinr_db, ".6g") for node in scenario.nodes
+            cell(each.min_sinr_db, ".6g") for each in scenario.terminals
         ]
-        counted["weight"] = [cell(node.weight, ".6g") for node in scenario.nodes]
-    if quantity.is_rate:
+        counted["weight"] = [cell(each.weight, ".6g") for each in scenario.terminals]
+    if scenario.objective_record.transmits:
         counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
-    distances_m = [distance_m(result.pose, point_m) for point_m in scenario.node_positions_m]
+    distances_m = [distance_m(result.pose, point_m) for point_m in scenario.terminal_positions_m]
     columns: dict[str, Sequence[str | None]] = {
         "node": [link.node for link in links],
         **counted,
@@ -71,10 +80,10 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
 
 def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
     """Set how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
-    noun, heading = scenario.objective_record.interferers.removesuffix("s"), "SNR (dB)"
-    names, points = getattr(scenario, f"{noun}_names"), getattr(scenario, f"{noun}_positions_m")
+    noun, heading = scenario.interferer, "SNR (dB)"
+    names, points = scenario.of_interferers("names"), scenario.of_interferers("positions_m")
     orientation = pose.orientation(scenario.antenna_record)
-    if scenario.eavesdroppers:
+    if scenario.objective_record.transmits:
         ratios = eavesdropper_snr(scenario, pose.position_m, orientation)
     else:
         heading = "jamming to noise (dB)"

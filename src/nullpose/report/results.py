@@ -13,7 +13,7 @@ from nullpose.physics import (
 from nullpose.report.decimals import COMPONENTS, DEGREES, METRES, more_decimals
 from nullpose.report.document import View, beside, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, tilt_rad
-from nullpose.report.links import gain_columns, links_table, nulls_table
+from nullpose.report.links import gain_columns, hop_words, links_table, nulls_table
 from nullpose.report.numbers import bound_text, bound_words, capitalised, value_words, with_unit
 from nullpose.report.sensitivity import sensitivity_view
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
@@ -68,10 +68,11 @@ def result_view(result: Result) -> View:
     array = scenario.array
     more = more_decimals(scenario, pose)
     antenna = _antenna_rows(scenario, pose, more) if array is None else [("array", array_words(array))]
-    note = "Jamming does not depend on the pose. It is part of the nodes' noise."
+    who = "the nodes'" if scenario.objective_record.transmits else "the destination's"
+    note = f"Jamming on the ground does not depend on the pose. It is part of {who} noise."
     searches, place = result.stats.searches or 0, zip("xyz", _metres(pose.position_m, more), strict=True)
     agreement = f"{result.stats.agreeing} of {searches} local searches ended at this value"
-    lines = (requirement_words(result), result.note, agreement if searches > 1 else "")
+    lines = (hop_words(result), requirement_words(result), result.note, agreement if searches > 1 else "")
     position = ", ".join(f"{axis} {x} m" for axis, x in place)
     at = [("position", position), ("attitude", _attitude_words(pose, more))]
     return document(
@@ -79,7 +80,7 @@ def result_view(result: Result) -> View:
         pairs("", [*at, *antenna, *frame_rows(scenario, pose, more)]),
         links_table(result, gain_columns(scenario, pose) if array is None else {}),
         nulls_table(scenario, pose) if array is None else None,
-        note if scenario.jammers and result.objective.quantity.is_rate else None,
+        note if scenario.jammers and scenario.transmitter is not None else None,
         sensitivity_view(result),
     )
 

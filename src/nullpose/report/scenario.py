@@ -19,6 +19,7 @@ from nullpose.scenario import (
     Antenna,
     Building,
     Channel,
+    Destination,
     Eavesdropper,
     Jammer,
     Node,
@@ -28,7 +29,7 @@ from nullpose.scenario import (
 )
 
 _MOST_ROWS = 12  # of buildings; more are told of as one
-_Point = Node | Jammer | Eavesdropper
+_Point = Node | Jammer | Eavesdropper | Destination
 _EARTHLY = {
     "latitude (deg)": ("lat_deg", 6),
     "longitude (deg)": ("lon_deg", 6),
@@ -44,12 +45,14 @@ def summarise(scenario: Scenario) -> PlainTable:
     broadside: ``g0 P h^2 / (d^2 sigma^2)``, paper eq. 2.1 without jamming and with G = 1. Points with a noise
     of their own receive from the drone; any other point transmits to it.
     """
-    receiver, is_rate = scenario.receiver, Quantity.of(scenario).is_rate
+    receiver, transmits = scenario.receiver, scenario.objective_record.transmits
+    ends = _points(scenario, scenario.destinations, scenario.destination_noise_w)
     return {
         "scenario": scenario.to_dict(),
-        "nodes": _points(scenario, scenario.nodes, scenario.node_noise_w if is_rate else None),
+        "nodes": _points(scenario, scenario.nodes, scenario.node_noise_w if transmits else None),
         "jammers": _points(scenario, scenario.jammers, None),
         "eavesdroppers": _points(scenario, scenario.eavesdroppers, scenario.eavesdropper_noise_w),
+        **({"destination": ends[0]} if ends else {}),
         "noise_w": receiver.noise_power_w,
         "noise_dbm": _dbm(receiver.noise_power_w),
         "reference_gain_db": float(to_db(receiver.reference_gain)),
@@ -114,14 +117,15 @@ def _points(scenario: Scenario, points: Sequence[_Point], noises_w: FloatArray |
 
 def scenario_view(scenario: Scenario) -> View:
     """Set a scenario's points, airspace and vehicle as tables, with the most that each link can carry."""
-    numbers, rate = summarise(scenario), Quantity.of(scenario).is_rate
+    numbers, transmits = summarise(scenario), scenario.objective_record.transmits
+    links = [*numbers["nodes"], *filter(None, [numbers.get("destination")])]
     best = (
         "Nearest, highest: the drone as near as the airspace and the keep-out radius (around every point) "
-        f"allow, zones and fence ignored, at the largest gain{'' if rate else '; SNR without jamming'}."
+        f"allow, zones and fence ignored, at the largest gain{'' if transmits else '; SNR without jamming'}."
     )
     notes = [
-        f"Node {node.name} requires more than the highest ratio of its link."
-        for node, link in zip(scenario.nodes, numbers["nodes"], strict=True)
+        f"{type(node).__name__} {node.name} requires more than the highest ratio of its link."
+        for node, link in zip(scenario.terminals, links, strict=True)
         if node.min_sinr_db is not None and node.min_sinr_db > link["best_power_to_noise_db"]
     ]
     if scenario.is_uncertain:
@@ -136,8 +140,11 @@ def scenario_view(scenario: Scenario) -> View:
         pairs("Vehicle and receiver", _vehicle_rows(scenario).items()),
         table("Latitude and longitude", _place_rows(numbers.get("on_earth", ()))),
         _points_table("node", scenario.nodes, numbers["nodes"], "highest SNR (dB)"),
-        _points_table("jammer", scenario.jammers, numbers["jammers"], "" if rate else "highest JNR (dB)"),
+        _points_table(
+            "jammer", scenario.jammers, numbers["jammers"], "" if transmits else "highest JNR (dB)"
+        ),
         _points_table("eavesdropper", scenario.eavesdroppers, numbers["eavesdroppers"], "highest SNR (dB)"),
+        _points_table("destination", scenario.destinations, links[len(scenario.nodes) :], "highest SNR (dB)"),
         "\n".join([best, *notes]),
     )
 
@@ -204,9 +211,10 @@ def _between(values: Sequence[float]) -> str:
 def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
     receiver, airframe, array = scenario.receiver, scenario.airframe, scenario.array
     attitude_deg, position_m = receiver.attitude_error_deg, receiver.position_error_m
+    also = " and the destination" * len(scenario.destinations)
     sender, distance_m = scenario.transmitter, (scenario.channel or Channel()).gain_distance_m
     return {
-        "maximised": f"the {Quantity.of(scenario).smallest} over the nodes",
+        "maximised": f"the {Quantity.of(scenario).smallest} over the nodes{also}",
         "array": None if array is None else array_words(array),
         "airframe": None if airframe is None else airframe_words(airframe),
         "antenna": f"{scenario.antenna_record.label}{_gain_words(scenario.antenna)}, {reach_words(airframe)}",

@@ -22,14 +22,13 @@ def sensitivity_view(result: Result) -> View | None:
     if (found := result.sensitivity) is None:
         return None
     quantity, sizes = found.quantity, found.sizes
-    point = result.scenario.objective_record.interferers.removesuffix("s")
     kinds = {
         "attitude": f"attitude by up to {sizes.attitude_deg:g} deg",
         "position": f"position by up to {sizes.position_m:g} m",
-        "jammers": f"each {point} by up to {sizes.jammers_m:g} m",
+        "jammers": f"each {result.scenario.interferer} by up to {sizes.jammers_m:g} m",
         "all": "all together",
     }
-    if not getattr(result.scenario, f"{point}s"):
+    if not result.scenario.interferers:
         del kinds["jammers"]
     nominal = quantity.in_unit(found.nominal)
     values = [quantity.in_unit(getattr(found, kind)) for kind in kinds]
@@ -54,8 +53,8 @@ def sensitivity_caption(result: Result) -> str:
 
 def sizes_words(result: Result, sizes: ErrorSizes) -> str:
     """List the errors that are tried together, as in "1°, 1 m, jammers 10 m"."""
-    points = result.scenario.objective_record.interferers
-    moved = f", {points} {sizes.jammers_m:g} m" if getattr(result.scenario, points) else ""
+    scenario = result.scenario
+    moved = f", {scenario.interferer}s {sizes.jammers_m:g} m" if scenario.interferers else ""
     return f"{sizes.attitude_deg:g}°, {sizes.position_m:g} m{moved}"
 
 
@@ -79,6 +78,6 @@ def sensitivity_words(result: Result) -> str | None:
 def _nulled_names(result: Result) -> list[str]:
     """List the jammers or eavesdroppers whose link is in a null of the antenna."""
     scenario, pose = result.scenario, result.pose
-    names = getattr(scenario, f"{scenario.objective_record.interferers.removesuffix('s')}_names")
     gains = interferer_gains(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
+    names = scenario.of_interferers("names")
     return [name for name, gain in zip(names, gains, strict=True) if gain < _NULL_GAIN]

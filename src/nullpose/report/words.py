@@ -64,7 +64,7 @@ def requirement_words(result: Result) -> str:
 
     That no pose meets them is said where the bound proves it.
     """
-    nodes, bound = result.scenario.nodes, result.objective.upper_bound
+    nodes, bound = result.scenario.terminals, result.objective.upper_bound
     pairs = zip(result.links, nodes, strict=True)
     spare = sorted((link.margin_db or 0.0, link.node) for link, node in pairs if node.min_sinr_db is not None)
     missed = [margin for margin in spare if margin[0] < 0.0]

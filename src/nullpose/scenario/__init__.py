@@ -5,7 +5,7 @@ from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.buildings import Building
 from nullpose.scenario.channel import Channel
-from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
+from nullpose.scenario.ground_points import Destination, Eavesdropper, GroundPoint, Jammer, Node, Terminal
 from nullpose.scenario.json_schema import json_schema
 from nullpose.scenario.loading import load
 from nullpose.scenario.no_fly import NoFlyZone
@@ -22,6 +22,7 @@ __all__ = [
     "Array",
     "Building",
     "Channel",
+    "Destination",
     "Eavesdropper",
     "GroundPoint",
     "Jammer",
@@ -31,6 +32,7 @@ __all__ = [
     "Override",
     "Receiver",
     "Scenario",
+    "Terminal",
     "Transmitter",
     "apply_overrides",
     "doubts",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +19,8 @@ from nullpose.scenario.channel import BLOCKED_DB, Channel, CustomChannel
 from nullpose.scenario.units import power_w, ratio_from_db
 
 if TYPE_CHECKING:
-    from nullpose.scenario.ground_points import Eavesdropper, GroundPoint, Jammer, Node
+    from nullpose.objectives import ObjectiveRecord
+    from nullpose.scenario.ground_points import Destination, Eavesdropper, GroundPoint, Jammer, Node, Terminal
     from nullpose.scenario.radio import Receiver
 
 
@@ -80,8 +81,13 @@ class PointArrays:
         nodes: tuple[Node, ...]
         jammers: tuple[Jammer, ...]
         eavesdroppers: tuple[Eavesdropper, ...]
+        destination: Destination | None
         receiver: Receiver
         channel: Channel | None
+
+        @property
+        def objective_record(self) -> ObjectiveRecord:
+            """What the objective states of itself."""
 
         @cached_property
         def prisms(self) -> Prisms | None:
@@ -93,6 +99,8 @@ class PointArrays:
     """Transmit powers of the nodes [W], (n_nodes,)."""
     node_required_sinr = _stacked("nodes", "required_sinr")
     """What each node's SINR is divided by to give its margin, linear, (n_nodes,)."""
+    terminal_required_sinr = _stacked("terminals", "required_sinr")
+    """The same of all terminals, (n_terminals,)."""
     node_antennas = _antennas("nodes")
     """The nodes' antennas; None where all are isotropic."""
     node_channels = _channels("nodes")
@@ -124,13 +132,49 @@ class PointArrays:
     eavesdropper_channels = _channels("eavesdroppers")
     """The eavesdroppers' channels; None where all are in free space with line of sight."""
 
-    point_positions_m = _stacked("nodes jammers eavesdroppers", "position_m", 3)
-    """Positions of all points [m], in this order, (n, 3)."""
+    destination_positions_m = _stacked("destinations", "position_m", 3)
+    """Position of the destination [m], (1, 3); (0, 3) without one."""
+    destination_antennas = _antennas("destinations")
+    """The destination's antenna; None if it is isotropic."""
+    destination_channels = _channels("destinations")
+    """The destination's channel; None in free space with line of sight."""
+    terminal_positions_m = _stacked("terminals", "position_m", 3)
+    """Positions of the terminals [m], (n_terminals, 3)."""
+    terminal_antennas = _antennas("terminals")
+    """The terminals' antennas; None where all are isotropic."""
+    terminal_channels = _channels("terminals")
+    """The terminals' channels; None where all are in free space with line of sight."""
+    point_positions_m = _stacked("points", "position_m", 3)
+    """Positions of all points [m], (n, 3)."""
 
     @property
-    def points(self) -> tuple[Node | Jammer | Eavesdropper, ...]:
-        """All points: nodes, jammers, eavesdroppers."""
-        return *self.nodes, *self.jammers, *self.eavesdroppers
+    def destinations(self) -> tuple[Destination, ...]:
+        """The destination of a relay; none under another objective."""
+        return () if self.destination is None else (self.destination,)
+
+    @property
+    def terminals(self) -> tuple[Node | Destination, ...]:
+        """Those whose links count: the nodes, and after them the destination."""
+        return *self.nodes, *self.destinations
+
+    @property
+    def points(self) -> tuple[Node | Jammer | Eavesdropper | Destination, ...]:
+        """All points: nodes, jammers, eavesdroppers, destination."""
+        return *self.nodes, *self.jammers, *self.eavesdroppers, *self.destinations
+
+    @property
+    def interferer(self) -> str:
+        """What an interferer of the objective is, in a word: ``"jammer"`` or ``"eavesdropper"``."""
+        return self.objective_record.interferers.removesuffix("s")
+
+    @property
+    def interferers(self) -> tuple[Jammer | Eavesdropper, ...]:
+        """Those in the denominators of the objective's ratios, in order."""
+        return tuple(getattr(self, self.objective_record.interferers))
+
+    def of_interferers(self, key: str) -> Any:
+        """Return what there is of the interferers by such a key, as in ``"positions_m"``."""
+        return getattr(self, f"{self.interferer}_{key}")
 
     def channel_of(self, point: GroundPoint) -> LinkChannel:
         """Return the channel of a point's link, its own or the scenario's, with its antenna's profile."""
@@ -147,7 +191,7 @@ class PointArrays:
     @property
     def has_channels(self) -> bool:
         """Whether any link's gain over free space changes with the position."""
-        channels = (self.source_channels, self.eavesdropper_channels)
+        channels = (self.source_channels, self.eavesdropper_channels, self.destination_channels)
         changes = (np.any(each.rows[:, 0] != CONSTANT) for each in channels if each is not None)
         return self.prisms is not None or any(changes)
 
@@ -165,6 +209,11 @@ class PointArrays:
     def node_names(self) -> tuple[str, ...]:
         """Names of the nodes, in order."""
         return tuple(node.name for node in self.nodes)
+
+    @property
+    def terminal_names(self) -> tuple[str, ...]:
+        """Names of the terminals, in order."""
+        return tuple(terminal.name for terminal in self.terminals)
 
     @property
     def jammer_names(self) -> tuple[str, ...]:
@@ -190,14 +239,19 @@ class PointArrays:
         """
         return read_only([self._noise_w(node) + self._jamming_w(node) for node in self.nodes], (-1,))
 
-    def _noise_w(self, point: Node | Eavesdropper) -> float:
+    @cached_property
+    def destination_noise_w(self) -> Floats:
+        """Noise and jamming at the destination's receiver [W], (1,), as of a node that receives."""
+        return read_only([self._noise_w(end) + self._jamming_w(end) for end in self.destinations], (-1,))
+
+    def _noise_w(self, point: Terminal | Eavesdropper) -> float:
         return point.noise_power_w or self.receiver.noise_power_w
 
-    def _jamming_w(self, node: Node) -> float:
-        if (jamming_w := power_w(node.jamming_w, node.jamming_dbm)) > 0.0:
+    def _jamming_w(self, terminal: Node | Destination) -> float:
+        if (jamming_w := power_w(terminal.jamming_w, terminal.jamming_dbm)) > 0.0:
             return jamming_w
-        distance_squared = np.sum((self.jammer_positions_m - node.position_m) ** 2, axis=-1)
-        gains = [ratio_from_db(node.peak_dbi + jammer.peak_dbi) for jammer in self.jammers]
+        distance_squared = np.sum((self.jammer_positions_m - terminal.position_m) ** 2, axis=-1)
+        gains = [ratio_from_db(terminal.peak_dbi + jammer.peak_dbi) for jammer in self.jammers]
         powers_w = self.receiver.reference_gain * self.jammer_powers_w * gains
         if self.jammer_channels is not None:
             powers_w = powers_w * self.jammer_channels.strengths

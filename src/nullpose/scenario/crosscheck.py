@@ -46,7 +46,7 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
         for kind in POINT_LISTS
         for index, point in enumerate(getattr(scenario, kind) or ())
         if point is not None
-    }
+    } | ({} if scenario.destination is None else {("destination",): scenario.destination})
     yield from key_faults(raw, ("nodes_from",), f"{ONLY_LOCAL}, in place of its own nodes; remove it or them")
     airspace: Airspace | None = scenario.airspace
     listed = getattr(airspace, "no_fly", None) or ()

@@ -1,4 +1,4 @@
-"""Who is on the ground: the nodes to serve, the jammers that drown them, those who listen in."""
+"""Who is on the ground: nodes, jammers, those who listen in, and the far end of a relay."""
 
 from __future__ import annotations
 
@@ -242,34 +242,24 @@ class GroundPoint(Section):
         )
 
 
-class Node(Noisy, Powered, GroundPoint):
-    """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
+_WISH, _JAMMING = at_most_one("weight", "min_sinr_db"), at_most_one("jamming_w", "jamming_dbm")
 
-    Args beside those of a ground point:
-        power_w: transmit power [W]; or else
-        power_dbm: the same in dBm; both may be left out where the drone transmits.
-        weight: the node's margin is its SINR over this; or else
-        min_sinr_db: the SINR that the node requires [dB]; its margin is its SINR over this.
-        noise_w: noise of the node's own receiver [W], for the downlink; or else
+
+class Terminal(Noisy):
+    """An end of a link that counts: what it asks for, and what its receiver gets beside the signal.
+
+    Args:
+        weight: its margin is its SINR over this; or else
+        min_sinr_db: the SINR that it requires [dB]; its margin is its SINR over this.
+        noise_w: noise of its own receiver [W], where the drone transmits to it; or else
         noise_dbm: the same in dBm; or else
         bandwidth_hz: of the receiver, with
         noise_figure_db: from which the noise follows; that of [receiver] when all are left out.
-        jamming_w: jamming power that the node's own receiver gets [W], for the downlink; or else
+        jamming_w: jamming power that its own receiver gets [W], likewise; or else
         jamming_dbm: the same in dBm; worked out from the jammers when both are left out.
     """
 
-    header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
-    letter: ClassVar[str] = "S"
     is_interferer: ClassVar[bool] = False
-    # A node need not transmit where the drone does; a scenario judges whether it has to.
-    ways: ClassVar[tuple[Ways, ...]] = (
-        PLACE,
-        ALTITUDE,
-        at_most_one("power_w", "power_dbm"),
-        at_most_one("weight", "min_sinr_db"),
-        NOISE,
-        at_most_one("jamming_w", "jamming_dbm"),
-    )
 
     weight: Weight | None = optional(
         "What the node's SINR is divided by before the smallest is taken: a node of weight 2 is "
@@ -294,10 +284,46 @@ class Node(Noisy, Powered, GroundPoint):
 
     @property
     def required_sinr(self) -> float:
-        """What the node's SINR is divided by to give its margin: weight, required SINR (linear) or 1."""
+        """What its SINR is divided by to give its margin: weight, required SINR (linear) or 1."""
         if self.min_sinr_db is not None:
             return ratio_from_db(self.min_sinr_db)
         return 1.0 if self.weight is None else self.weight
+
+
+class Node(Terminal, Powered, GroundPoint):
+    """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
+
+    Args beside those of a ground point and of a terminal:
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm; both may be left out where the drone transmits.
+    """
+
+    header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
+    letter: ClassVar[str] = "S"
+    # A node need not transmit where the drone does; a scenario judges whether it has to.
+    ways: ClassVar[tuple[Ways, ...]] = (
+        PLACE,
+        ALTITUDE,
+        at_most_one("power_w", "power_dbm"),
+        _WISH,
+        NOISE,
+        _JAMMING,
+    )
+
+
+class Destination(Terminal, GroundPoint):
+    """The point to which the drone sends what it receives from the nodes.
+
+    Its keys are those of a ground point and of a terminal.
+    """
+
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, _WISH, NOISE, _JAMMING)
+
+    name: Label = Field(
+        default="destination",
+        description="Name, unique among all points on the ground. Left out: destination.",
+        examples=["headquarters"],
+    )
 
 
 class Jammer(Uncertain, Powered, GroundPoint):

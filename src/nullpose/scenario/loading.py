@@ -89,7 +89,7 @@ def _overridden_tables(
 
 def _named_files(tables: PlainTable) -> PlainTable:
     """Pick the names of the files of nodes, fence, zones, antennas and buildings, by key."""
-    holders = {"": tables, "airspace.": tables.get("airspace"), "antenna.": tables.get("antenna")}
+    holders = {"": tables} | {f"{key}.": tables.get(key) for key in ("airspace", "antenna", "destination")}
     for key in ("buildings", *POINT_LISTS):
         members = tables.get(key)
         holders |= {

@@ -69,12 +69,14 @@ class NamedFiles:
             # The nodes take the place of the key, so that faults come in the order of the file.
             tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
             tables["nodes"] = self._nodes(tables["nodes"])
+        profile = ("antenna_file", "antenna_profile", with_profile, ALIKE)
         for kind in POINT_LISTS:
             if isinstance(points := tables.get(kind), list):
-                profile = ("antenna_file", "antenna_profile", with_profile, ALIKE)
                 tables[kind] = [
                     self._with_file(each, f"{kind}[{i}]", *profile) for i, each in enumerate(points)
                 ]
+        if end := tables.get("destination"):
+            tables["destination"] = self._with_file(end, "destination", *profile)
         try:
             scenario = Scenario.from_dict(tables)
         except ScenarioError as error:

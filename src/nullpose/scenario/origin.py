@@ -151,7 +151,7 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
     except ValidationError:
         origin = None
     kinds: dict[str, type[Section]] = dict.fromkeys(POINT_LISTS, GroundPoint)
-    kinds |= {"buildings": Building, "airspace": Airspace}
+    kinds |= {"destination": GroundPoint, "buildings": Building, "airspace": Airspace}
     whole = {**data} | {key: _located(kinds[key], data[key], origin) for key in kinds if key in data}
     if isinstance(airspace := whole.get("airspace"), Mapping) and "no_fly" in airspace:
         whole["airspace"] = {**airspace, "no_fly": _located(NoFlyZone, airspace["no_fly"], origin)}

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import reduce
+from operator import getitem
+from typing import Any
 
 import numpy as np
 
@@ -112,14 +115,14 @@ def _apart(
                 yield (place, f"{key} and {how} are {apart_m:.3g} m apart, must be one place; remove either")
 
 
-def _mixed(points: Mapping[Place, GroundPoint], raw: PlainTable) -> Iterator[tuple[Place, str]]:
+def _mixed(points: Mapping[Place, GroundPoint], raw: Any) -> Iterator[tuple[Place, str]]:
     """Yield the first point that is stated in another way than the first of all.
 
     A point that has both, as in files that are written from scenarios, goes with either.
     """
     firsts: dict[bool, tuple[str, Place]] = {}
     for place, point in points.items():
-        table = raw[str(place[0])][place[1]]
+        table = reduce(getitem, place, raw)
         has_metres = not isinstance(table, Mapping) or table.get("position_m") is not None
         if has_metres != _is_earthly(point):
             keys = [key for key in EARTHLY if getattr(point, key, None) is not None]

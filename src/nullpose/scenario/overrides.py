@@ -136,7 +136,8 @@ def _apply(raw: str | Override, data: PlainTable) -> None:
     if steps[0] == "origin":  # points and areas stay where they are on the Earth
         airspace = data.get("airspace", {})
         points = (point for kind in POINT_LISTS for point in data.get(kind, ()))
-        for table in (*points, airspace, *airspace.get("no_fly", ()), *data.get("buildings", ())):
+        areas = (airspace, *airspace.get("no_fly", ()), *data.get("buildings", ()))
+        for table in (*points, data.get("destination"), *areas):
             for key, metric in EARTHLY.items() if isinstance(table, dict) else ():
                 if key in table:
                     table.pop(metric, None)

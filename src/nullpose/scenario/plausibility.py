@@ -103,7 +103,7 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
         f"{kind}[{index}]": point
         for kind in POINT_LISTS
         for index, point in enumerate(getattr(scenario, kind))
-    }
+    } | ({} if scenario.destination is None else {"destination": scenario.destination})
     metric_m = [point.position_m for point in points.values() if point.lat_deg is None]
     degrees = close_to_degrees(scenario.origin, metric_m, "lat_deg, lon_deg and an altitude")
     return (

@@ -24,7 +24,7 @@ from nullpose.scenario.buildings import MOST_BUILDINGS, Building
 from nullpose.scenario.channel import SHADOW_MARGIN_M, NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
-from nullpose.scenario.ground_points import Eavesdropper, Jammer, Node
+from nullpose.scenario.ground_points import Destination, Eavesdropper, Jammer, Node
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.rules import Choice, list_of_tables
@@ -90,6 +90,9 @@ class Scenario(Section, PointArrays):
     )
     transmitter: Transmitter | None = optional(
         "A table headed [transmitter]: the drone's own power (W or dBm), where it transmits."
+    )
+    destination: Destination | None = optional(
+        "A table headed [destination]: the point that the drone sends to, where it is a relay."
     )
     nodes: Annotated[tuple[Node, ...], list_of_tables("nodes", fewest=1)] = Field(
         description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
@@ -255,8 +258,8 @@ class Scenario(Section, PointArrays):
 
     @property
     def has_margins(self) -> bool:
-        """Whether any node states a weight or a required SINR."""
-        return any(node.weight is not None or node.min_sinr_db is not None for node in self.nodes)
+        """Whether any node, or the destination, states a weight or a required SINR."""
+        return any(each.weight is not None or each.min_sinr_db is not None for each in self.terminals)
 
     @property
     def states_antennas(self) -> bool:

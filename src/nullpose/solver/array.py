@@ -10,6 +10,7 @@ import numpy as np
 from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import USUAL, FloatArray, Quantity
+from nullpose.objectives.min_sinr import with_margins
 from nullpose.physics import Pose
 from nullpose.physics.array import ComplexArray, digital_sinr, digital_weights, placed_elements
 from nullpose.physics.evaluate import links_of
@@ -85,10 +86,7 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
     yaw_rad = math.remainder(search.state[3], 2.0 * math.pi)
     pose = Pose(search.state[:3], 0.0, 0.0, yaw_rad)
     places = placed_elements(scenario, pose)
-    ratios = {"sinr": digital_sinr(scenario, pose.position_m, places)}
-    if scenario.has_margins:
-        ratios["margin"] = ratios["sinr"] / scenario.node_required_sinr
-    links = links_of(scenario, ratios)
+    links = links_of(scenario, with_margins(scenario, digital_sinr(scenario, pose.position_m, places)))
     reached = bound is None or bound.value <= math.exp(search.best) * (1.0 + options.target)
     return Answer(
         scheme="array-digital",

@@ -74,8 +74,8 @@ def solve_by_scheme(
 
 def _note_on_nulls(scenario: Scenario, outcome: Outcome) -> str:
     """Name whips whose perfect nulls keep a wide gap from closing, and what to state; empty if none do."""
-    name, value = scenario.objective_record.interferers, math.exp(outcome.incumbent.log_value)
-    whips = [f"{name}[{at}]" for at, point in enumerate(getattr(scenario, name)) if point.leak == 0.0]
+    name, value = f"{scenario.interferer}s", math.exp(outcome.incumbent.log_value)
+    whips = [f"{name}[{at}]" for at, point in enumerate(scenario.interferers) if point.leak == 0.0]
     is_wide = outcome.reason and (outcome.upper_bound or 0.0) > _WIDE * value
     if not (whips and is_wide) or getattr(scenario.antenna_record, "leak", 1.0) > 0.0:
         return ""

@@ -48,7 +48,7 @@ class CustomSearch(PositionSearch):
 
     def __init__(self, scenario: Scenario, family: Family, fields: Sequence[AxisField], seed: int) -> None:
         super().__init__(self.value_at, family, seed)
-        points = (*scenario.nodes, *getattr(scenario, scenario.objective_record.interferers))
+        points = (*scenario.nodes, *scenario.interferers, *scenario.destinations)
         laws = ((j, scenario.custom_law(point)) for j, point in enumerate(points))
         self.laws = {j: law for j, law in laws if law is not None}
         self.fields = fields

@@ -188,7 +188,7 @@ def solve_many(
 def _check(scenarios: Sequence[Scenario]) -> None:
     require_usage(len(scenarios), "scenarios: given none; allowed: one or more")
     for index, scenario in enumerate(scenarios):
-        if scenario.objective_record.transmits or scenario.array is not None:
+        if Quantity.of(scenario).is_rate or scenario.array is not None:
             kind = "an array" if scenario.array is not None else "a secrecy rate"
             raise UsageError(
                 f"scenarios[{index}]: asks for {kind}; allowed: the smallest SINR or margin of one dipole; "

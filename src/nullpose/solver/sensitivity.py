@@ -148,9 +148,8 @@ class _Search:
         )
         if scenario.array is not None:
             self.ratios_under = partial(array_ratios_under, scenario, pose)
-        point = scenario.objective_record.interferers.removesuffix("s")
-        self.offsets, self.unmoved = f"{point}_offsets_m", ErrorCase.none(scenario)
-        sides = [3, 3] + [2] * len(getattr(scenario, f"{point}s"))
+        self.offsets, self.unmoved = f"{scenario.interferer}_offsets_m", ErrorCase.none(scenario)
+        sides = [3, 3] + [2] * len(scenario.interferers)
         self.first = np.cumsum([0, *sides[:-1]])  # coordinate of each ball
         self.ball = np.repeat(np.arange(len(sides)), sides)
 

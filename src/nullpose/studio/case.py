@@ -93,7 +93,7 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     Args:
         scenario: as stated.
     """
-    channels = (scenario.source_channels, scenario.eavesdropper_channels)
+    channels = (scenario.source_channels, scenario.eavesdropper_channels, scenario.destination_channels)
     traits = (
         scenario.objective,
         scenario.airframe,
@@ -105,7 +105,7 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
         scenario.has_custom_channels,
         scenario.prisms is None,
         bool(scenario.jammers),
-        len(scenario.nodes),
+        len(scenario.terminals),
     )
     if traits not in _offered:  # asked at every step of a drag
         _offered[traits] = tuple(case for case in CASES if case.missing(scenario) is None) or (OPTIMUM,)

@@ -55,7 +55,7 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
         look: the page's colours.
     """
     first, answer = state.answer(state.case), state.answer(state.cases[slot])
-    if answer is None or len(answer.result.links) != len(state.scenario.nodes):
+    if answer is None or len(answer.result.links) != len(state.scenario.terminals):
         return {}
     result, pose = answer.result, answer.result.pose
     antenna = result.scenario.antenna_record
@@ -126,7 +126,7 @@ def _null(
 def _links(result: Result, range_db: tuple[float, float], size_m: float, look: Look) -> Shapes:
     """Draw lines to the nodes, brighter and wider for a higher SINR, with an outline."""
     sinr_db = np.array([link.sinr_db for link in result.links])
-    nodes = result.scenario.node_positions_m
+    nodes = result.scenario.terminal_positions_m
     ends = np.stack([nodes, np.broadcast_to(result.pose.position_m, nodes.shape)], axis=1)
     colours = np.repeat(linear_colours(scale_colours(sinr_db, *range_db))[:, None], 2, axis=1)
     quarter = np.digitize(sinr_db, np.linspace(*range_db, len(_WIDTHS) + 1)[1:-1])

@@ -158,6 +158,7 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
         return _vehicle_entries(state.scenario)
     kind, index = key
     member, path = state.members(kind)[index], f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
+    path = path.replace("destinations[0]", "destination")
     labels = {"name": "name"} | _keys(member)
     entries = [Entry(f"{path}.{key}", label, _text(getattr(member, key))) for key, label in labels.items()]
     if isinstance(member, NoFlyZone):

@@ -180,7 +180,7 @@ _SLANT = np.array(
 ) / math.sqrt(3.0)
 
 MARKS = {
-    "nodes": prism_mesh(shapely.box(-0.5, -0.5, 0.5, 0.5), 0.0, 1.0),
+    **dict.fromkeys(("nodes", "destinations"), prism_mesh(shapely.box(-0.5, -0.5, 0.5, 0.5), 0.0, 1.0)),
     "jammers": merged(_four(_tube(0.22, -1.15, 1.15, 8).placed(_SLANT, [0.0, 0.0, 0.8]))),
     "eavesdroppers": revolved_mesh([0.0, 0.8, 0.0], [0.0, 1.0, 2.0], 4),
 }

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from nullpose.errors import checked, require_usage
-from nullpose.physics import objective_value, to_db
+from nullpose.physics import destination_snr, objective_value, to_db
 from nullpose.physics.sinr import received_from_sources_w
 from nullpose.physics.types import FloatArray
 from nullpose.problem.build import build_family
@@ -187,9 +187,12 @@ def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[],
 
 
 def _served(scenario: Scenario, positions_m: FloatArray, axes: FloatArray) -> FloatArray:
-    """Compute the smallest received power over its requirement, the jammers ignored."""
+    """Compute the smallest SNR over its requirement, the jammers ignored."""
     received_w = received_from_sources_w(scenario, positions_m, axes)[..., : len(scenario.nodes)]
-    return np.asarray(np.min(received_w / scenario.node_required_sinr, axis=-1))
+    snr = received_w / scenario.receiver.noise_power_w
+    if scenario.destinations:
+        snr = np.append(snr, destination_snr(scenario, positions_m, axes), axis=-1)
+    return np.asarray(np.min(snr / scenario.terminal_required_sinr, axis=-1))
 
 
 def _ranked_axes(

@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 def _fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField] | None:
     from nullpose.problem.axis_field import AxisField
 
-    if len(scenario.nodes) != 2:
+    if len(scenario.terminals) != 2:
         return None
-    return {"broadside": AxisField.broadside(*scenario.node_positions_m)}
+    return {"broadside": AxisField.broadside(*scenario.terminal_positions_m)}
 
 
 def _note(scenario: Scenario, fields: tuple[str, ...], chosen: int) -> str:
     if fields:
         return ""
     return (
-        f"{len(scenario.nodes)} node(s), where eq. 3.4 is for two: the axis maximises the smallest received "
-        "node power, the jammers ignored"
+        f"{len(scenario.terminals)} node(s){' with the destination' * len(scenario.destinations)}, where eq. "
+        "3.4 is for two: the axis maximises the smallest received node power, the jammers ignored"
     )
 
 

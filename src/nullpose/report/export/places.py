@@ -63,7 +63,7 @@ def map_place(origin: Origin, position_m: ArrayLike) -> MapPlace:
 
 
 def marked_points(solution: Result) -> Iterator[tuple[ArrayLike, PlainTable]]:
-    """Yield the pose, the nodes, the jammers and the eavesdroppers: position in metres, and properties."""
+    """Yield the pose and all points on the ground: position in metres, and properties."""
     scenario, binding = solution.scenario, binding_nodes(solution)
     objective = solution.objective
     properties: PlainTable = {
@@ -83,9 +83,9 @@ def marked_points(solution: Result) -> Iterator[tuple[ArrayLike, PlainTable]]:
         nominal = solution.details.nominal
         named = {"kind": "pose-as-stated", "name": "best pose as stated", "guaranteed": nominal.guaranteed}
         yield nominal.pose.position_m, named | _angles(scenario, nominal.pose)
-    for node, link in zip(scenario.nodes, solution.links, strict=True):
-        values = dict(link.values)
-        yield node.position_m, {"kind": "node", "name": node.name, "binding": node.name in binding, **values}
+    for node, link in zip(scenario.terminals, solution.links, strict=True):
+        about = {"kind": type(node).__name__.lower(), "name": node.name, "binding": node.name in binding}
+        yield node.position_m, about | dict(link.values)
     hidden: list[Jammer | Eavesdropper] = [*scenario.jammers, *scenario.eavesdroppers]
     for point in hidden:
         kind = {"kind": type(point).__name__.lower(), "name": point.name}

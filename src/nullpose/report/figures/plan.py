@@ -22,7 +22,7 @@ from nullpose.report.figures.stage import ALONE, AXIS, Stage, limits_m
 from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, MARKS, Look, house_style, inches
 from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import MINUS, capitalised
-from nullpose.scenario import Eavesdropper, Jammer, Node, Scenario
+from nullpose.scenario import Eavesdropper, Jammer, Scenario, Terminal
 from nullpose.solver import Result
 from nullpose.study import Field
 
@@ -75,7 +75,7 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
             name = stage.key.get((False, point.name), point.name)
             number = "" if stage.key else stage.numbers.get(point.name, "")
             write_name(axes, name, place, number=number, is_bold=point.name in stage.worst)
-        if stage.uncertain and not isinstance(point, Node):
+        if stage.uncertain and not isinstance(point, Terminal):
             axes.plot(
                 *_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=f"where the {kind} may be"
             )

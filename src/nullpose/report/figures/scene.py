@@ -19,7 +19,7 @@ from nullpose.report.figures.names import write_name
 from nullpose.report.figures.pattern import ball_rings
 from nullpose.report.figures.stage import Stage, limits_m
 from nullpose.report.figures.style import FORBIDDEN, GREY, INK, MARKS, NULL, Look
-from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone
+from nullpose.scenario import Eavesdropper, Jammer, NoFlyZone, Terminal
 
 _EDGE = 0.04  # ticks nearer to a corner run into those of the next axis
 _MERIDIANS, _PARALLELS, _STEPS = 8, 3, 6  # lines of a set from pole to pole, around them, points between two
@@ -50,7 +50,7 @@ def draw_panel(
         line: Look = {"color": colour, "label": kind}
         mark: Look = line | {"marker": marker, "s": 18 if stage.view.is_small else 38}
         axes.scatter(*place, zorder=3.0 if kind == "node" else 6.0, depthshade=False, **mark)
-        if isinstance(point, Node):
+        if isinstance(point, Terminal):
             draw_line(axes, place, position, linewidth=0.8, alpha=0.7, zorder=2, **line)
         else:
             draw_line(axes, position, place, linewidth=1.5, linestyle=(0, (3, 1.5)), zorder=6.6, **line)

@@ -14,7 +14,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.geometry import outline_m
 from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import capitalised, with_unit
-from nullpose.scenario import Eavesdropper, Jammer, Node, NoFlyZone, Scenario
+from nullpose.scenario import Destination, Eavesdropper, Jammer, Node, NoFlyZone, Scenario, Terminal
 from nullpose.solver import Result
 
 # Lengths drawn, as shares of the scene's extent.
@@ -116,13 +116,13 @@ class Stage:
         )
 
     @property
-    def points(self) -> list[tuple[str, Node | Jammer | Eavesdropper]]:
+    def points(self) -> list[tuple[str, Node | Destination | Jammer | Eavesdropper]]:
         """All points with their kinds, those that a null is for before the nodes."""
         scene = self.scenario
         return [
             *(("jammer", point) for point in scene.jammers),
             *(("eavesdropper", point) for point in scene.eavesdroppers),
-            *(("node", point) for point in scene.nodes),
+            *(("node", point) for point in scene.terminals),
         ]
 
     @property
@@ -159,7 +159,7 @@ class Stage:
 
 def _key_of(scenario: Scenario) -> dict[tuple[bool, str], str]:
     """Number the nodes and letter other points and zones; empty if names have space, or a key has none."""
-    nodes = [node.name for node in scenario.nodes]
+    nodes = [node.name for node in scenario.terminals]
     others = [each.name for points in (scenario.jammers, scenario.eavesdroppers) for each in points]
     zones = [zone.name for zone in scenario.airspace.no_fly]
     longest = max(map(len, (*nodes, *others)))
@@ -175,7 +175,7 @@ def _key_of(scenario: Scenario) -> dict[tuple[bool, str], str]:
 def limits_m(stage: Stage) -> tuple[FloatArray, FloatArray]:
     """Compute the low and the high corner of the space drawn, each (3,), metres."""
     extent_m, points = stage.extent_m, stage.places_m
-    hidden = [point for _, point in stage.points if not isinstance(point, Node) and stage.uncertain]
+    hidden = [point for _, point in stage.points if not isinstance(point, Terminal) and stage.uncertain]
     points = np.vstack([points, *map(set_box_m, hidden)])
     positions = np.array([pose.position_m[:2] for pose in stage.poses])
     around = [(points[:, :2], _MARGIN), (positions, AXIS * stage.view.pattern)]  # the latter for the pattern

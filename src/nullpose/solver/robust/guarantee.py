@@ -213,7 +213,7 @@ class Inner:
         # a null on the node is exact in the case, not in its rounded evaluation
         value = float(ratios_under(self.scenario, p, u, case)[node, eavesdropper]) if worst > 0.0 else 0.0
         return RatioGuarantee(
-            node=self.scenario.node_names[node],
+            node=self.scenario.terminal_names[node],
             eavesdropper=listeners[eavesdropper] if listeners else "",
             nominal=float(nominal[node, eavesdropper]),
             lower=float(lower),

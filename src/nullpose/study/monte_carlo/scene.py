@@ -15,6 +15,7 @@ from nullpose.scenario import (
     Array,
     Building,
     Channel,
+    Destination,
     Eavesdropper,
     GroundPoint,
     Jammer,
@@ -41,8 +42,8 @@ class SceneBase(Section):
         file: a scenario file.
         files: several, which are the scenes in turn.
         scenarios: what the files hold; read together with the spec.
-        objective, origin, airspace, airframe, antenna, array, channel, receiver, transmitter: as in a
-            scenario file, like buildings.
+        objective, origin, airspace, airframe, antenna, array, channel, receiver, transmitter, destination: as
+            in a scenario file, like buildings.
         nodes, jammers, eavesdroppers: points that are not drawn, as in a scenario file.
     """
 
@@ -77,6 +78,7 @@ class SceneBase(Section):
     )
     receiver: Receiver | None = optional("A table headed [scene.receiver].")
     transmitter: Transmitter | None = optional("A table headed [scene.transmitter].")
+    destination: Destination | None = optional("A table headed [scene.destination].")
     nodes: Annotated[tuple[Node, ...], list_of_tables("scene.nodes")] = Field(
         default=(), description="Tables headed [[scene.nodes]], where they are not drawn."
     )
@@ -134,6 +136,7 @@ class SceneBase(Section):
         values = {key: getattr(self.whole(index), key) for key in _TABLES if key not in drawn}
         if drawn:
             values |= {kind: tuple(map(_in_metres, values[kind])) for kind in POINT_LISTS if kind in values}
+            values["destination"] = values["destination"] and _in_metres(values["destination"])
         return {key: value for key, value in values.items() if value is not None}
 
 

@@ -155,7 +155,7 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
             alike[repr(_options_of(spec, case))].append(case)
     vehicles: dict[Airframe | None, dict[At, Scenario]] = defaultdict(dict)  # by the scene's own
     for at, scene in scenes.items():
-        if not scene.objective_record.transmits:
+        if not Quantity.of(scene).is_rate:
             vehicles[scene.airframe][at] = scene.without_array
     rows = (
         row
@@ -198,5 +198,5 @@ def _columns_of(
     mount_rad = 0.0 if airframe is None else airframe.mount_rad
     pose = Pose(many.position_m[at], many.roll_rad[at], many.pitch_rad[at], many.yaw_rad[at], mount_rad)
     columns = _found(scene, status, pose, many.value[at], many.upper_bound[at], many.relative_gap[at])
-    node = scene.node_names[int(many.binding_node[at])]
+    node = scene.terminal_names[int(many.binding_node[at])]
     return columns | {"reason": reason, "binding_node": node, "boxes": int(many.boxes[at])}
