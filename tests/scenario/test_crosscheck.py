@@ -28,6 +28,7 @@ SINR_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
     ({"eavesdroppers": [THERE]}, {"eavesdroppers": 'remove it, or write objective = "secrecy-rate"'}),
     ({"eavesdroppers": (Eavesdropper(**THERE),)}, {"eavesdroppers": "no meaning"}),
     ({"transmitter": Transmitter(power_w=1)}, {"transmitter": 'write objective = "secrecy-rate"'}),
+    ({"destination": THERE}, {"destination": 'remove it, or write objective = "relay"'}),
     ({"nodes": [AT | {"power_w": 1, "noise_w": 1}]}, {"nodes[0].noise_w": "no meaning"}),
     (
         {"nodes": [Node(**AT, noise_dbm=1.0)]},
@@ -37,10 +38,38 @@ SINR_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
     ({"nodes": [AT]}, {"nodes[0]": "needs power_w or power_dbm; add it"}),
 ]
 
+POWERED = AT | {"power_w": 1.0}
+DOWNLINK = small(objective="downlink", transmitter={"power_w": 1.0}, nodes=[AT])
+DOWNLINK_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
+    ({"transmitter": None}, {"transmitter": "a table headed [transmitter]; add it"}),
+    ({"eavesdroppers": [THERE]}, {"eavesdroppers": 'write objective = "secrecy-rate"'}),
+    ({"destination": THERE}, {"destination": 'remove it, or write objective = "relay"'}),
+    ({"nodes": [AT | {"weight": 2.0, "noise_w": 1.0, "jamming_dbm": 3.0}]}, {}),
+]
+RELAY = DOWNLINK | {"objective": "relay", "nodes": [POWERED], "destination": THERE}
+RELAY_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
+    ({"destination": None}, {"destination": "a table headed [destination]; add it"}),
+    ({"transmitter": None}, {"transmitter": "a table headed [transmitter]; add it"}),
+    ({"nodes": [AT]}, {"nodes[0]": "needs power_w or power_dbm; add it"}),
+    ({"nodes": [POWERED | {"noise_w": 1.0}]}, {"nodes[0].noise_w": 'write objective = "secrecy-rate"'}),
+    ({"destination": AT}, {"destination.position_m": "the place of nodes[0] already; nodes and destination"}),
+    ({"destination": THERE | {"name": "S1"}}, {"destination.name": "the name of nodes[0] already"}),
+    ({"destination": THERE | {"power_w": 1.0}}, {"destination.power_w": "unknown key"}),
+    ({"destination": [THERE]}, {"destination": "must be a table headed [destination]"}),
+    ({"destination": {"noise_w": 1.0}}, {"destination.position_m": "missing"}),
+    ({"destination": THERE | {"noise_w": -1.0}}, {"destination.noise_w": "must be a power"}),
+    ({"destination": THERE | {"weight": 1.0, "min_sinr_db": 1.0}}, {"destination": "both weight and min"}),
+    ({"destinaton": THERE, "destination": None}, {"destinaton": 'did you mean "destination"?'}),
+    ({"eavesdroppers": [AT]}, {"eavesdroppers": "no meaning", "eavesdroppers[0].position_m": "different"}),
+    ({"destination": THERE | {"antenna": "profile"}}, {"destination.antenna_profile": "missing"}),
+]
+
 
 @pytest.mark.parametrize(
     ("data", "faults"),
     [
+        *((DOWNLINK | changes, faults) for changes, faults in DOWNLINK_CASES),
+        *((RELAY | changes, faults) for changes, faults in RELAY_CASES),
         *((SECRECY | changes, faults) for changes, faults in SECRECY_CASES),
         *((small(**changes), faults) for changes, faults in SINR_CASES),
     ],
@@ -48,7 +77,7 @@ SINR_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
 def test_what_an_objective_needs_and_what_has_no_meaning(
     data: dict[str, Any], faults: dict[str, str]
 ) -> None:
-    """Eavesdroppers, a transmitter and noise of nodes belong to the secrecy rate, weights to the SINR."""
+    """What belongs to a drone that transmits, to eavesdroppers and to a destination is refused elsewhere."""
     messages = faults_of({key: value for key, value in data.items() if value is not None})
     assert messages.keys() == faults.keys()
     assert all(words in messages[path] for path, words in faults.items())

@@ -29,6 +29,7 @@ class Quantity:
         unit: dB, or bits/s/Hz.
         ratio: the name of the power ratio behind it: SINR at the drone, SNR at a node that receives.
         field: its name among the numbers of a link, ``values`` of :class:`nullpose.physics.Link`.
+        terminals: over whom the smallest is taken.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Quantity:
     unit: str
     ratio: str
     field: str
+    terminals: str = "the nodes"
 
     @classmethod
     def named(cls, name: str) -> Quantity:
@@ -61,6 +63,11 @@ class Quantity:
     def smallest(self) -> str:
         """The objective in words, as in "smallest SINR"."""
         return f"smallest {self.noun}"
+
+    @property
+    def smallest_over(self) -> str:
+        """The objective in words with those who count, as in "smallest SINR over the nodes"."""
+        return f"{self.smallest} over {self.terminals}"
 
     def in_unit(self, value: float) -> float:
         """Convert a number to the quantity's unit: to dB, or leave it as it is if it is a rate."""

@@ -14,9 +14,10 @@ if TYPE_CHECKING:
     from nullpose.physics import Reception
     from nullpose.scenario import Scenario
 
-_SINR = Quantity("min_hop_sinr", "SINR", "and the destination an SINR", "SINR", "dB", "SINR", "sinr")
+_BOTH = "the nodes and the destination"
+_SINR = Quantity("min_hop_sinr", "SINR", "and the destination an SINR", "SINR", "dB", "SINR", "sinr", _BOTH)
 _MARGIN = Quantity(
-    "min_hop_margin", "margin", "and the destination a margin", "margin", "dB", "SINR", "margin"
+    "min_hop_margin", "margin", "and the destination a margin", "margin", "dB", "SINR", "margin", _BOTH
 )
 
 

@@ -165,7 +165,7 @@ def _values(
     if rule:
         cells.insert(rule, {})
     return table(
-        f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})",
+        f"{capitalised(quantity.smallest_over)} ({quantity.unit})",
         cells,
         bold=bold,
         left=["suffices", "status"],

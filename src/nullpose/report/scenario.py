@@ -211,10 +211,9 @@ def _between(values: Sequence[float]) -> str:
 def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
     receiver, airframe, array = scenario.receiver, scenario.airframe, scenario.array
     attitude_deg, position_m = receiver.attitude_error_deg, receiver.position_error_m
-    also = " and the destination" * len(scenario.destinations)
     sender, distance_m = scenario.transmitter, (scenario.channel or Channel()).gain_distance_m
     return {
-        "maximised": f"the {Quantity.of(scenario).smallest} over the nodes{also}",
+        "maximised": f"the {Quantity.of(scenario).smallest_over}",
         "array": None if array is None else array_words(array),
         "airframe": None if airframe is None else airframe_words(airframe),
         "antenna": f"{scenario.antenna_record.label}{_gain_words(scenario.antenna)}, {reach_words(airframe)}",
@@ -268,7 +267,7 @@ def _points_table(
     if best:
         columns["nearest (m)"] = [cell(each["nearest_m"], ".6g") for each in numbers]
         columns[best] = [cell(each["best_power_to_noise_db"], ".2f") for each in numbers]
-    return table(f"{noun.capitalize()}s", rows(columns))
+    return table(f"{noun.capitalize()}{'s' * (noun != 'destination')}", rows(columns))
 
 
 def _antenna_words(point: _Point) -> str | None:

@@ -139,7 +139,7 @@ def _frame(
     axes.set(
         xlim=(low - beside, high + beside),
         ylim=(places[-1] + 0.6, -0.6),
-        xlabel=f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})",
+        xlabel=f"{capitalised(quantity.smallest_over)} ({quantity.unit})",
     )
     return float(low), float(high)
 

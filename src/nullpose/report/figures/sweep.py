@@ -41,7 +41,7 @@ def value_label(table: ResultTable) -> str:
     quantity = table.rows[0].objective.quantity
     if table.rows[0].tilt:
         return "Least tilt (deg)"
-    return f"{capitalised(quantity.smallest)} over the nodes ({quantity.unit})"
+    return f"{capitalised(quantity.smallest_over)} ({quantity.unit})"
 
 
 def _numbers(rows: Iterable[ResultRow]) -> FloatArray:

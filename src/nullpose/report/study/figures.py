@@ -74,7 +74,7 @@ def _distributions(summary: Summary, points: Sequence[int]) -> Figure:
         axes.set_yticks(*_SHARES)
 
     note = f"Bands: {percent(CONFIDENCE)} confidence (Dvoretzky-Kiefer-Wolfowitz). Dotted: the worst tenth."
-    across = f"{summary.quantity.smallest} over the nodes ({summary.quantity.unit})"
+    across = f"{summary.quantity.smallest_over} ({summary.quantity.unit})"
     return _panels(
         summary, points, draw, across=across, up="CDF over scenes", note=note, height=2.2, looks=looks
     )
