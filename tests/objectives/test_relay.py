@@ -10,8 +10,8 @@ from benchmarks.soundness.features import make_feature_scene
 from hypothesis import given, settings, strategies as st
 
 from nullpose.certificate import verify
-from nullpose.physics import Pose, destination_snr, evaluate, node_snr, sinr
-from nullpose.scenario import Jammer, Scenario
+from nullpose.physics import Pose, destination_snr, evaluate, node_snr, objective_value, sinr
+from nullpose.scenario import Jammer, Scenario, load
 from nullpose.solver import Result, solve
 from nullpose.solver.certificate_from_proof import certificate_of
 
@@ -155,3 +155,30 @@ def test_the_destination_is_kept_clear_of(seed: int) -> None:
     )
     pose = solve(scenario, certify=False).pose
     assert np.linalg.norm(pose.position_m - place) >= 3.0 * (1.0 - 1e-9)
+
+
+@pytest.fixture(scope="module")
+def town() -> Scenario:
+    """The town whose buildings hide nodes, with a destination in it."""
+    more = {"objective": "relay", "transmitter": {"power_dbm": 10.0}}
+    end = {"position_m": [5.0, -75.0, 2.0], "noise_dbm": -95.0}
+    return Scenario.from_dict(load("examples/town.toml").to_dict() | more | {"destination": end})
+
+
+def test_buildings_hide_the_destination_like_a_node(town: Scenario) -> None:
+    """Its link is clear and blocked where that of a node at its place is, and no pose exceeds the bound."""
+    rng, result = np.random.default_rng(5), solve(town, gap=1e-2)
+    low_m, high_m = [-100.0, -100.0, 20.0], [100.0, 100.0, 120.0]
+    positions_m = rng.uniform(low_m, high_m, (4000, 3))
+    positions_m[2000:] = rng.normal(result.pose.position_m, 5.0, (2000, 3)).clip(low_m, high_m)
+    positions_m = positions_m[town.open_airspace.allows(positions_m)]
+    axes = rng.normal(size=positions_m.shape)
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    _, sends = hops_alone(town)
+    snr = destination_snr(town, positions_m, axes)
+    np.testing.assert_array_equal(snr, node_snr(sends, positions_m, axes))
+    clear = snr / destination_snr(town.model_copy(update={"buildings": ()}), positions_m, axes)
+    assert 0.02 < np.mean(clear < 0.9) < 0.98
+    values = objective_value(town, positions_m, axes)
+    assert np.max(values) <= result.objective.upper_bound
+    assert result.objective.value == objective_value(town, result.pose.position_m, result.pose.antenna_axis)

@@ -148,3 +148,20 @@ def test_rates_keep_their_unit() -> None:
     assert "guaranteed: smallest secrecy rate" in text
     assert "bits/s/Hz" in text
     assert " dB" not in text
+
+
+@pytest.mark.parametrize(
+    ("power_dbm", "words"),
+    [
+        (-40.0, "the hop that binds: from the drone to command post"),
+        (20.0, "both hops bind: from spring to the drone, and from the drone to command post"),
+        (40.0, "the hop that binds: from ford, mill, spring to the drone"),
+    ],
+)
+def test_a_relay_says_which_hop_binds(power_dbm: float, words: str) -> None:
+    """A weak drone is the bottleneck itself, a strong one its nodes; between, the pose makes both equal."""
+    relay = apply_overrides(load(EXAMPLES / "relay.toml"), [f"transmitter.power_dbm={power_dbm}"])
+    text = text_of(result_view(solve(relay)))
+    assert words in text
+    assert "It is part of the destination's noise." in text
+    assert len(re.findall(r"^command post ", text, flags=re.MULTILINE)) == 1

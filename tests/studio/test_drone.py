@@ -15,6 +15,7 @@ from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.drawing import Shape, Shapes
 from nullpose.studio.drone import drone_shapes
+from nullpose.studio.ground import ground_shapes
 from nullpose.studio.look import LIGHT
 from nullpose.studio.state import State
 
@@ -60,3 +61,16 @@ def test_body_rod_and_null_have_the_attitude(roll: float, pitch: float, yaw: flo
     ways = ways[np.linalg.norm(ways, axis=1) > 1e-3]
     cosines = ways @ below / np.linalg.norm(ways, axis=1) / reach_m
     assert cosines == pytest.approx(np.full(len(ways), math.sqrt(0.99)), abs=1e-4)
+
+
+def test_a_relay_has_a_link_to_its_destination() -> None:
+    """A line runs from the drone to every node and to the destination, which has a mark with its name."""
+    relay = load(Path(__file__).parents[2] / "examples" / "relay.toml")
+    state = State(scenario=relay).with_event(answer_of(1, OPTIMUM, solve(relay, certify=False)))
+    shapes = drone_shapes(state, 0, SIZE_M, [60.0, -40.0, 30.0], LIGHT)
+    ends = [
+        shape.values["points"] for name, shape in shapes.items() if "links-" in name and "out" not in name
+    ]
+    assert sum(map(len, ends)) == len(relay.nodes) + 1
+    marks = ground_shapes(state, SIZE_M, LIGHT)
+    assert marks["/points/destinations-0/label"].values["text"] == "command post"

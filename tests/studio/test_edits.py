@@ -16,7 +16,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 PAPER = State(scenario=load(EXAMPLES / "paper.toml"))
 
 
-@pytest.mark.parametrize("name", ["eavesdropper", "field", "no-fly", "robust", "airframe"])
+@pytest.mark.parametrize("name", ["eavesdropper", "field", "no-fly", "robust", "airframe", "relay"])
 def test_what_is_typed_unchanged_changes_nothing(name: str) -> None:
     """The texts that are shown, taken as they are, leave the very same view."""
     view = State(scenario=load(EXAMPLES / f"{name}.toml"))

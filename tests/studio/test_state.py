@@ -3,7 +3,7 @@
 import pytest
 
 from nullpose.errors import ScenarioError
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, load
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.state import State
 
@@ -62,3 +62,15 @@ def test_a_case_is_not_compared_with_itself(paper: Scenario) -> None:
     """Choosing the compared case as the first compares nothing."""
     vertical = case_named("Vertical")
     assert State(scenario=paper, compared=vertical).with_case(vertical).compared is None
+
+
+def test_a_relays_destination_is_moved_like_a_node() -> None:
+    """It is one of the points; another place is its own alone, and without it there is no relay."""
+    view = State(scenario=load("examples/relay.toml"))
+    key = ("destinations", 0)
+    assert dict(view.points())[key].name == "command post"
+    moved = view.moved(key, (700.0, 90.0, 5.0))
+    assert moved.scenario.destination.position_m == (700.0, 90.0, 5.0)
+    assert moved.scenario.nodes == view.scenario.nodes
+    with pytest.raises(ScenarioError, match=r"headed \[destination\]"):
+        view.with_members("destinations", [])

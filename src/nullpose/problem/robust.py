@@ -37,7 +37,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         scenario: nodes, jammers or eavesdroppers, receiver and airspace.
         cases: one or more.
     """
-    nominal, moved = build_family(scenario, any_channel=True), interferer_field(scenario, "offsets")
+    nominal, moved = build_family(scenario, any_channel=True), f"{scenario.interferer}_offsets_m"
     copies: dict[bytes, tuple[int, FloatArray, FloatArray, int]] = {}  # each moved and turned point once
 
     def copied(point: int, point_m: FloatArray, rotation: FloatArray) -> int:
@@ -88,13 +88,8 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
 
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
     """Collect the matrices of the sets in which each point of the family may be, (m, 3, 3), metres."""
-    sets_m = getattr(scenario, interferer_field(scenario, "uncertainty"))
-    return _of_points(build_family(scenario, any_channel=True), scenario, sets_m)
-
-
-def interferer_field(scenario: Scenario, kind: str) -> str:
-    """Name a field about those in the denominators, as in ``"jammer_offsets_m"``."""
-    return f"{scenario.interferer}_{kind}_m"
+    family = build_family(scenario, any_channel=True)
+    return _of_points(family, scenario, scenario.of_interferers("uncertainty_m"))
 
 
 def _of_points(nominal: Family, scenario: Scenario, of_interferers: FloatArray) -> FloatArray:

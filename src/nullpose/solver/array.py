@@ -78,8 +78,8 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
     """
     require_usage(
         scenario.objective == USUAL,
-        f"array: given a scenario with objective {scenario.objective!r}; allowed: one "
-        "under which the drone receives; arrays are not there for others",
+        f'array: given a scenario with objective = "{scenario.objective}"; allowed: objective = "{USUAL}"; '
+        "arrays are not there for others; remove [array]",
     )
     search = ArraySearch(scenario, array, options.seed)
     bound = _search_and_prove(search, options)

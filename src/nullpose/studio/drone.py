@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from nullpose.antenna import Antenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import axis_angle_rad
-from nullpose.scenario import GroundPoint
 from nullpose.solver import Result
 from nullpose.studio.drawing import Shape, Shapes, coloured_mesh, frame, label, lines, mesh
 from nullpose.studio.ground import CROWD
@@ -113,7 +112,7 @@ def _null(
         ),
     }
     if is_first:
-        others: tuple[GroundPoint, ...] = (*result.scenario.jammers, *result.scenario.eavesdroppers)
+        others = result.scenario.interferers  # which alone a null is for
         angles = [(axis_angle_rad(result.pose, point.position_m), point.name) for point in others]
         angle_rad, name = min(angles, default=(0.0, ""))
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""

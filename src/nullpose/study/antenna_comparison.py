@@ -72,8 +72,7 @@ def with_antennas(scenario: Scenario, *, drone: bool, ground: bool) -> Scenario:
         ground: whether to keep those on the ground.
     """
     changed: dict[str, object] = {} if drone else {"antenna": Antenna(gain_dbi=scenario.antenna_gain_dbi)}
-    for kind in () if ground else POINT_LISTS:
-        changed[kind] = tuple(point.isotropic for point in getattr(scenario, kind))
-    if not ground and scenario.destination is not None:
-        changed["destination"] = scenario.destination.isotropic
+    if not ground:
+        changed |= {kind: tuple(each.isotropic for each in getattr(scenario, kind)) for kind in POINT_LISTS}
+        changed["destination"] = scenario.destination and scenario.destination.isotropic
     return scenario.model_copy(update=changed)

@@ -39,7 +39,7 @@ from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
 from nullpose.report.words import error_words
-from nullpose.scenario import Eavesdropper, Jammer, Scenario
+from nullpose.scenario import Scenario
 from nullpose.solver import Objective, Result
 from nullpose.solver.array import ArrayDetails
 from nullpose.solver.robust import RobustDetails
@@ -223,8 +223,10 @@ def draw_robust(result: Result, width: str | None = None) -> Figure:
 def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:
     """Write the value at a pose, and how far a dipole's null is off the jammers, or the eavesdroppers."""
     quantity = objective.quantity
-    points: tuple[Jammer | Eavesdropper, ...] = scenario.eavesdroppers or scenario.jammers
-    nulls = [f"{math.degrees(axis_angle_rad(pose, each.position_m)):.1f}° off {each.name}" for each in points]
+    nulls = [
+        f"{math.degrees(axis_angle_rad(pose, each.position_m)):.1f}° off {each.name}"
+        for each in scenario.interferers
+    ]
     value = f"{quantity.smallest} {with_unit(quantity.in_unit(objective.value), quantity)}"
     return f"{value}, null {', '.join(nulls)}" if nulls and scenario.antenna_record.is_quadratic else value
 

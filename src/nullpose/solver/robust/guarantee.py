@@ -16,7 +16,7 @@ from nullpose.physics import ErrorCase, ratios_under, rotation_between
 from nullpose.physics.gain import worst_polarised
 from nullpose.physics.pose import as_position
 from nullpose.problem.build import build_family
-from nullpose.problem.robust import interferer_field, point_uncertainty_m
+from nullpose.problem.robust import point_uncertainty_m
 from nullpose.scenario import Scenario
 from nullpose.solver.robust.solution import Guarantee, RatioGuarantee
 
@@ -140,7 +140,7 @@ class Inner:
         )
         self.angle_rad = math.radians(scenario.receiver.attitude_error_deg)
         self.none = ErrorCase.none(scenario)
-        self.moved = interferer_field(scenario, "offsets")
+        self.moved = f"{scenario.interferer}_offsets_m"
         axes = self.family.ground_axes
         self.dipoles = axes if len(axes) else np.zeros_like(self.family.points_m)
         self.radii, self.axes, self.semi = _shapes(point_uncertainty_m(scenario))
