@@ -37,9 +37,13 @@ def test_axes_come_back(name: str) -> None:
 
 
 def test_a_pose_in_three_dimensions() -> None:
-    """Wants axes in 3-D, and names every point."""
+    """Wants axes in 3-D, and has a line towards every point."""
     axes = plot.pose(RESULT)
-    assert {text.get_text() for text in axes.texts} == {"S1", "S2", "M1"}
+    assert sorted(line.get_label() for line in axes.lines if line.get_label() in ("node", "jammer")) == [
+        "jammer",
+        "node",
+        "node",
+    ]
     given = pyplot.figure().add_subplot(projection="3d")
     assert plot.pose(RESULT, ax=given) is given
     with pytest.raises(nullpose.NullposeError, match="projection='3d'"):

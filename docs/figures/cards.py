@@ -18,12 +18,12 @@ from twins import write
 import nullpose
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.stage import Stage, View
+from nullpose.report.figures.stage import Stage
 from nullpose.report.figures.style import INK, VEHICLES, house_style
 from nullpose.solver import solve
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SMALL = View(inches=(2.0, 1.2), elevation_deg=38.0, pattern=0.16, is_small=True)
+AXIS = 0.24  # half-length of an antenna's axis over the extent of the scene
 
 
 def framed(figure: Figure, title: str) -> Axes:
@@ -54,8 +54,7 @@ def plan_of(name: str, title: str, **more: bool) -> Callable[[Figure], None]:
 
     def draw(figure: Figure) -> None:
         result = solve(nullpose.load(EXAMPLES / f"{name}.toml"), gap=1e-2, **more)
-        uncertain = bool(more)
-        stage = Stage(scenario=result.scenario, poses=(result.pose,), view=SMALL, uncertain=uncertain)
+        stage = Stage(scenario=result.scenario, poses=(result.pose,), axis=AXIS, uncertain=bool(more))
         axes = framed(figure, title)
         draw_plan(axes, stage, result.pose)
         axes.set(xlabel="", ylabel="", xticks=[], yticks=[])

@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING
 
 from nullpose.errors import UsageError, checked, require_usage
 from nullpose.report.figures.dots import draw_dots
+from nullpose.report.figures.inset import draw_inset
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_field, draw_plan
-from nullpose.report.figures.poses import draw_dipole
-from nullpose.report.figures.scene import draw_panel
-from nullpose.report.figures.stage import ALONE, Stage
+from nullpose.report.figures.stage import Stage
 from nullpose.report.figures.style import house_style
 from nullpose.report.figures.sweep import draw_sweep_axes
 from nullpose.solver import Result
@@ -36,7 +35,7 @@ def _axes(ax: Axes | None, size_inch: tuple[float, float], *, solid: bool = Fals
     """Yield axes to draw on: the caller's in the caller's style, or new ones in the house's.
 
     Raises:
-        UsageError: the caller's axes are flat where a scene in 3-D is drawn, or the reverse.
+        UsageError: the caller's axes are flat where an antenna is drawn in 3-D, or the reverse.
     """
     if ax is not None:
         if (getattr(ax, "name", "") == "3d") != solid:
@@ -56,7 +55,9 @@ def _axes(ax: Axes | None, size_inch: tuple[float, float], *, solid: bool = Fals
 
 @checked
 def pose(result: Result, ax: Axes | None = None) -> Axes:
-    """Draw a scene in 3-D, the best pose and the antenna's pattern.
+    """Draw the antenna at the best pose in 3-D: its pattern, its axis, and lines towards all points.
+
+    The drone is at 0 and the largest gain is 1 away from it; the lines end at the marks of :func:`plan`.
 
     Args:
         result: of a dipole or another antenna; of an array see ``solve --figure``.
@@ -75,9 +76,8 @@ def pose(result: Result, ax: Axes | None = None) -> Axes:
         not hasattr(result.details, "weights"),
         "pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)",
     )
-    with _axes(ax, ALONE.inches, solid=True) as axes:
-        draw_panel(axes, Stage.of(result), result.pose, draw_dipole)
-        place_names(axes)
+    with _axes(ax, (4.0, 4.0), solid=True) as axes:
+        draw_inset(axes, Stage.of(result), result.pose)
     return axes
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from nullpose import load
 from nullpose.physics.array import placed_elements
-from nullpose.report.figures.pattern import beam_surface_m
-from nullpose.report.figures.poses import draw_array
+from nullpose.report.figures.pattern import beam_surface
+from nullpose.report.figures.poses import draw_result
 from nullpose.solver import Result, solve
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "array.toml"
@@ -25,11 +25,11 @@ def _elements(solution: Result) -> np.ndarray:
 
 
 def _drawn_elements(solution: Result) -> np.ndarray:
-    axes = draw_array(solution).axes[0]
+    axes = draw_result(solution).axes[1]
     (dots,) = [
         each for each in axes.collections if str(each.get_label()).startswith("elements, not to scale")
     ]
-    return np.transpose(dots._offsets3d) - solution.pose.position_m
+    return np.transpose(dots._offsets3d)
 
 
 def test_elements_stand_as_they_are_laid_out(solution: Result) -> None:
@@ -45,7 +45,7 @@ def test_the_beam_has_its_null_on_the_jammer(solution: Result) -> None:
     scenario, position = solution.scenario, solution.pose.position_m
     node = [link.node for link in solution.links].index(solution.binding_node)
     weights = solution.details.weights[node]
-    surface = beam_surface_m(position, _elements(solution), weights, 1.0).reshape(3, -1).T - position
+    surface = beam_surface(_elements(solution), weights).reshape(3, -1).T
     reach = np.linalg.norm(surface, axis=1)
     assert reach.max() == pytest.approx(1.0)
 

@@ -1,6 +1,5 @@
 """The figure of one pose: whatever the scene has is on it."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +10,8 @@ from nullpose import Pose, Scenario, load, solve, sweep
 from nullpose.errors import UsageError
 from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.plan import draw_value_map
-from nullpose.report.figures.poses import draw_pose
-from nullpose.report.figures.stage import ALONE, Stage, limits_m
+from nullpose.report.figures.poses import draw_result
+from nullpose.report.figures.stage import Stage
 from nullpose.report.figures.style import prepare_figure_file, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.geometry import outline_m
@@ -20,34 +19,26 @@ from nullpose.study.value_map import value_map
 from nullpose.study.vehicles import compare_schemes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-CHANNEL = {"model": "free-space", "blocked_loss_db": 20.0}
 
 
 @pytest.mark.parametrize("name", ["airframe", "eavesdropper", "no-fly", "requirements", "geodetic", "town"])
 def test_every_example_can_be_drawn(name: str, tmp_path: Path) -> None:
     """The file is written, is not blank, names every point, and tells the value in its unit."""
     solution = solve(load(EXAMPLES / f"{name}.toml"), certify=False)
-    figure = draw_pose(solution)
+    figure = draw_result(solution)
     axes = figure.axes[0]
     scenario = solution.scenario
     names = {*scenario.node_names, *scenario.jammer_names, *scenario.eavesdropper_names}
-    assert names <= {text.get_text() for text in axes.texts}
+    written = [" ".join(text.get_text().split()) for text in axes.texts]
+    assert all(any(text.startswith(name) for text in written) for name in names)
     assert solution.objective.quantity.smallest in figure.get_suptitle()
     assert ("bits/s/Hz" in figure.get_suptitle()) == (name == "eavesdropper")
     picture = imread(*write_figure(figure, tmp_path / f"{name}.png"))
     assert picture[..., :3].std() > 0.03
 
 
-def test_one_metre_is_as_long_along_every_axis() -> None:
-    """The box is to scale, zones and fence included."""
-    axes = draw_pose(solve(load(EXAMPLES / "no-fly.toml"), certify=False)).axes[0]
-    sides = np.array([np.diff(axes.get_xlim3d()), np.diff(axes.get_ylim3d()), np.diff(axes.get_zlim3d())])
-    ratios = sides.ravel() / axes._box_aspect
-    assert ratios == pytest.approx([ratios[0]] * 3)
-
-
 def test_buildings_are_drawn_with_their_shadows() -> None:
-    """From above and in 3-D, courtyards open; on a map, which has its own colours, as outlines only."""
+    """From above, courtyards open; on a map, which has its own colours, as outlines only."""
     scenario = load(EXAMPLES / "town.toml")
     yard = {
         "polygon_m": [[-4, 30], [4, 30], [4, 38], [-4, 38]],
@@ -56,10 +47,9 @@ def test_buildings_are_drawn_with_their_shadows() -> None:
     data = scenario.to_dict()
     scenario = Scenario.from_dict(data | {"buildings": [*data["buildings"], yard | {"height_m": 9.0}]})
     solution = solve(scenario, certify=False)
-    scene, plan = draw_pose(solution).axes
+    plan = draw_result(solution).axes[0]
     labels = plan.get_legend_handles_labels()[1]
     assert {"building", "node blocked", "jammer blocked"} <= set(labels)
-    assert "building" in scene.get_legend_handles_labels()[1]
     (buildings,) = (patch for patch in plan.patches if patch.get_label() == "building")
     rings = buildings.get_path().to_polygons(closed_only=True)
     outlines_m = [building.outline_m for building in scenario.buildings]
@@ -74,14 +64,14 @@ def test_buildings_are_drawn_with_their_shadows() -> None:
 def test_zones_far_away_are_left_out() -> None:
     """A zone or a fence that reaches far beyond the scene is not drawn; a cylinder encloses its circle."""
     scenario = load(EXAMPLES / "no-fly.toml")
-    stage = Stage(scenario=scenario, poses=(Pose(np.array([0.0, 25.0, 8.0]), 0.0, 0.0),), view=ALONE)
+    stage = Stage(scenario=scenario, poses=(Pose(np.array([0.0, 25.0, 8.0]), 0.0, 0.0),))
     assert [zone and zone.name for zone, _ in stage.zones] == ["school", "mast", "road", None]
     nodes = tuple(
         node.model_copy(update={"position_m": (0.2 * node.position_m[0], 0.2 * node.position_m[1], 0.0)})
         for node in scenario.nodes
     )
     small = scenario.model_copy(update={"nodes": nodes, "jammers": ()})
-    stage = Stage(scenario=small, poses=(Pose(np.array([0.0, 5.0, 8.0]), 0.0, 0.0),), view=ALONE)
+    stage = Stage(scenario=small, poses=(Pose(np.array([0.0, 5.0, 8.0]), 0.0, 0.0),))
     assert [zone and zone.name for zone, _ in stage.zones] == ["mast"]
     radii = np.linalg.norm(outline_m(scenario.airspace.no_fly[0]) - [-2.0, 24.0], axis=1)
     assert np.all(radii >= 12.0)
@@ -106,7 +96,7 @@ def test_long_names_stay_within_every_figure(paper: Scenario, width: str | None)
     scenario = Scenario.from_dict(points | {"name": " ".join(["A name as long as a sentence"] * 8)})
     solution = solve(scenario, certify=False)
     figures = [
-        draw_pose(solution, width),
+        draw_result(solution, width),
         draw_sweep(sweep(scenario, "jammers[0].power_w", [1e-9, 2e-9], certify=False), width=width),
         draw_comparison(compare_schemes(scenario, certify=False), width),
     ]
@@ -123,13 +113,3 @@ def test_long_names_stay_within_every_figure(paper: Scenario, width: str | None)
             assert box.x1 <= figure.bbox.x1
         for axes in figure.axes:
             assert axes.xaxis.get_offset_text().get_text() == axes.yaxis.get_offset_text().get_text() == ""
-
-
-def test_no_roof_is_cut_off(paper: Scenario) -> None:
-    """A tower beside the drone is drawn up to its roof, or to half of the scene's width over the drone."""
-    solution = solve(paper, certify=False)
-    for height_m, top_m in ((25.0, 25.0), (500.0, 8.0 + (1.3 * ALONE.pattern + 0.5) * 50.0)):
-        tower = {"polygon_m": [[10, 30], [14, 30], [14, 34], [10, 34]], "height_m": height_m}
-        stage = Stage.of(solution)
-        scenario = Scenario.from_dict(paper.to_dict() | {"buildings": [tower], "channel": CHANNEL})
-        assert limits_m(replace(stage, scenario=scenario))[1][2] == pytest.approx(top_m, abs=0.1)

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from itertools import chain, product
+from itertools import product
 
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.collections import PathCollection
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
-from mpl_toolkits.mplot3d import Axes3D, proj3d
-from numpy.typing import ArrayLike
 
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import INK, Look
@@ -36,7 +34,7 @@ _TRIES, _POINT = 6, 10.0  # tries; what the name of a point is worth over that o
 
 
 def write_name(
-    axes: Axes | Axes3D,
+    axes: Axes,
     name: str,
     point_m: FloatArray,
     *,
@@ -47,43 +45,47 @@ def write_name(
     """Write a name at its point as it is, no part of it a formula, for ``place_names`` to move.
 
     Args:
-        axes: in 3-D or seen from above, with its view set.
+        axes: with its limits set.
         name: of the point or the area.
         point_m: shape ``(2,)`` or ``(3,)``, metres.
         number: beside it, or below a long one.
         is_bold: whether it is that of the worst node.
         is_area: whether it is slanted.
     """
-    x, y = float(point_m[0]), float(point_m[1])
-    if isinstance(axes, Axes3D):
-        x, y, _ = proj3d.proj_transform(*point_m, axes.get_proj())
     words = ("\n" if len(name) > _SHORT else " ").join(filter(None, (textwrap.fill(name, _LETTERS), number)))
     look: Look = {
         "fontsize": rcParams["xtick.labelsize"],
         "fontweight": "bold" if is_bold else "normal",
         "fontstyle": "italic" if is_area else "normal",
         "path_effects": [withStroke(linewidth=2.0, foreground="white")],
-        "annotation_clip": False,
+        "annotation_clip": True,
         "parse_math": False,
         "in_layout": False,
+        "xytext": (0.0, 0.0),
+        "textcoords": "offset points",
+        "ha": "center",
+        "va": "center",
     }
-    offset: Look = {"xytext": (0.0, 0.0), "textcoords": "offset points", "ha": "center", "va": "center"}
-    axes.annotate(words, (x, y), color=INK, zorder=8, **look, **offset)
+    axes.annotate(words, (float(point_m[0]), float(point_m[1])), color=INK, zorder=8, **look)
 
 
-def place_names(axes: Axes | Axes3D) -> None:
+def place_names(axes: Axes) -> None:
     """Move each name to where it is in the frame, over no mark and no letters, and nearest its own point.
 
     Names of the worst nodes are placed first, those of areas last. In the next try those are first that found
     no place. In the end these are not drawn.
     """
-    names = [text for text in axes.texts if isinstance(text, Annotation)]
+    names = [
+        text
+        for text in axes.texts
+        if isinstance(text, Annotation) and axes.viewLim.contains(*text.xy)  # others are not drawn
+    ]
     names.sort(key=lambda name: (name.get_fontstyle() == "italic", name.get_fontweight() != "bold"))
     for name in names:
         name.set(visible=True, position=(0.0, 0.0))
     root = axes.get_figure(root=True)
     assert root is not None, "axes are in a figure"
-    root.draw_without_rendering()  # for the layout, and where points in 3-D are seen
+    root.draw_without_rendering()  # for the layout
     point_px = root.dpi / 72.0
     points = axes.transData.transform([name.xy for name in names])
     marks, lines, corners = _in_the_way(axes, names, point_px)
@@ -115,24 +117,21 @@ def place_names(axes: Axes | Axes3D) -> None:
 
 
 def _in_the_way(
-    axes: Axes | Axes3D, names: Sequence[Text], point_px: float
+    axes: Axes, names: Sequence[Text], point_px: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """List marks and points on lines, (n, 2), and corners of letters, small zones and marks, (n, 2, 2)."""
-    to_px = axes.transData.transform
     dots = [each.get_offsets() for each in axes.collections if isinstance(each, PathCollection)]
-    wires = [each.get_segments() for each in axes.collections if isinstance(each, LineCollection)]
-    paths = chain((line.get_xydata() for line in axes.lines), *wires)
-    letters = [text for text in axes.findobj(Text) if text.get_text() and text not in names]
-    zones = [zone.get_window_extent() for zone in axes.patches]
+    letters = [text for text in axes.findobj(Text) if text.get_text() and not isinstance(text, Annotation)]
+    zones = (zone.get_window_extent() for zone in axes.patches)
     boxes = [text.get_window_extent() for text in (*names, *letters)]
     boxes += [box for box in zones if max(box.size) < _TINY_PT * point_px]
-    marks, rim = to_px(np.vstack(dots)), point_px * _MARK_PT
+    marks, rim = axes.transData.transform(np.vstack(dots)), point_px * _MARK_PT
     corners = [*((box.min, box.max) for box in boxes), *((mark - rim, mark + rim) for mark in marks)]
-    return marks, to_px(np.vstack([*map(_along, paths)])), np.array(corners)
+    paths = np.vstack([_along(np.asarray(line.get_xydata())) for line in axes.lines])
+    return marks, axes.transData.transform(paths), np.array(corners)
 
 
-def _along(path: ArrayLike) -> FloatArray:
+def _along(ends: FloatArray) -> FloatArray:
     """List points along a path, (n, 2)."""
-    ends = np.asarray(path)
     steps = np.linspace(0.0, len(ends) - 1.0, _SAMPLES)
     return np.stack([np.interp(steps, np.arange(len(ends)), each) for each in ends.T], axis=-1)

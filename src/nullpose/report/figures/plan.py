@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import shapely
 from matplotlib.axes import Axes
@@ -16,13 +14,13 @@ from scipy.ndimage import distance_transform_edt
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_outlines, draw_shadows
+from nullpose.report.figures.inset import NULL_LINE
 from nullpose.report.figures.names import place_names, write_name
-from nullpose.report.figures.scene import NULL_LINE
-from nullpose.report.figures.stage import ALONE, AXIS, Stage, limits_m
+from nullpose.report.figures.stage import Stage, set_outline_m
 from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, MARKS, Look, house_style, inches
 from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import MINUS, capitalised
-from nullpose.scenario import Eavesdropper, Jammer, Scenario, Terminal
+from nullpose.scenario import Scenario, Terminal
 from nullpose.solver import Result
 from nullpose.study import Field
 
@@ -45,10 +43,9 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         pose: of the drone.
         box_m: low and high corner of what is shown, (2, 2), metres; the whole stage if left out.
     """
-    whole_m = np.stack(limits_m(stage))[:, :2]
-    low, high = box_m if box_m is not None else whole_m if stage.key else _filled(axes, whole_m)
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="East x (m)", ylabel="North y (m)")
-    axes.set_aspect("equal")
+    low, high = box_m if box_m is not None else stage.box_m if stage.key else _filled(axes, stage.box_m)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    axes.set(xlabel="East x (m)", ylabel="North y (m)")
     if box_m is None:  # a map has its own colours
         draw_shadows(axes, stage, float(pose.position_m[2]), np.stack([low, high]))
     draw_outlines(axes, stage.scenario, is_filled=box_m is None)
@@ -56,9 +53,8 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         look: Look = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}
         if zone is not None:
             look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
-            middle = corners_m.mean(axis=0)
-            if np.all((low <= middle) & (middle <= high)):
-                write_name(axes, stage.key.get((True, zone.name), zone.name), middle, is_area=True)
+            name = stage.key.get((True, zone.name), zone.name)
+            write_name(axes, name, corners_m.mean(axis=0), is_area=True)
         axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
     x, y = pose.position_m[:2]
     drone = f"drone {pose.position_m[2]:.3g} m up"
@@ -71,27 +67,21 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         line: Look = {"linewidth": 0.8} if is_node else {"linewidth": 1.2, "linestyle": (0, (3, 1.5))}
         axes.plot([x, place[0]], [y, place[1]], color=colour, zorder=1.5, label=kind, **line)
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.8, label=kind, **rim)
-        if np.all((low <= place) & (place <= high)):
-            name = stage.key.get((False, point.name), point.name)
-            number = "" if stage.key else stage.numbers.get(point.name, "")
-            write_name(axes, name, place, number=number, is_bold=point.name in stage.worst)
+        name = stage.key.get((False, point.name), point.name)
+        write_name(
+            axes,
+            name,
+            place,
+            number="" if stage.key else stage.numbers.get(point.name, ""),
+            is_bold=point.name in stage.worst,
+        )
         if stage.uncertain and not isinstance(point, Terminal):
-            axes.plot(
-                *_outline_of_set_m(point).T, color=colour, linewidth=0.8, label=f"where the {kind} may be"
-            )
-    reach = AXIS * stage.view.pattern * stage.extent_m * pose.antenna_axis[:2]
-    ends = pose.position_m[:2] + np.stack([-reach, reach])
+            axes.plot(*set_outline_m(point).T, color=colour, linewidth=0.8, label=f"where the {kind} may be")
+    reach_m = stage.axis * stage.extent_m
+    ends = pose.position_m[:2] + np.outer((-reach_m, reach_m), pose.antenna_axis[:2])
     is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None
     axes.plot(*ends.T, zorder=6.5, label="antenna axis (null)" if is_null else None, **NULL_LINE)
     axes.scatter(x, y, color=DRONE, zorder=7, label=drone if stage.key else "drone", **rim)
-
-
-def _outline_of_set_m(point: Jammer | Eavesdropper) -> FloatArray:
-    """List places around the set that a point may be anywhere in, from above, (n, 2), metres."""
-    around = np.linspace(0.0, math.tau, 73)
-    turn, half_axes_m, _ = np.linalg.svd(point.uncertainty_matrix_m[:2])
-    away_m = (turn * half_axes_m) @ np.stack([np.cos(around), np.sin(around)])
-    return np.asarray(away_m.T + point.position_m[:2])
 
 
 def _filled(axes: Axes, box_m: FloatArray) -> FloatArray:
@@ -109,16 +99,15 @@ def draw_value_map(result: Result, field: Field, width: str | None = None) -> Fi
         field: the map.
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
-    rows, columns = field.values.shape
     wide = inches((6.0, 0.0), width, 0.0)[0]
-    high = min((wide - _BESIDE_INCH) * rows / columns + _BELOW_INCH, _TALLEST_INCH)
+    high = min((wide - _BESIDE_INCH) * float(np.divide(*field.values.shape)) + _BELOW_INCH, _TALLEST_INCH)
     with house_style(width):
         figure = Figure(figsize=(wide, high), layout="constrained")
         axes = figure.add_subplot()
         draw_field(axes, result, field)
         if width is None:
-            words = f"{result.label}: {field.title}"
-            axes.set_title(f"{result.scenario.name}\n{words}", fontsize=9, parse_math=False, wrap=True)
+            head = f"{result.scenario.name}\n{result.label}: {field.title}"
+            axes.set_title(head, fontsize=9, parse_math=False, wrap=True)
         place_names(axes)
     return figure
 
@@ -132,12 +121,18 @@ def _open_ground(scenario: Scenario, altitude_m: float) -> shapely.Geometry:
         ground = ground.intersection(shapely.Polygon(airspace.geofence_outline_m))
     up_m = altitude_m - scenario.point_positions_m[:, 2]
     across_m = np.sqrt(np.maximum(airspace.keep_out_m**2 - up_m**2, 0.0))
-    zones = [zone for zone in airspace.no_fly if zone.floor_m < altitude_m < zone.ceiling_m]
-    walls = [each for each in scenario.buildings if each.floor_m < altitude_m < each.heights_m[1]]
     closed = [
         *shapely.buffer(shapely.points(scenario.point_positions_m[:, :2]), across_m, quad_segs=24),
-        *(shapely.Polygon(outline_m(zone)) for zone in zones),
-        *(shapely.Polygon(each.outline_m, each.courtyard_outlines_m) for each in walls),
+        *(
+            shapely.Polygon(outline_m(zone))
+            for zone in airspace.no_fly
+            if zone.floor_m < altitude_m < zone.ceiling_m
+        ),
+        *(
+            shapely.Polygon(each.outline_m, each.courtyard_outlines_m)
+            for each in scenario.buildings
+            if each.floor_m < altitude_m < each.heights_m[1]
+        ),
     ]
     return ground.difference(shapely.union_all(closed))
 
@@ -170,7 +165,7 @@ def draw_field(axes: Axes, result: Result, field: Field) -> None:
         label.set_visible(bool(shapely.contains_xy(inner, *label.get_position())))
     axes.grid(visible=False)
     box_m = np.array([[east[0], north[0]], [east[-1], north[-1]]])
-    draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,), view=ALONE), result.pose, box_m)
+    draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,)), result.pose, box_m)
     words = f"{capitalised(result.objective.quantity.smallest)} {field.altitude_m:.3g} m up ({field.unit})"
-    beside = axes.inset_axes((1.03, 0.0, 0.045, 1.0))  # as high as the map, whatever its shape
-    axes.figure.colorbar(mesh, cax=beside, label=words, extend="min" if values.min() < low else "neither")
+    bar = axes.inset_axes((1.03, 0.0, 0.045, 1.0))  # as high as the map, whatever its shape
+    axes.figure.colorbar(mesh, cax=bar, label=words, extend="min" if values.min() < low else "neither")

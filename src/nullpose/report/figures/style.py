@@ -219,8 +219,8 @@ def write_figure(figure: Figure, *paths: Path) -> tuple[Path, ...]:
     in_print = any(abs(figure.get_figwidth() - mm / 25.4) < 1e-6 for mm in WIDTHS_MM.values())
     options: dict[str, Look] = {
         ".png": {"dpi": 600 if in_print else 200},
-        ".svg": {"metadata": {"Date": None}},
-        ".pdf": {"metadata": {"CreationDate": None}, "dpi": 600},  # of what is no line: colours of maps
+        ".svg": {"metadata": {"Date": None}, "dpi": 600},  # of what is no line: patterns, colours of maps
+        ".pdf": {"metadata": {"CreationDate": None}, "dpi": 600},
     }
     for path in paths:
         kind = path.suffix.lower()
