@@ -26,6 +26,7 @@ from .scenario import (
     Airspace as Airspace,
     Antenna as Antenna,
     Array as Array,
+    Destination as Destination,
     Eavesdropper as Eavesdropper,
     Jammer as Jammer,
     Node as Node,
