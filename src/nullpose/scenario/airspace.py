@@ -45,7 +45,7 @@ class Airspace(Section):
             scenario with an origin fills in altitude_m; None if it was not stated so.
         x_m: westmost and eastmost position [m], or None for no bound.
         y_m: southmost and northmost position [m], or None for no bound.
-        keep_out_m: smallest distance from any node, jammer or eavesdropper [m], since the model has no limit
+        keep_out_m: smallest distance from any point on the ground [m], since the model has no limit
             there.
         margin_m: how far the vehicle stays from fence and zones [m]: sideways, and from a zone's floor and
             ceiling. The ranges have none.
@@ -92,7 +92,7 @@ class Airspace(Section):
         float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
     ] = Field(
         default=1.0,
-        description="Smallest distance in metres between the vehicle and any node, jammer or eavesdropper.",
+        description="Smallest distance in metres between the vehicle and any point on the ground.",
         examples=[1.0],
     )
     margin_m: MarginMetres = Field(

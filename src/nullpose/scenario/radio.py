@@ -40,7 +40,7 @@ class Noisy(Section):
 
     noise_w: Watts | None = optional(
         "Noise power in the receiver's bandwidth, in watts. Either this, or noise_dbm, or bandwidth_hz with "
-        "noise_figure_db. A node or an eavesdropper that states none has the noise of [receiver].",
+        "noise_figure_db. A node, an eavesdropper or a destination that states none has that of [receiver].",
         1e-3,
     )
     noise_dbm: DecibelMilliwatts | None = optional("The same in dBm, in place of noise_w.", -97.0)
