@@ -105,7 +105,8 @@ class ObjectiveRecord:
         quantities: what nodes may have under it.
         quantity: from a scenario: which of these it is there.
         ratios: from a scenario: the ratios, each over the points of nodes and of interferers.
-        evaluate: from what is received at poses: the numbers of every node by name, each ``(..., n_nodes)``.
+        evaluate: from what is received at poses: the numbers of every node, and of a destination after them,
+            by name, each ``(..., n_terminals)``.
             ``sinr`` is among them, and the quantity's field. A name without a unit is that of a power ratio;
             links get its decibels as well.
         ratios_at: from what is received at poses: the values of ``ratios`` there, ``(..., n_nodes, m)``, a

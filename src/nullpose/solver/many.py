@@ -146,7 +146,7 @@ def solve_many(
     evaluated by :mod:`nullpose.physics`.
 
     Args:
-        scenarios: what to solve; the smallest SINR or margin, not a secrecy rate, and one dipole each.
+        scenarios: what to solve; the smallest SINR, SNR or margin, not a secrecy rate, and one dipole each.
         airframes: the vehicles to try in every scene, None for an omnidirectional one; each scenario's own
             without them.
         on_progress: called now and then with the number of scenes done and of all.
