@@ -80,16 +80,19 @@ def test_nothing_beyond_the_root_beats_the_bound(seed: int) -> None:
     lack = bound * family.denominator_isotropic[family.denominator_of] - family.numerator_isotropic
     radius = np.sqrt(family.numerator_weight / np.maximum(lack, 1e-300))
     points = family.points_m[:3]
-    low = np.max(points - radius[:, None], axis=0)
-    high = np.min(points + radius[:, None], axis=0)
-    wide = np.array([low - 1e-9 * radius.max(), high + 1e-9 * radius.max()])
+    gaps = np.maximum(0.0, np.maximum(family.low_m - points, points - family.high_m)) ** 2
+    others = np.sum(gaps, axis=1, keepdims=True) - gaps  # from all of the airspace along the other axes
+    left = np.sqrt(np.maximum(0.0, radius[:, None] ** 2 - others))
+    low, high = np.max(points - left, axis=0), np.min(points + left, axis=0)
+    wide = np.array([low - 1e-6 * radius.max(), high + 1e-6 * radius.max()])
     assert np.all(lack > 0.0)
     assert root_holds(family, wide, bound) == ""
     for side, i in ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2), (1, 2)):
         narrow = wide.copy()
-        narrow[side, i] += 1e-6 * radius.max() * (1.0 if side == 0 else -1.0)
+        narrow[side, i] += 2e-6 * radius.max() * (1.0 if side == 0 else -1.0)
         fault = root_holds(family, narrow, bound)
         end = (family.low_m if side == 0 else family.high_m)[i]
         enough = narrow[side, i] <= end if side == 0 else narrow[side, i] >= end
+        enough |= bool(np.any(radius**2 < others[:, i]))  # of some node everything is out of reach
         assert (fault == "") == bool(enough)
         assert enough or f"ends at {'xyz'[i]} = " in fault

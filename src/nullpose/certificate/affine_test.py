@@ -200,22 +200,21 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         leaves: of the boxes, with multipliers and level.
         boxes: to be tested.
     """
-    family, identity, above, below = weighted_sum(family, leaves)
-    terms = [(*term, True) for term in above] + [(point, -scale, False) for point, scale in below]
+    family, identity, terms = weighted_sum(family, leaves)
     dipoles = family.ground_axes if len(family.ground_axes) else np.zeros_like(family.points_m)
     jets = [
         (
-            scale,
+            scale * sign,
             link_jet(
                 field,
                 boxes,
                 family.points_m[point],
                 family.leak,
                 dipoles[point],
-                excess(family, boxes, point, is_above),
+                excess(family, boxes, point, sign > 0.0),
             ),
         )
-        for point, scale, is_above in terms
+        for point, scale, sign in terms
     ]
     zero = Interval(np.zeros((6, len(boxes))))
     value, slopes, hessian, ranged = (
@@ -231,7 +230,7 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
     holds = (ranged.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, slopes.middle)
-    return np.asarray(np.any([scale.high > 0.0 for _, scale in above], axis=0) & holds)
+    return np.asarray(np.any([scale.high > 0.0 for _, scale, sign in terms if sign > 0.0], axis=0) & holds)
 
 
 def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hessian: Interval) -> np.ndarray:

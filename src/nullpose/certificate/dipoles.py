@@ -23,7 +23,7 @@ from nullpose.certificate.interval import Interval, dot, where
 from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import ROUNDING, VECTOR_BEND, VECTOR_SLOPE
 from nullpose.certificate.shear import Shear, link_vector, shear_of, sheared, size_of, smaller
-from nullpose.certificate.weighted_sum import Multiple, weighted_sum
+from nullpose.certificate.weighted_sum import Term, weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
@@ -45,11 +45,10 @@ def dipole_sum(
         constants: forms, (6, b), that are not negative in the cells and the band, and their multipliers.
     """
     shear = shear_of(family, leaves, boxes)
-    family, identity, above, below = weighted_sum(family, leaves)
+    family, identity, parts = weighted_sum(family, leaves)
     terms = [
         (_vectors(family, shear, boxes, point), point, scale * _excess_end(family, boxes, point, sign), sign)
-        for sign, each in ((1.0, above), (-1.0, below))
-        for point, scale in each
+        for point, scale, sign in parts
     ]
     held = [(constant_form(shear, q), q, weight) for q, weight in constants if np.any(weight != 0.0)]
     centre = shear.gram * identity
@@ -61,7 +60,7 @@ def dipole_sum(
     for form, _, weight in held:
         centre = centre + form.value * weight
     top = top_vectors(centre)
-    total = _identity(shear, boxes, identity, _jamming(family, shear, below), top)
+    total = _identity(shear, boxes, identity, _jamming(family, shear, parts), top)
     for jets, point, scale, sign in terms:
         if family.leak > 0.0:
             total = total + _leaking(family, shear, boxes, point, scale * family.leak, sign)
@@ -226,11 +225,11 @@ def _turned(shear: Shear) -> Interval:
     return total
 
 
-def _jamming(family: Family, shear: Shear, below: list[Multiple]) -> FloatArray:
+def _jamming(family: Family, shear: Shear, parts: list[Term]) -> FloatArray:
     """Return about how strong the anchors' forms are where they are not zero, (b,)."""
     strength = np.zeros(len(shear.on))
-    for point, scale in below:
-        strength += np.where(point == shear.anchor, scale.middle(), 0.0)
+    for point, scale, sign in parts:
+        strength += np.where((sign < 0.0) & (point == shear.anchor), scale.middle(), 0.0)
     form = shear.anchored.middle()
     return np.asarray(strength * (1.0 - family.leak) * np.where(shear.is_dipole, form[2], form[0]))
 

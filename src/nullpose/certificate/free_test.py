@@ -79,22 +79,19 @@ def ratio_forms(
     With vectors, (3, b) in the basis, along which the sums are largest, denominators that are small there
     get the remainder that is sharp near a null if it is the smaller one.
     """
-    family, identity, above, below = weighted_sum(family, leaves)
+    family, identity, terms = weighted_sum(family, leaves)
     half2 = boxes.half2 * 0.5
     total = Linear(frames.gram * identity, Interval(np.zeros((6, 3, len(boxes)))))
-    for point, scale in above:
-        form, up, _ = expansion(family, frames, boxes, point, True)
-        used = where(scale.high > 0.0, (scale * up * half2).most(), 0.0)
-        # a numerator's remainder is bounded by the identity, anchored or not
-        total = total + form.times(scale).plus(frames.gram * used)
-    for point, scale in below:
-        form, down, bend = expansion(family, frames, boxes, point, False)
-        share, rest = np.zeros(len(boxes)), down * half2
-        if vectors is not None:
-            share, rest = sharper(form.value, vectors, boxes, frames, point, bend, rest)
+    for point, scale, sign in terms:
+        form, bent, bend = expansion(family, frames, boxes, point, sign > 0.0)
+        share, rest, around = np.zeros(len(boxes)), bent * half2, frames.gram
+        if sign < 0.0:  # the remainder of what is added is bounded by the identity, anchored or not
+            anchored = frames.turning & (point == frames.anchor)
+            around = where(anchored, anchor_shape(family, frames), frames.gram)
+            if vectors is not None:
+                share, rest = sharper(form.value, vectors, boxes, frames, point, bend, rest)
         used = where(scale.high > 0.0, (scale * rest).most(), 0.0)
-        around = where(frames.turning & (point == frames.anchor), anchor_shape(family, frames), frames.gram)
-        total = total + form.times(-(scale * (1.0 - Interval(share)))).plus(around * used)
+        total = total + form.times(scale * (1.0 - Interval(share)) * sign).plus(around * used)
     return total
 
 

@@ -59,7 +59,8 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
     """Find a face of a root box that leaves out what could beat the bound; an empty string if there is none.
 
     Beyond each of its faces lies nothing of the domain, or nothing within a node's reach: there
-    ``n + w / a^2 <= t d``.
+    ``n + w / a^2 <= t d``, a being at least as long as the ways beyond the face and, along the other two
+    axes, to the domain.
 
     Args:
         family: the ratios and their domain.
@@ -69,11 +70,13 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
     points = family.points_m[family.numerator_point]
     below = family.denominator_isotropic[family.denominator_of]
     lack = Interval(upper_bound) * below - family.numerator_isotropic
+    gaps = np.maximum((family.low_m - Interval(points)).low, (Interval(points) - family.high_m).low)
+    gap2 = Interval(np.maximum(gaps, 0.0)).squared()  # from all of the domain, along each axis
     for face_m, end_m, inwards in zip(root_m, (family.low_m, family.high_m), (1.0, -1.0), strict=True):
-        reach = Interval(((Interval(points) - face_m) * inwards).low.T)
-        square = reach.squared()
+        beyond = Interval(np.maximum(((Interval(points) - face_m) * inwards).low, 0.0)).squared()
+        square = Interval((beyond + gap2[:, [1, 2, 0]] + gap2[:, [2, 0, 1]]).low.T)
         weight = most_excess(family, family.numerator_point, square.low) * Interval(family.numerator_weight)
-        out = (reach.low > 0.0) & ((square * lack - weight).low >= 0.0)
+        out = (square.low > 0.0) & ((square * lack - weight).low >= 0.0)
         fine = (face_m * inwards <= end_m * inwards) | np.any(out, axis=1)
         if not np.all(fine):
             i = int(np.argmin(fine))

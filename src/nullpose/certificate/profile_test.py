@@ -25,7 +25,7 @@ from nullpose.certificate.jets import PAIRS, largest
 from nullpose.certificate.plain_tests import kept_out_holds
 from nullpose.certificate.profile import Profile, ProfileField
 from nullpose.certificate.profile_links import PI, Link, about, links_of, sine_cosine
-from nullpose.certificate.weighted_sum import Multiple, weighted_sum
+from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
@@ -161,14 +161,13 @@ def _largest(
         links: of each point, at the centres and all over the cells.
         half: (5, b) the cells' half sides.
     """
-    identity, gains, losses = _factors(family, leaves)
+    identity, factors = _factors(family, leaves)
     at_centre, over = identity, identity
     slopes, bends = Interval(np.zeros((5, len(leaves)))), Interval(np.zeros((len(PAIRS), len(leaves))))
-    for (cosine, near), (wide, near_wide), gain, loss in zip(*links, gains, losses, strict=True):
+    for (cosine, near), (wide, near_wide), weight in zip(*links, factors, strict=True):
         reach = (wide.slopes * Interval(-half, half)).total() + cosine.value
         c = Interval(np.fmax(wide.value.low, reach.low), np.fmin(wide.value.high, reach.high))
         ranges = [profile.within(n, c) for n in range(3)]
-        weight = gain - loss
         link = cosine.of(*(profile.near(n, cosine.value) for n in range(3))) * near
         at_centre = at_centre + link.value * weight
         slopes = slopes + link.slopes * weight
@@ -227,13 +226,10 @@ def _out_of_reach(
     return missed
 
 
-def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval], list[Interval]]:
-    """Return a sum's constant, and by what each point's gain over squared distance adds and takes away."""
-    _, identity, above, below = weighted_sum(family, leaves)
-
-    def of_points(parts: list[Multiple]) -> list[Interval]:
-        zero = Interval(np.zeros(len(leaves)))
-        points = range(len(family.points_m))
-        return [sum((where(which == j, scale, 0.0) for which, scale in parts), zero) for j in points]
-
-    return identity, of_points(above), of_points(below)
+def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval]]:
+    """Return a sum's constant, and what each point's gain over squared distance is multiplied by."""
+    _, identity, terms = weighted_sum(family, leaves)
+    zero, points = Interval(np.zeros(len(leaves))), range(len(family.points_m))
+    return identity, [
+        sum((where(point == j, scale * sign, 0.0) for point, scale, sign in terms), zero) for j in points
+    ]

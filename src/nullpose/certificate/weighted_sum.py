@@ -1,8 +1,8 @@
-"""The weighted sum of a leaf's ratios, ``sum_k lambda_k (N_k - t D_g(k))``, as multiples of points' forms."""
+"""The signed sum of links that a leaf's multipliers make, ``sum_k lambda_k (N_k - t D_g(k))``."""
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,19 @@ from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
-# A ground point for each box, and by what its form is multiplied: exactly zero where it does not count.
-Multiple: TypeAlias = tuple[IntArray, Interval]
+
+class Term(NamedTuple):
+    """A multiple of the forms of points.
+
+    Args:
+        point: (l,) the ground point of each leaf.
+        scale: (l,) by what its form is multiplied, not negative: exactly zero where it does not count.
+        sign: 1 where the form is added, and so is to be bounded from above, -1 where it is subtracted.
+    """
+
+    point: IntArray
+    scale: Interval
+    sign: float
 
 
 def mix_slots(leaves: Leaves) -> tuple[IntArray, FloatArray]:
@@ -31,8 +42,8 @@ def mix_slots(leaves: Leaves) -> tuple[IntArray, FloatArray]:
     return ratio[:, which], weight[:, which]
 
 
-def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Multiple], list[Multiple]]:
-    """Return a sum's multiple of the identity, and those of numerators and (positive) of denominators.
+def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Term]]:
+    """Return a sum's multiple of the identity, and its terms.
 
     A dipole of leak f is two points at one place: ``1 - f`` times the dipole, and f times an isotropic one.
     The family that is returned first has both.
@@ -45,21 +56,21 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
     leaks[: len(family.ground_leaks)] = family.ground_leaks * (family.ground_leaks < 1.0)
     leaky, twin = np.flatnonzero(leaks), np.cumsum(leaks > 0.0) + len(leaks) - 1
 
-    def parts(point: IntArray, scale: Interval) -> list[Multiple]:
+    def parts(point: IntArray, scale: Interval, sign: float) -> list[Term]:
         leak = leaks[point]
         if not np.any(split := (leak > 0.0) & (scale.high > 0.0)):
-            return [(point, scale)]
-        dipole = where(split, scale * (1.0 - Interval(leak)), scale)
-        return [(point, dipole), (np.where(split, twin[point], point), where(split, scale * leak, 0.0))]
+            return [Term(point, scale, sign)]
+        dipole = Term(point, where(split, scale * (1.0 - Interval(leak)), scale), sign)
+        leaking = where(split, scale * leak, 0.0)
+        return [dipole, Term(np.where(split, twin[point], point), leaking, sign)]
 
     ratio, weight = mix_slots(leaves)
     identity = Interval(np.zeros(len(leaves)))
-    above: list[Multiple] = []
-    below: list[Multiple] = []
+    terms: list[Term] = []
     for k, w in zip(ratio, weight, strict=True):
         identity = identity + Interval(w) * family.numerator_isotropic[k]
         scale = Interval(w) * family.numerator_weight[k]
-        above += parts(family.numerator_point[k], where(w > 0.0, scale, 0.0))
+        terms += parts(family.numerator_point[k], where(w > 0.0, scale, 0.0), 1.0)
     for g, isotropic in enumerate(family.denominator_isotropic):
         mine = np.where(family.denominator_of[ratio] == g, weight, 0.0)
         counts = np.any(mine > 0.0, axis=0)
@@ -67,7 +78,7 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         identity = where(counts, identity - level * isotropic, identity)
         for e in range(*family.denominator_start[g : g + 2]) if np.any(counts) else ():
             point = np.full(len(leaves), family.denominator_point[e])
-            below += parts(point, where(counts, level * family.denominator_weight[e], 0.0))
+            terms += parts(point, where(counts, level * family.denominator_weight[e], 0.0), -1.0)
     rows = family.channels
     if len(leaky):
         family = family.changed(
@@ -76,4 +87,4 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
             ground_leaks=np.zeros(0),
             channels=np.vstack([rows, rows[leaky]]) if len(rows) else rows,
         )
-    return family, identity, above, below
+    return family, identity, terms

@@ -21,7 +21,7 @@ TOLERANCE = 1e-6
 @heap_kernel
 def ascended(family, row, mean, back, weights, v):
     """Returns what the kernel does, which has no Python name, for a free axis in the world's frame."""
-    whitening, every = (np.zeros((1, 6)), mean, back), np.empty(family.numerator_isotropic.shape[0])
+    whitening, every = (mean.reshape((1, 6)), mean, back), np.empty(family.numerator_isotropic.shape[0])
     pool = Pool(
         np.empty((POOL, 6)), np.empty(POOL, np.int64), np.empty(POOL), np.empty(POOL), np.empty((POOL, 2)),
         np.empty(3), np.empty(3, np.int64),

@@ -10,21 +10,28 @@ from nullpose.certificate.forms import matrices
 from nullpose.certificate.shear import shear_of
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
+from nullpose.solver.kernels.bounds.branch import workspace_of
 from nullpose.solver.kernels.bounds.exclusion import add_dipole_sum
 from nullpose.solver.kernels.bounds.expansion import frame_at
 from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, COUNT, FACE, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
-from nullpose.solver.kernels.compiler.jit import kernel
+from nullpose.solver.kernels.compiler.jit import heap_kernel, kernel
 from nullpose.solver.kernels.linear_algebra.links import add_form, link_form
 
 SEEDS = st.integers(0, 2**32 - 1)
 
 
+@heap_kernel
+def space_for(family):
+    """Return what the sum is made in: the kernel itself has no Python name."""
+    return workspace_of(family)
+
+
 @kernel
-def summed(family, axis_field, kind, anchor, row, basis, matrix, slopes, rest):
+def summed(family, axis_field, kind, anchor, row, basis, workspace, matrix):
     """Fill the frame and the sum of a row."""
     frame = frame_at(family, kind, anchor, row[CENTRE:HALF], row[HALF:LEVEL], basis)
-    add_dipole_sum(family, axis_field, frame, row, matrix, slopes, rest)
+    add_dipole_sum(family, axis_field, frame, row, workspace, matrix)
 
 
 @kernel
@@ -117,12 +124,12 @@ def test_the_solvers_sum_is_above_the_exact_one(kind: int, leak: float, seed: in
     row = np.zeros(COLUMNS)
     row[CENTRE:HALF], row[HALF:LEVEL], row[LEVEL], row[FACE] = centre, half, level, -1.0
     row[COUNT], row[INDEX : INDEX + 2], row[WEIGHT : WEIGHT + 2] = 2.0, [0.0, 1.0], weights
-    basis, matrix, slopes, rest = np.empty((3, 3)), np.empty(6), np.empty((3, 6)), np.empty(6)
-    summed(family.arrays, AxisField.free().arrays, kind, anchor, row, basis, matrix, slopes, rest)
+    basis, matrix, space = np.empty((3, 3)), np.empty(6), space_for(family.arrays)
+    summed(family.arrays, AxisField.free().arrays, kind, anchor, row, basis, space, matrix)
     for _ in range(8):
         x = rng.uniform(-1.0, 1.0, 3) * half
         exact = exact_form(family, weights, level, centre + x)
-        bound = matrices((matrix + x @ slopes + rest)[:, None])[0]
+        bound = matrices((matrix + x @ space.slopes + space.rest)[:, None])[0]
         ways = [np.eye(3)] if kind == WORLD else [np.eye(3), turned_axes(family, anchor, centre, centre + x)]
         # coordinates stand still where a point's direction changes too much: then they are the world's
         excess = [difference(bound, basis.T @ way.T @ exact @ way @ basis) for way in ways]

@@ -12,9 +12,8 @@ import math
 import numpy as np
 
 from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, FREE_AXIS, Axes
-from nullpose.solver.kernels.bounds.curved import curved_multipliers, denominator_jet, excludes_curved, impact
-from nullpose.solver.kernels.bounds.denominators import expand_denominator
-from nullpose.solver.kernels.bounds.enclosure import JET, MOST, axis_clearance
+from nullpose.solver.kernels.bounds.curved import curved_multipliers, excludes_curved, fill_jet, impact
+from nullpose.solver.kernels.bounds.enclosure import JET, LEAST, axis_clearance
 from nullpose.solver.kernels.bounds.exclusion import excludes, has_horizontal_axes, out_of_reach, will_fail
 from nullpose.solver.kernels.bounds.expansion import best_frame, frame_at, min_square
 from nullpose.solver.kernels.bounds.multipliers import free_multipliers
@@ -42,6 +41,7 @@ from nullpose.solver.kernels.bounds.node import (
 )
 from nullpose.solver.kernels.bounds.records import Workspace
 from nullpose.solver.kernels.bounds.sight import hidden_nowhere, in_sight
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum, most_heard
 from nullpose.solver.kernels.compiler.jit import (
     heap_kernel,
     inner_heap_kernel,
@@ -50,8 +50,6 @@ from nullpose.solver.kernels.compiler.jit import (
     small_kernel,
 )
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import most_excess
-from nullpose.solver.kernels.linear_algebra.forms import add_denominator
 from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import corner_of, fill_affine, norm, store
@@ -69,7 +67,7 @@ _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split un
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
 _APART_M = 1e-3
-_POINT_M = 1e-7  # half diagonal of boxes where shadows meet in a point: smaller ones tell no more
+_POINT_M = 1e-7  # half diagonal of boxes that wait until no other is left: on a border they may have no end
 
 
 @small_kernel
@@ -154,17 +152,11 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
     is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
-    kind, anchor = best_frame(family, has_horizontal_axes(axis_field), row)
+    fill_sum(family, row, workspace.sums)
+    kind, anchor = best_frame(family, has_horizontal_axes(axis_field), row, workspace.sums)
     frame = frame_at(family, kind, anchor, centre, half, basis)
-    denominator, slopes = zeroed(6), zeroed(3, 6)
-    rests = (0.0, 0.0)
-    if family.denominator_isotropic.shape[0] == 1 and family.ground_axes.shape[0] > 0:
-        add_denominator(family, np.int64(0), -row[LEVEL], centre, basis, denominator)
-    elif family.denominator_isotropic.shape[0] == 1:
-        first = np.int64(0)
-        rests = expand_denominator(family, first, row[LEVEL], frame, centre, half, denominator, slopes)
     row[KIND], row[ANCHOR] = kind, anchor
-    below = (denominator, slopes, rests)
+    workspace.expanded[:] = 0.0
     primal, reached, followed = math.inf, 0.0, False
     for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
         if attempt == 1:
@@ -173,7 +165,7 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
             copy_into(goal.multipliers[BAND:BALL], row[BAND:BALL])
         if attempt == 2:
             primal, reached, followed = free_multipliers(
-                family, axis_field, basis, row, denominator, coarseness, workspace, axis
+                family, axis_field, basis, row, coarseness, workspace, axis
             )
             can_beat = is_free and followed and contains(domain, centre)
             if can_beat and beats_from(whole, domain, row, reached * row[LEVEL], goal.best, workspace, axis):
@@ -182,7 +174,7 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
                 return (BY_AXIS if is_free and is_wide(row, coarseness) else BY_POSITION), 1
             if not primal < 1.0:
                 break
-        if excludes(family, domain, axis_field, frame, row, below, workspace):
+        if excludes(family, domain, axis_field, frame, row, workspace):
             return EXCLUDED, 1 if attempt == 2 else 0
     # Where multipliers exclude the centre, most often they exclude the halves of the box soon, and axes need
     # not be split. With several denominators that takes long, unless they do so by more than the box's size.
@@ -199,14 +191,15 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
 
 
 @small_kernel
-def lone_ratio(family, row, below):
+def lone_ratio(family, row, workspace):
     """Check whether one ratio is too weak all over the box, whatever the axis; if so it is the row's."""
     for k in range(family.numerator_weight.shape[0]):
-        j = family.numerator_point[k]
+        j, g = family.numerator_point[k], family.denominator_of[k]
         square = min_square(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL])
-        most = family.numerator_weight[k] * most_excess(family.channels, j, square) / square
-        most += family.numerator_isotropic[k]
-        if most < -below[family.denominator_of[k], MOST] * (1.0 - 1e-13):
+        least = family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            least += family.denominator_weight[e] * workspace.jets[family.denominator_point[e], LEAST]
+        if most_heard(family, k, square) < row[LEVEL] * least * (1.0 - 1e-13):
             row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0
             return True
     return False
@@ -216,16 +209,18 @@ def lone_ratio(family, row, below):
 def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half, family = row[HALF:LEVEL], in_sight(whole, domain, seen, row, workspace)
-    jet, below, total = scratch(JET), workspace.jets, scratch(JET)
-    denominator_jet(family, axis_field, row, jet, below)
+    total = scratch(JET)
+    workspace.expanded[:] = 0.0
+    for j in family.denominator_point:
+        fill_jet(family, j, False, axis_field, row, workspace)
     row[KIND] = AFFINE
-    if lone_ratio(family, row, below):
+    if lone_ratio(family, row, workspace):
         return EXCLUDED, 0, 0
     for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
         if attempt == 1:
             copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
         if attempt == 2:
-            reached = curved_multipliers(family, axis_field, row, below, jet, workspace)
+            reached = curved_multipliers(family, axis_field, row, workspace)
             if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
                 fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
                 copy_into(row[CENTRE:HALF], workspace.place)
@@ -233,7 +228,7 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
                 value = math.exp(min_log_ratio(whole, workspace.place, axis, logs[0], logs[1]))
                 if value > goal.best * (1.0 + _BEATS):
                     return BETTER, 0, 1
-        if excludes_curved(family, domain, axis_field, row, below, jet, total):
+        if excludes_curved(family, domain, axis_field, row, workspace, total):
             return EXCLUDED, 0, 1 if attempt == 2 else 0
     return BY_POSITION, impact(total, half), 1
 
@@ -242,9 +237,11 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
 def workspace_of(family):
     """Return scratch space for a family."""
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
+    points = family.points_m.shape[0]
     return Workspace(
         np.empty(ratios + 4), np.empty(ratios), np.empty((ratios, 3)),
-        np.empty((groups, JET)), np.empty((groups, 6)), np.empty(groups),
+        np.empty(points), np.empty(points), np.empty((points, 6)), np.empty((points, 3, 6)),
+        np.empty((points, 2)), np.empty((points, JET)), np.empty((groups, 6)), np.empty(groups),
         np.empty(6), np.empty((3, 6)), np.empty(6), np.empty(ratios),
         np.empty(family.denominator_weight.shape[0]), np.empty((0, 5)), np.empty(3),
     )  # fmt: skip
@@ -301,7 +298,7 @@ def branch(
     workspace, row, axis = workspace_of(family), scratch(COLUMNS), zeroed(3)
     boxes = sought = aside = 0
     has_shadows = family.shadow_sides.shape[0] > 0
-    while top > aside:
+    while top > aside or (top > 0 and not has_shadows):
         if boxes >= most:
             copy_into(row[CENTRE:HALF], better_p)
             for m in range(3):
@@ -309,8 +306,8 @@ def branch(
             return LIMIT, top, filled, boxes, sought
         if top + 9 > stack.shape[0] or filled >= leaves.shape[0]:
             return FULL, top, filled, boxes, sought
-        boxes += 1
-        top -= 1
+        boxes, top, is_last = boxes + 1, top - 1, top == aside
+        aside = min(aside, top)
         copy_into(stack[top], row)
         row[LEVEL] = level
         seen, hidden, verdict = -1, 0, EXCLUDED
@@ -339,7 +336,7 @@ def branch(
             return BETTER, top + 1, filled, boxes, sought
         elif verdict == BY_AXIS:
             top = split_axis(row, has_horizontal_axes(axis_field), stack, top)
-        elif has_shadows and norm(row[HALF:LEVEL]) < _POINT_M:
+        elif norm(row[HALF:LEVEL]) < _POINT_M and not is_last:
             copy_into(stack[aside], stack[top])
             copy_into(row, stack[aside])
             aside, top = aside + 1, top + 1
@@ -347,4 +344,4 @@ def branch(
             top = split_foreseen(row, side, workspace, has_horizontal_axes(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)
-    return (STUCK if aside > 0 else DONE), top, filled, boxes, sought
+    return (DONE if top == 0 else STUCK), top, filled, boxes, sought

@@ -14,17 +14,8 @@ import math
 from nullpose.solver.kernels.bounds.borders import borders, weigh_borders
 from nullpose.solver.kernels.bounds.constants import ROUNDING
 from nullpose.solver.kernels.bounds.enclosure import BEND, JET, LEAST, MOST, RADIUS, SLOPE, link_jet
-from nullpose.solver.kernels.bounds.node import (
-    BALL,
-    CENTRE,
-    COUNT,
-    HALF,
-    INDEX,
-    LEVEL,
-    NU,
-    WEIGHT,
-    keep_largest,
-)
+from nullpose.solver.kernels.bounds.node import BALL, CENTRE, COUNT, HALF, LEVEL, NU, keep_largest
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, copy_into, eigen3, entry
@@ -46,16 +37,12 @@ def add_jet(weight, jet, total):
 
 
 @inner_kernel
-def denominator_jet(family, axis_field, row, jet, totals):
-    """Fill the jet of ``-t D_g`` of each denominator over a row's box."""
-    for g in range(totals.shape[0]):
-        total = totals[g]
-        total[:] = 0.0
-        total[0] = total[LEAST] = total[MOST] = -row[LEVEL] * family.denominator_isotropic[g]
-        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-            j = family.denominator_point[e]
-            link_jet(family, j, False, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
-            add_jet(-row[LEVEL] * family.denominator_weight[e], jet, total)
+def fill_jet(family, j, is_above, axis_field, row, workspace):
+    """Fill the jet of link j over a row's box, unless the box's is there."""
+    side = 1.0 if is_above else -1.0
+    if workspace.expanded[j] != side:
+        link_jet(family, j, is_above, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], workspace.jets[j])
+        workspace.expanded[j] = side
 
 
 @inner_kernel
@@ -127,24 +114,19 @@ def box_maximum(jet, half):
 
 
 @inner_kernel
-def excludes_curved(family, domain, axis_field, row, below, jet, total):
-    """Check whether the row's multipliers exclude its box; fill its border's, and the jet of their sum.
-
-    ``below`` has the jets of ``-t D_g``; ``jet`` is scratch.
-    """
+def excludes_curved(family, domain, axis_field, row, workspace, total):
+    """Check whether the row's multipliers exclude its box; fill its border's, and the jet of their sum."""
     if not row[COUNT] > 0.0:
         return False
-    total[:] = 0.0
-    for s in range(int(row[COUNT])):
-        add_scaled(row[WEIGHT + s], below[family.denominator_of[int(row[INDEX + s])]], total)
-    size = -total[0]  # of what numerators are set off against: that much is lost by rounding
-    for s in range(int(row[COUNT])):
-        k = int(row[INDEX + s])
-        j, isotropic = family.numerator_point[k], row[WEIGHT + s] * family.numerator_isotropic[k]
-        link_jet(family, j, True, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], jet)
-        total[0], total[MOST] = total[0] + isotropic, total[MOST] + isotropic
-        add_jet(row[WEIGHT + s] * family.numerator_weight[k], jet, total)
-    total[0], total[MOST] = total[0] + ROUNDING * size, total[MOST] + ROUNDING * size
+    total[:], sums = 0.0, workspace.sums
+    identity, size = fill_sum(family, row, sums)
+    for j in range(sums.shape[0]):
+        if sums[j] != 0.0:
+            fill_jet(family, j, sums[j] > 0.0, axis_field, row, workspace)
+            add_jet(sums[j], workspace.jets[j], total)
+            size += abs(sums[j]) * workspace.jets[j, 0]  # to which rounding is relative
+    identity += ROUNDING * size
+    total[0], total[MOST] = total[0] + identity, total[MOST] + identity
     row[NU] = 0.0
     # plain bounds on every part are often enough, and cost nothing more
     if total[MOST] < 0.0 or box_maximum(total, row[HALF:LEVEL]) < 0.0:
@@ -197,28 +179,35 @@ def linear_bound(value, slopes, half):
 
 
 @inner_kernel
-def curved_multipliers(family, axis_field, row, below, jet, workspace):
+def curved_multipliers(family, axis_field, row, workspace):
     """Fill new multipliers into the row: the least upper bound of a mix of linear functions.
 
     Starts from the best single ratio and mixes in one ratio at a time by an exact line search; returns the
     smallest ratio at the centre relative to the level.
     """
-    n0, nw, ratios = family.numerator_isotropic, family.numerator_weight, family.numerator_weight.shape[0]
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
+    ratios, half, level = family.numerator_weight.shape[0], row[HALF:LEVEL], row[LEVEL]
     weights, values, gradients = workspace.weights, workspace.values, workspace.gradients
-    smallest = math.inf
+    smallest, total = math.inf, scratch(JET)
     for k in range(ratios):
-        link_jet(family, family.numerator_point[k], True, axis_field, centre, half, jet)
-        minus = below[family.denominator_of[k]]
-        smallest = min(smallest, (n0[k] + nw[k] * jet[0]) / -minus[0])
-        values[k] = minus[0] + n0[k] + nw[k] * jet[0]
+        g = family.denominator_of[k]
+        total[:] = 0.0
+        total[0] = -level * family.denominator_isotropic[g]
+        for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+            j = family.denominator_point[e]
+            fill_jet(family, j, False, axis_field, row, workspace)
+            add_jet(-level * family.denominator_weight[e], workspace.jets[j], total)
+        below, total[0] = -total[0] / level, total[0] + family.numerator_isotropic[k]
+        j = family.numerator_point[k]
+        fill_jet(family, j, True, axis_field, row, workspace)
+        add_jet(family.numerator_weight[k], workspace.jets[j], total)
+        values[k], smallest = total[0], min(smallest, total[0] / below / level + 1.0)
         for i in range(3):
-            gradients[k, i] = minus[SLOPE + i] + nw[k] * jet[SLOPE + i]
+            gradients[k, i] = total[SLOPE + i]
         for e in range(6):
             i, j = entry(e)
-            radius = nw[k] * jet[RADIUS + e] + minus[RADIUS + e]
+            radius = total[RADIUS + e]
             if i == j:  # concave along a side counts for nothing here: the mix is of linear functions
-                radius = max(0.0, radius + nw[k] * jet[BEND + e] + minus[BEND + e])
+                radius = max(0.0, radius + total[BEND + e])
             values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
     mix_in(values, gradients, half, weights[:ratios])
     keep_largest(weights, ratios, row)

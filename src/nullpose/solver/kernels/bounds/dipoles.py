@@ -14,15 +14,14 @@ from nullpose.solver.kernels.bounds.constants import (
     VECTOR_SQUARE_BEND,
     VECTOR_THIRD,
 )
-from nullpose.solver.kernels.bounds.denominators import group_weight
 from nullpose.solver.kernels.bounds.expansion import min_square
 from nullpose.solver.kernels.bounds.link_field import excess_end
 from nullpose.solver.kernels.bounds.link_vectors import add_shear, size_of, third_of
-from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
+from nullpose.solver.kernels.bounds.node import CENTRE, HALF, LEVEL
 from nullpose.solver.kernels.bounds.records import WORLD
 from nullpose.solver.kernels.compiler.jit import inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.forms import add_denominator, add_point, in_frame
+from nullpose.solver.kernels.linear_algebra.forms import add_point, in_frame
 from nullpose.solver.kernels.linear_algebra.links import isotropic_share, vector_jet
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_identity,
@@ -241,46 +240,23 @@ def add_anchor(family, shear, frame, centre, half, scale, matrix, slopes, rest):
 
 
 @inner_kernel
-def identity_weight(family, row):
-    """Return the multiple of the identity in a row's sum."""
-    total = 0.0
-    for s in range(int(row[COUNT])):
-        k = int(row[INDEX + s])
-        less = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
-        total += row[WEIGHT + s] * (family.numerator_isotropic[k] - less)
-    return total
-
-
-@inner_kernel
-def centre_form(family, frame, row, matrix):
+def centre_form(family, frame, row, identity, sums, matrix):
     """Add a row's sum at its box's centre."""
-    centre, basis = row[CENTRE:HALF], frame.basis
-    for s in range(int(row[COUNT])):
-        k, share = int(row[INDEX + s]), row[WEIGHT + s]
-        weight, isotropic = share * family.numerator_weight[k], share * family.numerator_isotropic[k]
-        add_point(family, family.numerator_point[k], centre, basis, weight, isotropic, matrix)
-        less = group_weight(family, row, s) * row[LEVEL]
-        if less > 0.0:
-            add_denominator(family, family.denominator_of[k], -less, centre, basis, matrix)
+    add_identity(identity, matrix)
+    for j in range(sums.shape[0]):
+        if sums[j] != 0.0:
+            add_point(family, j, row[CENTRE:HALF], frame.basis, sums[j], 0.0, matrix)
 
 
 @inner_kernel
-def add_links(family, shear, frame, row, v, matrix, slopes, rest):
+def add_links(family, shear, frame, row, identity, sums, v, matrix, slopes, rest):
     """Add a row's sum over its box from above: value at the centre, slopes, and what may come to them."""
     centre, half, jamming = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
-    add_identity(ROUNDING * row[LEVEL], rest)
-    for s in range(int(row[COUNT])):
-        k = int(row[INDEX + s])
-        strength = row[WEIGHT + s] * family.numerator_weight[k]
-        j = family.numerator_point[k]
-        strength *= excess_end(family, j, True, centre, half)
-        add_link(family, j, shear, frame, centre, half, v, 1.0, strength, matrix, slopes, rest)
-        weight = group_weight(family, row, s) * row[LEVEL]
-        g = family.denominator_of[k]
-        first, last = family.denominator_start[g], family.denominator_start[g + 1]
-        for e in range(first, last if weight > 0.0 else first):
-            j, scale = family.denominator_point[e], weight * family.denominator_weight[e]
-            scale *= excess_end(family, j, False, centre, half)
-            jamming += (1.0 - family.leak) * scale * shear.square if j == frame.anchor else 0.0
-            add_link(family, j, shear, frame, centre, half, v, -1.0, scale, matrix, slopes, rest)
-    add_turned_identity(shear, half, identity_weight(family, row), jamming, v, matrix, slopes, rest)
+    for j in range(sums.shape[0]):
+        if sums[j] != 0.0:
+            sign = math.copysign(1.0, sums[j])
+            strength = abs(sums[j]) * excess_end(family, j, sign > 0.0, centre, half)
+            if sign < 0.0 and j == frame.anchor:
+                jamming = (1.0 - family.leak) * strength * shear.square
+            add_link(family, j, shear, frame, centre, half, v, sign, strength, matrix, slopes, rest)
+    add_turned_identity(shear, half, identity, jamming, v, matrix, slopes, rest)

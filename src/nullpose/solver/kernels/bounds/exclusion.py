@@ -20,13 +20,8 @@ import numpy as np
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS
 from nullpose.solver.kernels.bounds.borders import borders, choose_border, weigh_borders
 from nullpose.solver.kernels.bounds.constants import CONSTANT_FORM_BEND, ROUNDING
-from nullpose.solver.kernels.bounds.denominators import (
-    add_mixed_denominators,
-    add_scaled as add_with_slopes,
-    sharpen,
-)
 from nullpose.solver.kernels.bounds.dipoles import add_constant, add_links, centre_form
-from nullpose.solver.kernels.bounds.expansion import expand_point, min_square
+from nullpose.solver.kernels.bounds.expansion import expand_once, min_square
 from nullpose.solver.kernels.bounds.link_vectors import Shear, shear_at
 from nullpose.solver.kernels.bounds.node import (
     ANCHOR,
@@ -38,19 +33,17 @@ from nullpose.solver.kernels.bounds.node import (
     FACE,
     FAR,
     HALF,
-    INDEX,
     KEPT_OUT,
     LEVEL,
     NU,
     SIDE,
-    WEIGHT,
     cell_side,
 )
-from nullpose.solver.kernels.bounds.records import WORLD
+from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum, most_heard
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import most_excess
-from nullpose.solver.kernels.linear_algebra.forms import congruence, form_value
+from nullpose.solver.kernels.linear_algebra.forms import bilinear, congruence, form_value
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_identity,
     add_scaled,
@@ -65,6 +58,7 @@ from nullpose.solver.kernels.search.zones import MOST_ALTERNATIVES
 
 _FORESEEN_SHARE = 0.7  # of a remainder: a half with multipliers of its own does better than is foreseen
 _CENTRE = (0.0, 0.0, 0.0)  # as a step from it
+_LARGEST_SHARE = 0.5  # of a form that is given up for a smaller remainder
 _DEFINITE = 1e-13  # least minor over the products that it consists of: many times its rounding
 
 
@@ -146,56 +140,88 @@ def add_side(form, weight, frame, matrix, matrix_slopes):
 
 
 @small_kernel
-def add_numerators(family, axis_field, frame, row, matrix, slopes):
-    """Add the numerators, the cell's sides and the band with the row's multipliers; return the remainder."""
-    centre, half = row[CENTRE:HALF], row[HALF:LEVEL]
-    form, form_slopes = scratch(6), scratch(3, 6)
-    half_square = 0.5 * dot(half, half)  # a remainder is this times a second derivative
-    everywhere = 0.0
-    for s in range(int(row[COUNT])):
-        k = int(row[INDEX + s])
-        weight = row[WEIGHT + s]
-        isotropic, strength = family.numerator_isotropic[k], family.numerator_weight[k]
-        j = family.numerator_point[k]
-        bend, _ = expand_point(family, j, True, frame, centre, half, form, form_slopes)
-        add_with_slopes(weight * strength, form, form_slopes, matrix, slopes)
-        add_identity(weight * isotropic, matrix)
-        size = isotropic + strength * (form[0] + form[1] + form[2])
-        everywhere += weight * (half_square * strength * bend + ROUNDING * size)
-    for number in range(3):
-        weight, level = constraint_of(axis_field, row, number, form)
-        if weight > 0.0:
-            add_identity(weight * level, matrix)  # which no frame turns
-            everywhere += half_square * add_side(form, weight, frame, matrix, slopes)
-            everywhere += 4.0 * ROUNDING * weight  # a form's entries are at most 1
-    return everywhere
+def add_linear(weight, form, slopes, matrix, matrix_slopes):
+    """Add a weighted form and its slopes to a matrix and its slopes."""
+    add_scaled(weight, form, matrix)
+    for i in range(3):
+        add_scaled(weight, slopes[i], matrix_slopes[i])
 
 
 @small_kernel
-def add_sum(family, axis_field, frame, row, below, matrix, slopes, rest):
-    """Fill the row's sum and its slopes and rest; return how much of the rest is the denominators'."""
-    copy_into(below[0], matrix)
-    copy_table(below[1], slopes)
-    below_rest, across = below[2]
-    if family.denominator_isotropic.shape[0] > 1:  # then what is below is zero
-        below_rest, across = add_mixed_denominators(family, frame, row, matrix, slopes)
-    everywhere = below_rest + add_numerators(family, axis_field, frame, row, matrix, slopes)
+def add_sum(family, axis_field, frame, row, workspace, matrix):
+    """Fill the row's sum, its slopes and its rest; return the rest of what is subtracted in it."""
+    centre, half, slopes, rest = row[CENTRE:HALF], row[HALF:LEVEL], workspace.slopes, workspace.rest
+    half_square = 0.5 * dot(half, half)  # a remainder is this times a second derivative
+    matrix[:], slopes[:, :] = 0.0, 0.0
+    identity, size = fill_sum(family, row, workspace.sums)
+    add_identity(identity, matrix)
+    everywhere, across, subtracted = ROUNDING * size, 0.0, 0.0
+    for j in range(workspace.sums.shape[0]):
+        weight = workspace.sums[j]
+        if weight != 0.0:
+            expand_once(family, j, weight > 0.0, frame, centre, half, workspace)
+            form, bend = workspace.forms[j], workspace.bends[j, 0]
+            add_linear(weight, form, workspace.form_slopes[j], matrix, slopes)
+            left = abs(weight) * (half_square * bend + ROUNDING * (form[0] + form[1] + form[2]))
+            if frame.kind == TOWARDS_POINT and j == frame.anchor:  # it lies across its own null only
+                across += (1.0 - family.leak) * left
+                left *= family.leak
+            everywhere += left
+            subtracted += left if weight < 0.0 else 0.0
+    side = scratch(6)
+    for number in range(3):
+        weight, level = constraint_of(axis_field, row, number, side)
+        if weight > 0.0:
+            add_identity(weight * level, matrix)  # which no frame turns
+            everywhere += half_square * add_side(side, weight, frame, matrix, slopes)
+            everywhere += 4.0 * ROUNDING * weight  # a form's entries are at most 1
     rest[:] = 0.0
-    rest[0] = rest[1] = everywhere + across  # the anchor's remainder lies across its own null only
+    rest[0] = rest[1] = everywhere + across
     rest[2] = everywhere
-    return below_rest
+    return subtracted
+
+
+@inner_kernel
+def sharpen(family, frame, row, workspace, matrix, slopes):
+    """Replace the remainders of what is subtracted by smaller ones where they are smaller.
+
+    With ``w = h r / |r|^2``, r seen in the frame, a link is ``|u x w|^2 + leak (u.w)^2``, a sum of squares
+    of numbers that are linear in w and together no longer than it; and the rest of w beyond first order is
+    at most ``W |x|^2 / 2`` at a step x from the centre. Since ``2 p q <= eta p^2 + q^2 / eta``, its
+    form is at least ``(1 - eta) (M + M'.x) - (W |x|^2 / 2)^2 / eta I`` for any eta in (0, 1): beside the
+    null, where M is small, far better than a remainder of the second order. The point that the frame turns
+    towards keeps its own.
+    """
+    centre, half, v, change = row[CENTRE:HALF], row[HALF:LEVEL], scratch(3), 0.0
+    top_eigenvector(matrix, v)
+    square = dot(half, half)
+    for j in range(workspace.sums.shape[0]):
+        scale = -workspace.sums[j]
+        if not scale > 0.0 or (frame.kind == TOWARDS_POINT and j == frame.anchor):
+            continue
+        expand_once(family, j, False, frame, centre, half, workspace)
+        form, fall, bend = workspace.forms[j], workspace.bends[j, 0], workspace.bends[j, 1]
+        value, trace = bilinear(form, v, v), form[0] + form[1] + form[2]
+        rest, plain = 0.5 * square * bend, 0.5 * square * fall
+        eta = rest / math.sqrt(max(value, 1e-12 * trace))
+        if eta < _LARGEST_SHARE and eta * value + rest * rest / eta < plain:
+            add_linear(scale * eta, form, workspace.form_slopes[j], matrix, slopes)
+            change += scale * (rest * rest / eta - plain + ROUNDING * (trace + rest * rest / eta))
+    add_identity(change, matrix)
 
 
 @rare_kernel
-def add_dipole_sum(family, axis_field, frame, row, matrix, slopes, rest):
+def add_dipole_sum(family, axis_field, frame, row, workspace, matrix):
     """Fill the row's sum and its slopes and rest where points have dipoles."""
     v, weights, turned, half = scratch(3), scratch(3), scratch(3, 6), row[HALF:LEVEL]
+    slopes, rest, sums = workspace.slopes, workspace.rest, workspace.sums
     shear = shear_at(
         family, frame, row[CENTRE:HALF], half,
         Shear(np.int64(WORLD), False, 0.0, scratch(3, 3), scratch(6, 3), zeroed(4)),
     )  # fmt: skip
     matrix[:], slopes[:, :], rest[:] = 0.0, 0.0, 0.0
-    centre_form(family, frame, row, matrix)
+    identity, size = fill_sum(family, row, sums)
+    centre_form(family, frame, row, identity, sums, matrix)
     q = scratch(6)
     for number in range(3):
         weights[number], level = constraint_of(axis_field, row, number, q)
@@ -207,7 +233,8 @@ def add_dipole_sum(family, axis_field, frame, row, matrix, slopes, rest):
     for number in range(3):
         if weights[number] > 0.0:
             add_constant(shear, half, weights[number], turned[number], matrix, slopes, rest)
-    add_links(family, shear, frame, row, v, matrix, slopes, rest)
+    add_identity(ROUNDING * size, rest)
+    add_links(family, shear, frame, row, identity, sums, v, matrix, slopes, rest)
 
 
 @small_kernel
@@ -230,38 +257,35 @@ def constraint_of(axis_field, row, number, form):
 
 
 @inner_kernel
-def excludes(family, domain, axis_field, frame, row, below, forecast):
-    """Check whether the row's multipliers exclude its box and cell; fill its border's, and the forecast.
-
-    ``below`` is ``-t D``, its slopes and its remainders, where all ratios share a denominator.
-    """
+def excludes(family, domain, axis_field, frame, row, workspace):
+    """Check whether the row's multipliers exclude its box and cell; fill its border's, and the forecast."""
     if not row[COUNT] > 0.0:
         return False
-    matrix, slopes = scratch(6), forecast.slopes
+    matrix, slopes = scratch(6), workspace.slopes
     dipoles = family.ground_axes.shape[0] > 0
-    row[NU] = below_rest = 0.0
+    row[NU] = subtracted = 0.0
     half, is_horizontal = row[HALF:LEVEL], has_horizontal_axes(axis_field)
     if dipoles:
-        add_dipole_sum(family, axis_field, frame, row, matrix, slopes, forecast.rest)
+        add_dipole_sum(family, axis_field, frame, row, workspace, matrix)
     else:
-        below_rest = add_sum(family, axis_field, frame, row, below, matrix, slopes, forecast.rest)
+        subtracted = add_sum(family, axis_field, frame, row, workspace, matrix)
     # without a remainder, at the centre: what fails there fails in every box about it, however small
     if row[BALL] < 0.0 and not negative_at(matrix, slopes, _CENTRE, is_horizontal):
-        forecast.rest[0] = math.inf
+        workspace.rest[0] = math.inf
         return False
-    copy_into(matrix, forecast.matrix)
-    add_scaled(1.0, forecast.rest, matrix)
+    copy_into(matrix, workspace.matrix)
+    add_scaled(1.0, workspace.rest, matrix)
     corner = failing_corner(matrix, slopes, _CENTRE, half, is_horizontal)
     if corner < 0:
         return True
     # sharper remainders cost as much as the test so far: only where none at all would let the corner pass
-    if not dipoles and passes_without(matrix, slopes, half, corner, below_rest, is_horizontal):
+    if not dipoles and passes_without(matrix, slopes, half, corner, subtracted, is_horizontal):
         if is_horizontal:  # what is off the level plane does not count
             matrix[2] = -2.0 * (abs(matrix[0]) + abs(matrix[1]) + abs(matrix[3]))
             matrix[4] = matrix[5] = 0.0
         slopes = scratch(3, 6)
-        copy_table(forecast.slopes, slopes)
-        sharpen(family, frame, row, matrix, slopes)
+        copy_table(workspace.slopes, slopes)
+        sharpen(family, frame, row, workspace, matrix, slopes)
         if failing_corner(matrix, slopes, _CENTRE, half, is_horizontal) < 0:
             return True
     return row[BALL] >= 0.0 and excludes_within_borders(domain, row, matrix, slopes, is_horizontal)
@@ -306,13 +330,11 @@ def out_of_reach(family, domain, row):
     """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
     centre, half, row[NU] = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
     for k in range(family.numerator_weight.shape[0]):
-        j, least = (
-            family.numerator_point[k],
-            row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]],
-        )
-        square = min_square(family.points_m, j, centre, half)
-        most = family.numerator_weight[k] * most_excess(family.channels, j, square)
-        if (family.numerator_isotropic[k] - least) * square + most < 0.0:
+        least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
+        if (
+            most_heard(family, k, min_square(family.points_m, family.numerator_point[k], centre, half))
+            < least
+        ):
             row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
     border = forbidding(domain, centre, half)

@@ -19,7 +19,7 @@ from nullpose.solver.kernels.bounds.link_field import (
     scaled_inverse,
     turned,
 )
-from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
+from nullpose.solver.kernels.bounds.node import CENTRE, HALF, LEVEL
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD, Frame
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
@@ -164,9 +164,19 @@ def reach_of_link(family, j, is_above, centre, half):
     return scaled_inverse(field, min_distance(family.points_m, j, centre, half))
 
 
+@inner_kernel
+def expand_once(family, j, is_above, frame, centre, half, workspace):
+    """Fill link j's form, its slopes and the bounds of ``expand_point``, unless the box's are there."""
+    side, form, slopes = (1.0 if is_above else -1.0), workspace.forms[j], workspace.form_slopes[j]
+    if workspace.expanded[j] != side:
+        bends = expand_point(family, j, is_above, frame, centre, half, form, slopes)
+        workspace.bends[j, 0], workspace.bends[j, 1] = bends
+        workspace.expanded[j] = side
+
+
 @small_kernel
-def best_frame(family, is_horizontal, row):
-    """Return the frame in which a box's remainders are smallest, and the point that it turns towards.
+def best_frame(family, is_horizontal, row, sums):
+    """Return the frame in which a sum's remainders are smallest, and the point that it turns towards.
 
     A frame that turns spares us the remainder of the point that it turns towards, and makes all others
     larger: worth it where one interferer outweighs the rest.
@@ -185,16 +195,15 @@ def best_frame(family, is_horizontal, row):
         if not rho > 0.0:
             return WORLD, anchor
     still = turning = 0.0
-    for s in range(int(row[COUNT])):
-        k = int(row[INDEX + s])
-        weight, j = row[WEIGHT + s] * family.numerator_weight[k], family.numerator_point[k]
-        reach = reach_of_link(family, j, True, centre, half)
-        still += weight * rise_of(reach, reach)
-        turning += weight * rise_of(reach, turned(reach, 1.0 / rho))
-    for e in range(family.denominator_weight.shape[0]):
-        j, weight = family.denominator_point[e], row[LEVEL] * family.denominator_weight[e]
-        reach = reach_of_link(family, j, False, centre, half)
-        still += weight * fall_of(reach)
-        if j != anchor:
-            turning += weight * fall_of(turned(reach, 1.0 / rho))
+    for j in range(sums.shape[0]):
+        weight = abs(sums[j])
+        if weight > 0.0:
+            reach = reach_of_link(family, j, sums[j] > 0.0, centre, half)
+            seen = turned(reach, 1.0 / rho)
+            if sums[j] > 0.0:
+                still += weight * rise_of(reach, reach)
+                turning += weight * rise_of(reach, seen)
+            else:
+                still += weight * fall_of(reach)
+                turning += weight * fall_of(seen) if j != anchor else 0.0
     return (TOWARDS_POINT if turning < still else WORLD), anchor

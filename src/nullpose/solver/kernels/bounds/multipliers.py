@@ -192,7 +192,7 @@ def interior_multipliers(
 
 
 @inner_kernel
-def free_multipliers(family, axis_field, basis, row, denominator, coarseness, workspace, axis):
+def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis):
     """Fill new multipliers for a free axis into the row; return (primal, rank-one value, whether known).
 
     Both values are at the centre and relative to the level: the first is what multipliers cannot beat, the
@@ -208,7 +208,7 @@ def free_multipliers(family, axis_field, basis, row, denominator, coarseness, wo
     )  # fmt: skip
     mean, back, v, places = scratch(6), scratch(3, 3), scratch(3), scratch_int(4)
     whitening = (workspace.denominators, mean, back)
-    whiten(family, basis, row, denominator, workspace.denominators, mean, back)
+    whiten(family, basis, row, workspace.denominators, mean, back)
     sides = constraint_forms(axis_field, basis, row, coarseness, back, pool.forms, places)
     for c in range(sides):
         pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])

@@ -46,13 +46,18 @@ class Goal(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Room for numbers of each ratio and of each denominator, made once for a run.
+    """Room for numbers of each ratio, denominator and point, made once for a run.
 
     Args:
         weights: (ratios + 4,) multipliers, of constraints too.
         values: (ratios,).
         gradients: (ratios, 3).
-        jets: (denominators, JET).
+        sums: (points,) coefficients of links.
+        expanded: (points,) whether the box's expansion of a link is there: 1 from above, -1 from below.
+        forms: (points, 6) expansions: forms at the centre.
+        form_slopes: (points, 3, 6) their slopes.
+        bends: (points, 2) bounds on the second derivatives of forms and of link vectors.
+        jets: (points, JET).
         denominators: (denominators, 6) forms.
         log_denominators: (denominators,).
         matrix: (6,) the last sum of forms at a box's centre.
@@ -67,6 +72,11 @@ class Workspace(NamedTuple):
     weights: FloatArray
     values: FloatArray
     gradients: FloatArray
+    sums: FloatArray
+    expanded: FloatArray
+    forms: FloatArray
+    form_slopes: FloatArray
+    bends: FloatArray
     jets: FloatArray
     denominators: FloatArray
     log_denominators: FloatArray

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from nullpose.solver.kernels.bounds.node import CENTRE, FACE, HALF, keep_largest
+from nullpose.solver.kernels.bounds.signed_sum import most_heard
 from nullpose.solver.kernels.compiler.jit import kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.search.search import cut_box
 
 
@@ -26,9 +26,7 @@ def reach_by_distance(family, domain):
         for i in range(3):
             x = family.points_m[family.numerator_point[k], i]
             away += (x - min(max(x, domain.low_m[i]), domain.high_m[i])) ** 2
-        away = max(away, square)
-        most = most_excess(family.channels, family.numerator_point[k], away) / away
-        ratio = family.numerator_isotropic[k] + family.numerator_weight[k] * most
+        ratio = most_heard(family, k, max(away, square))
         ratio /= family.denominator_isotropic[family.denominator_of[k]]
         if ratio < best:
             best, farthest = ratio, k

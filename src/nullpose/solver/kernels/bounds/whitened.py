@@ -27,7 +27,7 @@ from nullpose.solver.kernels.linear_algebra.forms import (
     inverse_factor,
 )
 from nullpose.solver.kernels.linear_algebra.links import denominator_at, numerator_at
-from nullpose.solver.kernels.linear_algebra.symmetric import smallest_of
+from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, smallest_of
 from nullpose.solver.kernels.linear_algebra.vectors import dot, store
 
 _THIN = 1e-6  # by how much the ends of a band are moved, in u_z^2, so that its dual has an inside, at least
@@ -53,29 +53,17 @@ def wider_band(axis_field, row, coarseness):
 
 
 @small_kernel
-def fill_denominators(family, basis, centre, denominators, mean):
-    """Fill every denominator at the centre, in the frame, and their mean."""
-    groups = denominators.shape[0]
-    denominators[:, :] = 0.0
-    mean[:] = 0.0
-    for g in range(groups):
-        add_denominator(family, g, 1.0, centre, basis, denominators[g])
-        for m in range(6):
-            mean[m] += denominators[g, m] / groups
-
-
-@small_kernel
-def whiten(family, basis, row, denominator, denominators, mean, back):
-    """Fill what whitens, and with several denominators each of them and their mean W, in the frame.
+def whiten(family, basis, row, denominators, mean, back):
+    """Fill every denominator at the centre, in the frame, their mean W, and what whitens it.
 
     A ratio's form is then that of ``N_k + t (W - D_k)``, which exceeds the level t exactly where the ratio
     does.
     """
-    if family.denominator_isotropic.shape[0] == 1:
-        for m in range(6):
-            mean[m] = -denominator[m] / row[LEVEL]
-    else:
-        fill_denominators(family, basis, row[CENTRE:HALF], denominators, mean)
+    groups = denominators.shape[0]
+    denominators[:, :], mean[:] = 0.0, 0.0
+    for g in range(groups):
+        add_denominator(family, g, 1.0, row[CENTRE:HALF], basis, denominators[g])
+        add_scaled(1.0 / groups, denominators[g], mean)
     inverse_factor(mean, back)
 
 
@@ -84,9 +72,8 @@ def ratio_form(family, is_horizontal, basis, row, whitening, k, out):
     """Fill the whitened form of one ratio at the centre."""
     denominators, mean, back = whitening
     den, level, raw = family.denominator_of, row[LEVEL], scratch(6)
-    several = family.denominator_isotropic.shape[0] > 1
     for m in range(6):
-        raw[m] = level * (mean[m] - denominators[den[k], m]) if several else 0.0
+        raw[m] = level * (mean[m] - denominators[den[k], m])
     weight, isotropic = family.numerator_weight[k], family.numerator_isotropic[k]
     add_point(family, family.numerator_point[k], row[CENTRE:HALF], basis, weight, isotropic, raw)
     congruence(raw, back, out)

@@ -45,12 +45,16 @@ def cut_box(family, low, high, level, box_low, box_high):
     copy_into(low, box_low)
     copy_into(high, box_high)
     for k in range(nw.shape[0]):
-        least = d0[den[k]] * math.exp(level) - n0[k]
+        least, square = d0[den[k]] * math.exp(level) - n0[k], 0.0
         if least > 0.0:
-            reach = reach_of(family.channels, npt[k], nw[k] / least)
+            reach, point = reach_of(family.channels, npt[k], nw[k] / least), points[npt[k]]
             for i in range(3):
-                box_low[i] = max(box_low[i], points[npt[k], i] - reach)
-                box_high[i] = min(box_high[i], points[npt[k], i] + reach)
+                square += max(0.0, low[i] - point[i], point[i] - high[i]) ** 2
+            for i in range(3):  # what is left of the reach beside the gaps along the other axes
+                gap = max(0.0, low[i] - point[i], point[i] - high[i])
+                left = math.sqrt(max(0.0, reach * reach - (square - gap * gap)))
+                box_low[i] = max(box_low[i], point[i] - left)
+                box_high[i] = min(box_high[i], point[i] + left)
 
 
 @heap_kernel
