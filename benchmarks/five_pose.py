@@ -1,6 +1,6 @@
 """The five-dimensional problem as the peers see it: x, y, z, roll, pitch, each scaled to [0, 1].
 
-The objective is nullpose's own compiled kernel, `min_log_ratio`, inside one kernel that takes the five
+The objective is nullpose's own compiled kernel, `log_objective`, inside one kernel that takes the five
 numbers, so that no peer pays for Python in it. The angles run over [-90, 90] degrees, as in the paper.
 """
 
@@ -19,7 +19,7 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
 from nullpose.solver.kernels.compiler.jit import heap_kernel
-from nullpose.solver.kernels.linear_algebra.links import derivatives, min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import derivatives, log_objective
 
 DIMENSIONS = 5
 
@@ -79,7 +79,7 @@ def cost(x, reals, counts):
     p, u = np.empty(3), np.empty(3)
     place(x, bounds, p, u)
     counts[0] += 1
-    return -min_log_ratio(family, p, u, logs, f)
+    return -log_objective(family, p, u, logs, f)
 
 
 @heap_kernel
@@ -90,7 +90,7 @@ def costs(xs, reals, counts):
     out = np.empty(xs.shape[0])
     for m in range(xs.shape[0]):
         place(xs[m], bounds, p, u)
-        out[m] = -min_log_ratio(family, p, u, logs, f)
+        out[m] = -log_objective(family, p, u, logs, f)
     counts[0] += xs.shape[0]
     return out
 

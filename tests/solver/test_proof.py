@@ -12,7 +12,7 @@ from nullpose.scenario import Airframe, Scenario, apply_overrides, load
 from nullpose.solver import solve
 from nullpose.solver.kernels.bounds import node
 from nullpose.solver.kernels.linear_algebra.axis import best_axis
-from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.multistart import multistart
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import Proof, prove
@@ -113,7 +113,7 @@ def test_a_poor_incumbent_is_improved() -> None:
     family = build_family(load(PAPER))
     best = multistart(family, AxisField.free(), seed=0)
     p, axis = np.array([20.0, 40.0, 20.0]), np.array([0.0, 0.0, 1.0])
-    poor_value = min_log_ratio(family.arrays, p, axis, np.empty(1), np.empty(2))
+    poor_value = log_objective(family.arrays, p, axis, np.empty(1), np.empty(2))
     poor = type(best)(
         position_m=p, axis=axis, log_value=poor_value, multipliers=np.full(2, 0.5), starts=0, evaluations=0
     )

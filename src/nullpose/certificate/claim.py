@@ -87,8 +87,9 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     value = smallest_ratio(family, position, axis, *profiles_of(fields), gains=excess_at(family, position))
     if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
         quantity = Quantity.of(certificate.scenario)
-        what = "ratio" if quantity.is_rate else quantity.noun
-        return f"pose: its smallest {what} is {float(value):.15g}, not {certificate.value:.15g}"
+        kind = "mean" if quantity.whole else "smallest"
+        what = f"{kind} ratio" if quantity.is_rate else quantity.smallest
+        return f"pose: its {what} is {float(value):.15g}, not {certificate.value:.15g}"
     return ""
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import most_excess
+from nullpose.certificate.elementary import log
 from nullpose.certificate.forms import cell_ends
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
@@ -27,6 +28,10 @@ def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) ->
         leaves: of the boxes, with level and ratio.
         boxes: to be tested.
     """
+    if len(family.shares):
+        near = np.stack([boxes.nearest2(family.points_m[j]) for j in family.numerator_point])
+        clear = np.maximum(near, Interval(family.keep_out_m).squared().low)
+        return np.asarray(log_most_mean(family, clear).high < log(Interval(leaves.level)).low)
     k = leaves.point
     point = family.numerator_point[k]
     a2 = np.maximum(boxes.nearest2(family.points_m[point]), Interval(family.keep_out_m).squared().low)
@@ -34,6 +39,16 @@ def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) ->
     below = Interval(leaves.level) * family.denominator_isotropic[family.denominator_of[k]]
     lack = Interval(family.numerator_isotropic[k]) - below
     return np.asarray((lack.high < 0.0) & ((lack * a2 + weight).high < 0.0))
+
+
+def log_most_mean(family: Family, square: FloatArray) -> Interval:
+    """Bound the logarithm of a mean beyond squared distances from the nodes, (ratios, ...), of any shape."""
+    total, below = Interval(0.0), family.denominator_isotropic[0]
+    for k, share in enumerate(family.shares):
+        point = np.full(square[k].shape, family.numerator_point[k])
+        heard = most_excess(family, point, square[k]) * Interval(family.numerator_weight[k]) / square[k]
+        total = total + log((heard + family.numerator_isotropic[k]) / below + family.offset) * share
+    return total
 
 
 def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
@@ -76,8 +91,10 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
         beyond = Interval(np.maximum(((Interval(points) - face_m) * inwards).low, 0.0)).squared()
         square = Interval((beyond + gap2[:, [1, 2, 0]] + gap2[:, [2, 0, 1]]).low.T)
         weight = most_excess(family, family.numerator_point, square.low) * Interval(family.numerator_weight)
-        out = (square.low > 0.0) & ((square * lack - weight).low >= 0.0)
-        fine = (face_m * inwards <= end_m * inwards) | np.any(out, axis=1)
+        out = np.any((square.low > 0.0) & ((square * lack - weight).low >= 0.0), axis=1)
+        if len(family.shares):
+            out = log_most_mean(family, square.low.T).high <= log(Interval(upper_bound)).low
+        fine = (face_m * inwards <= end_m * inwards) | out
         if not np.all(fine):
             i = int(np.argmin(fine))
             end = f"{'xyz'[i]} = {face_m[i]:g} m"

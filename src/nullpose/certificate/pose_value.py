@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.certificate.elementary import exp, log
+from nullpose.certificate.interval import Interval
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 
 if TYPE_CHECKING:
-    from nullpose.certificate.interval import Interval
     from nullpose.certificate.profile import Profile
 
 # An array of fractions.
@@ -142,7 +143,8 @@ def smallest_ratio(
 ) -> Fraction:
     """Return the smallest ratio at a pose (of paper eq. 2.1, say), exactly for the numbers given.
 
-    With channels a lower bound of it, as near as their excess gains are enclosed.
+    With channels a lower bound of it, as near as their excess gains are enclosed; of a mean of ratios, one as
+    near as logarithms are.
 
     Args:
         family: the ratios.
@@ -174,7 +176,13 @@ def smallest_ratio(
     )
     above = exact(family.numerator_weight) * heard[family.numerator_point]
     ratios = (exact(family.numerator_isotropic) + above) / denominators[family.denominator_of]
-    return Fraction(min(ratios))
+    if not len(family.shares):
+        return Fraction(min(ratios))
+    power = Interval(0.0)
+    for share, ratio in zip(family.shares, ratios, strict=True):
+        x = ratio + Fraction(family.offset)  # of which a double is off by less than its last two places
+        power = power + log(Interval(*(float(x) * np.array([1.0 - 1e-15, 1.0 + 1e-15])))) * share
+    return Fraction(float(exp(power).low))
 
 
 def field_offset(axis_field: AxisField, position: Exact, axis: Exact) -> Fraction:

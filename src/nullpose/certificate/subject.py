@@ -57,7 +57,7 @@ def _problem(scenario: Scenario) -> tuple[object, ...]:
     pattern = (
         None if scenario.antenna_record.is_quadratic else scenario.antenna
     )  # a dipole's is in the family
-    family = build_family(scenario, any_antenna=True, any_channel=True)
+    family = build_family(scenario, any_antenna=True, any_channel=True, any_objective=True)
     return family.digest, scenario.objective, scenario.axis_band, reach, pattern
 
 
@@ -75,8 +75,9 @@ def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:
 def sentence(certificate: Certificate, leaves: int) -> str:
     """State the claim of a certificate that was proved by so many leaves."""
     most, least, near = claim_numbers(certificate)
+    gives = "has" if Quantity.of(certificate.scenario).whole else "gives every node"
     return (
-        f"proved: {claim_words(certificate)} above {most}, and the stated pose gives every node {least} "
+        f"proved: {claim_words(certificate)} above {most}, and the stated pose {gives} {least} "
         f"or more, which is within {near} of it; {leaves} final boxes checked"
     )
 
@@ -85,7 +86,8 @@ def claim_words(certificate: Certificate) -> str:
     """State what a certificate excludes, up to the number that is the bound."""
     scenario = certificate.scenario
     axes = RECORDS[certificate.scheme].sentence(scenario, certificate.null_jammer)
-    what = f"gives every node {Quantity.of(scenario).with_article}"
+    quantity = Quantity.of(scenario)
+    what = f"has a {quantity.whole}" if quantity.whole else f"gives every node {quantity.with_article}"
     return f"in this scenario{_left_out(certificate)} no position{_places(certificate)} {axes} {what}"
 
 
@@ -115,7 +117,10 @@ def claim_numbers(certificate: Certificate) -> tuple[str, ...]:
     bound, value = certificate.upper_bound, certificate.value
     least = value * (1.0 - VALUE_RTOL)
     if Quantity.of(certificate.scenario).is_rate:
-        most_rate, least_rate = max(0.0, math.log2(bound) + 1e-12), max(0.0, math.log2(least) - 1e-12)
+        scale = Quantity.of(certificate.scenario).scale
+        most_rate, least_rate = (
+            max(0.0, scale * (math.log2(ratio) + slack)) for ratio, slack in ((bound, 1e-12), (least, -1e-12))
+        )
         ends = _rounded(most_rate, ROUND_CEILING), _rounded(least_rate, ROUND_FLOOR)
         return tuple(f"{text} bits/s/Hz" for text in (*ends, _apart(most_rate - least_rate)))
     most_db = _rounded(10.0 * math.log10(bound) + 1e-12, ROUND_CEILING, digits=7)

@@ -108,7 +108,7 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
         True
     """
     total = sum(len(tree.leaves) for tree in certificate.trees)
-    family = build_family(certificate.scenario, any_antenna=True, any_channel=True)
+    family = build_family(certificate.scenario, any_antenna=True, any_channel=True, any_objective=True)
     fields = claimed_axes(certificate.scenario, certificate.scheme, certificate.null_jammer)
     reason = claim_fault(certificate, family, fields) or pose_fault(certificate, family, fields or {})
     done = 0

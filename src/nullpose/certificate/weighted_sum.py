@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.certificate.certificate import Leaves
+from nullpose.certificate.elementary import exp, log
 from nullpose.certificate.interval import Interval, where
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -42,6 +43,29 @@ def mix_slots(leaves: Leaves) -> tuple[IntArray, FloatArray]:
     return ratio[:, which], weight[:, which]
 
 
+def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: FloatArray) -> Interval:
+    """Return by what the denominator is multiplied in the sum of a mean.
+
+    With ``X_k = a + N_k / D`` that is ``prod_k X_k^p_k``. Where it is at least t,
+    ``sum_k q_k X_k >= t prod_k (q_k / p_k)^p_k`` for any positive q, as the arithmetic mean of the
+    ``q_k X_k / p_k`` is no less than the geometric one. What is returned is the right side less
+    ``a sum_k q_k``, or not a number where that may be below zero.
+
+    Args:
+        family: the ratios.
+        ratio: (slots, l) which.
+        weight: (slots, l) q.
+        level: (l,) t.
+    """
+    power, total = log(Interval(level)), Interval(np.zeros(len(level)))
+    for k, share in enumerate(family.shares):
+        q = np.sum(np.where(ratio == k, weight, 0.0), axis=0)
+        power = power + (log(Interval(q)) - log(Interval(share))) * share
+        total = total + q
+    result = exp(power) - total * family.offset
+    return where(result.low >= 0.0, result, np.nan)
+
+
 def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Term]]:
     """Return a sum's multiple of the identity, and its terms.
 
@@ -75,6 +99,8 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         mine = np.where(family.denominator_of[ratio] == g, weight, 0.0)
         counts = np.any(mine > 0.0, axis=0)
         level = Interval(mine).total() * leaves.level
+        if len(family.shares):
+            level = mean_level(family, ratio, weight, leaves.level)
         identity = where(counts, identity - level * isotropic, identity)
         for e in range(*family.denominator_start[g : g + 2]) if np.any(counts) else ():
             point = np.full(len(leaves), family.denominator_point[e])

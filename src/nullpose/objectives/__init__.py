@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from nullpose.objectives.downlink import DOWNLINK
 from nullpose.objectives.min_sinr import MIN_SINR
+from nullpose.objectives.proportional_fair import PROPORTIONAL_FAIR
 from nullpose.objectives.ratios import FloatArray, IntArray, Ratios
 from nullpose.objectives.record import LEAST_RATE_BPS_HZ, ObjectiveRecord, Quantity
 from nullpose.objectives.relay import RELAY
 from nullpose.objectives.secrecy_rate import SECRECY_RATE
+from nullpose.objectives.sum_rate import SUM_RATE
 
 __all__ = [
     "LEAST_RATE_BPS_HZ",
@@ -24,7 +26,8 @@ __all__ = [
     "Ratios",
 ]
 
-RECORDS = {record.name: record for record in (MIN_SINR, SECRECY_RATE, DOWNLINK, RELAY)}
+_ALL = (MIN_SINR, SUM_RATE, PROPORTIONAL_FAIR, SECRECY_RATE, DOWNLINK, RELAY)
+RECORDS = {record.name: record for record in _ALL}
 
 USUAL = MIN_SINR.name
 """The objective of a scenario that names none."""

@@ -50,6 +50,9 @@ class Ratios(NamedTuple):
         shadow_start: (n + 1,) where the sides of each shadow begin.
         shadow_sides: (s, 5) outward unit normal and offset of each side, ``n . p <= c`` inside: there the
             excess gain is multiplied by the channel's ``BLOCKED``; and the offset of searches, a hair off.
+        shares: (r,) of a geometric mean ``prod_k (a + ratio_k)^share_k``, summing to one, where that is
+            maximised and not the smallest ratio; all ratios have one denominator then. Or (0,).
+        offset: a, 0 or 1.
     """
 
     points_m: FloatArray
@@ -69,6 +72,8 @@ class Ratios(NamedTuple):
     shadows_of_point: IntArray = np.zeros(1, dtype=np.int64)
     shadow_start: IntArray = np.zeros(1, dtype=np.int64)
     shadow_sides: FloatArray = np.zeros((0, 5))
+    shares: FloatArray = np.zeros(0)
+    offset: float = 0.0
 
 
 def points_of(scenario: Scenario, *kinds: str, others: tuple[str, ...] = ()) -> dict[str, Any]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from nullpose.objectives.ratios import FloatArray, Ratios
 
@@ -30,6 +32,8 @@ class Quantity:
         ratio: the name of the power ratio behind it: SINR at the drone, SNR at a node that receives.
         field: its name among the numbers of a link, ``values`` of :class:`nullpose.physics.Link`.
         terminals: over whom the smallest is taken.
+        whole: what is maximised, as in sum rate; empty for the smallest.
+        scale: a rate is so many times the logarithm of the ratio that stands for it.
     """
 
     name: str
@@ -40,6 +44,8 @@ class Quantity:
     ratio: str
     field: str
     terminals: str = "the nodes"
+    whole: str = ""
+    scale: float = 1.0
 
     @classmethod
     def named(cls, name: str) -> Quantity:
@@ -62,7 +68,7 @@ class Quantity:
     @property
     def smallest(self) -> str:
         """The objective in words, as in "smallest SINR"."""
-        return f"smallest {self.noun}"
+        return self.whole or f"smallest {self.noun}"
 
     @property
     def smallest_over(self) -> str:
@@ -77,13 +83,13 @@ class Quantity:
         """Return a node's number: a power ratio, or bits/s/Hz."""
         return float(link.values[self.field])
 
-    def least(self, links: Iterable[Link]) -> float:
-        """Return the smallest number over the nodes: the objective."""
-        return min(map(self.at, links))
-
     def of_ratio(self, ratio: float) -> float:
-        """Convert the smallest ratio of a problem: to ``log2`` of it, at least 0, for a rate."""
-        return math.log2(max(1.0, ratio)) if self.is_rate else ratio
+        """Convert the smallest ratio of a problem, or a mean: to ``log2`` of it, at least 0, for a rate."""
+        return self.scale * math.log2(max(1.0, ratio)) if self.is_rate else ratio
+
+    def to_ratio(self, value: float) -> float:
+        """Convert a number to the ratio that stands for it."""
+        return float(2.0 ** (value / self.scale)) if self.is_rate else value
 
     def gap(self, value: float, bound: float) -> float:
         """Return ``(bound - value) / value``, infinite for a ratio of zero.
@@ -111,6 +117,7 @@ class ObjectiveRecord:
             links get its decibels as well.
         ratios_at: from what is received at poses: the values of ``ratios`` there, ``(..., n_nodes, m)``, a
             row for each node; the quantity itself if left out, ``m`` being 1.
+        mean_offset: a, where ``prod_k (a + SINR_k)^share_k`` is maximised in place of the smallest ratio.
         transmits: whether the drone transmits: links are then measured at the nodes.
         interferers: the table of a scenario whose points stand in the denominators.
         needs: what a scenario must state for it: headings of tables; ``nodes.power`` for a key of the nodes,
@@ -125,7 +132,20 @@ class ObjectiveRecord:
     ratios: Callable[[Scenario], Ratios]
     evaluate: Callable[[Reception], Mapping[str, FloatArray]]
     ratios_at: Callable[[Reception], FloatArray] | None = None
+    mean_offset: float | None = None
     transmits: bool = False
     interferers: str
     needs: tuple[str, ...] = ()
     unused: tuple[str, ...] = ()
+
+    def value(self, scenario: Scenario, values: Mapping[str, FloatArray]) -> FloatArray:
+        """Evaluate the objective, (...), from the numbers of every node by name, each ``(..., n_nodes)``.
+
+        The smallest of the maximised quantity; or from the mean of the ``a + SINR_k``, by their shares.
+        """
+        quantity = self.quantity(scenario)
+        if self.mean_offset is None:
+            return np.asarray(np.min(values[quantity.field], axis=-1))
+        with np.errstate(divide="ignore"):
+            log = np.log(self.mean_offset + np.asarray(values["sinr"])) @ scenario.node_shares
+        return np.asarray(quantity.scale * log / math.log(2.0) if quantity.is_rate else np.exp(log))

@@ -13,7 +13,14 @@ from nullpose.physics.array import (
 )
 from nullpose.physics.decibel import from_db, to_db
 from nullpose.physics.error_case import ErrorCase, rotation_between
-from nullpose.physics.evaluate import Link, evaluate, min_margin, min_secrecy_rate, min_sinr
+from nullpose.physics.evaluate import (
+    Link,
+    evaluate,
+    min_margin,
+    min_secrecy_rate,
+    min_sinr,
+    objective_of_links,
+)
 from nullpose.physics.frames import (
     FramePose,
     Geodetic,
@@ -81,6 +88,7 @@ __all__ = [
     "min_sinr",
     "node_snr",
     "node_values",
+    "objective_of_links",
     "objective_value",
     "pose_frames",
     "ratios_under",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import overload
 
@@ -113,6 +113,17 @@ def links_of(scenario: Scenario, values: Mapping[str, FloatArray]) -> tuple[Link
         Link(name, dict(zip(columns, row, strict=True)))
         for name, row in zip(scenario.terminal_names, rows, strict=True)
     )
+
+
+def objective_of_links(scenario: Scenario, links: Sequence[Link]) -> float:
+    """Evaluate the scenario's objective from every node's link, in the scenario's order.
+
+    Args:
+        scenario: the nodes, and what is maximised.
+        links: as ``evaluate`` makes them.
+    """
+    values = {name: np.array([link.values[name] for link in links]) for name in links[0].values}
+    return float(scenario.objective_record.value(scenario, values))
 
 
 def with_decibels(values: Mapping[str, FloatArray]) -> dict[str, FloatArray]:

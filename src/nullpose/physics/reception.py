@@ -88,7 +88,8 @@ def objective_value(
     Returns:
         Array of shape ``(...)``: power ratios, or bits/s/Hz.
     """
-    return np.asarray(np.min(node_values(Reception(scenario, position_m, axis, case)), axis=-1))
+    record = scenario.objective_record
+    return record.value(scenario, record.evaluate(Reception(scenario, position_m, axis, case)))
 
 
 def node_values(reception: Reception) -> FloatArray:

@@ -6,7 +6,7 @@ import numpy as np
 
 from nullpose.channel.model import largest_excess_gain
 from nullpose.errors import require_usage
-from nullpose.objectives import FloatArray, IntArray
+from nullpose.objectives import USUAL, FloatArray, IntArray
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
@@ -17,9 +17,14 @@ LOUDEST = 1e16
 
 
 def build_family(
-    scenario: Scenario, *, any_antenna: bool = False, any_channel: bool = False, any_function: bool = False
+    scenario: Scenario,
+    *,
+    any_antenna: bool = False,
+    any_channel: bool = False,
+    any_function: bool = False,
+    any_objective: bool = False,
 ) -> Family:
-    """Build the family whose smallest ratio is what the scenario maximises.
+    """Build the family whose smallest ratio, or mean of ratios, is what the scenario maximises.
 
     The objective's record says which ratios these are (:mod:`nullpose.objectives`).
 
@@ -28,9 +33,10 @@ def build_family(
         any_antenna: whether the caller brings the gain of an antenna that is no dipole.
         any_channel: whether the caller knows every channel model.
         any_function: whether the caller brings the gain of channels that are functions in Python.
+        any_objective: whether the caller knows means of ratios.
 
     Raises:
-        UsageError: the antenna is no dipole, or a channel is not known to the caller.
+        UsageError: the antenna is no dipole, or a channel or the objective is not known to the caller.
         ScenarioError: a jammer or an eavesdropper's signal is too strong for floating-point numbers.
     """
     require_usage(
@@ -48,7 +54,13 @@ def build_family(
         "channel: given a function in Python; allowed here: the channels that a file can state. There "
         "are solve, compare and evaluate for functions",
     )
-    ratios = scenario.objective_record.ratios(scenario)
+    record = scenario.objective_record
+    require_usage(
+        any_objective or record.mean_offset is None,
+        f'objective: given "{record.name}"; allowed here: those of the smallest ratio, such as "{USUAL}". '
+        "solve, compare, sweep and evaluate know it for one dipole, in the channels that a file can state",
+    )
+    ratios = record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
     _refuse_the_loudest(scenario, family)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate
+from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.report.geometry import azimuth_rad, tilt_rad
 from nullpose.scenario import Scenario
 from nullpose.study.evaluation import pose_faults
@@ -39,7 +39,7 @@ def more_decimals(scenario: Scenario, pose: Pose) -> int:
     quantity, is_allowed = Quantity.of(scenario), not any(pose_faults(scenario, pose))
 
     def value(typed: Pose) -> float:
-        return quantity.in_unit(quantity.least(evaluate(scenario, typed)))
+        return quantity.in_unit(objective_of_links(scenario, evaluate(scenario, typed)))
 
     exact = value(pose)
     last_digit = 10.0 ** (math.floor(math.log10(min(max(abs(exact), 0.1), 1e9))) - 6)  # of seven

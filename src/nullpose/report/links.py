@@ -22,7 +22,7 @@ _NULLED_DB = -150.0  # what is below it is rounding of the angle
 def binding_nodes(result: Result) -> frozenset[str]:
     """List the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``."""
     quantity = result.objective.quantity
-    most = quantity.least(result.links) * (1.0 + BINDING_RTOL)
+    most = min(map(quantity.at, result.links)) * (1.0 + BINDING_RTOL)
     return frozenset(link.node for link in result.links if quantity.at(link) <= most)
 
 

@@ -101,6 +101,17 @@ class PointArrays:
     """What each node's SINR is divided by to give its margin, linear, (n_nodes,)."""
     terminal_required_sinr = _stacked("terminals", "required_sinr")
     """The same of all terminals, (n_terminals,)."""
+
+    @property
+    def node_weights(self) -> Floats:
+        """The nodes' weights in a sum or a mean, (n_nodes,)."""
+        return np.array([1.0 if node.weight is None else node.weight for node in self.nodes])
+
+    @property
+    def node_shares(self) -> Floats:
+        """The weights over their sum, (n_nodes,)."""
+        return self.node_weights / np.sum(self.node_weights)
+
     node_antennas = _antennas("nodes")
     """The nodes' antennas; None where all are isotropic."""
     node_channels = _channels("nodes")

@@ -216,8 +216,8 @@ def _places_of(
         table = table_of(type(scenario), kind)
         yield (kind,), [table.heading() if table else kind], [(kind,)] if getattr(scenario, kind) else []
     else:
-        ways = next(ways for ways in Node.ways if ways.groups[0][0].startswith(quantity))
-        keys = [key for group in ways.groups for key in group]
+        ways = (ways.groups for ways in Node.ways if ways.groups[0][0].startswith(quantity))
+        keys = [key for group in next(ways, ((quantity,),)) for key in group]
         yield from (
             (place, keys, [(*place, key) for key in keys if getattr(point, key) is not None])
             for place, point in points.items()

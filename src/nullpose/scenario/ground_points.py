@@ -263,7 +263,8 @@ class Terminal(Noisy):
 
     weight: Weight | None = optional(
         "What the node's SINR is divided by before the smallest is taken: a node of weight 2 is "
-        "given twice the SINR. Either this or min_sinr_db, or neither, which is a weight of 1.",
+        "given twice the SINR; or how often it counts in a sum of rates or a mean. Either this or "
+        "min_sinr_db, or neither, which is a weight of 1.",
         2.0,
     )
     min_sinr_db: RatioDecibels | None = optional(

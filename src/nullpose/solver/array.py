@@ -9,9 +9,9 @@ import numpy as np
 
 from nullpose.errors import require_usage
 from nullpose.files import PlainTable
-from nullpose.objectives import USUAL, FloatArray, Quantity
+from nullpose.objectives import USUAL, FloatArray
 from nullpose.objectives.min_sinr import with_margins
-from nullpose.physics import Pose
+from nullpose.physics import Pose, objective_of_links
 from nullpose.physics.array import ComplexArray, digital_sinr, digital_weights, placed_elements
 from nullpose.physics.evaluate import links_of
 from nullpose.problem.axis_field import AxisField
@@ -92,7 +92,7 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
         scheme="array-digital",
         pose=pose,
         links=links,
-        value=Quantity.of(scenario).least(links),
+        value=objective_of_links(scenario, links),
         upper_bound=None if bound is None else bound.value,
         reason="" if reached or bound is None else bound.reason,
         settings=options.settings,

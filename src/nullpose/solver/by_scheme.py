@@ -10,8 +10,7 @@ from functools import partial
 import numpy as np
 
 from nullpose.errors import UsageError
-from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate
+from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -57,7 +56,7 @@ def solve_by_scheme(
         scheme=scheme,
         pose=pose,
         links=links,
-        value=Quantity.of(scenario).least(links),
+        value=objective_of_links(scenario, links),
         upper_bound=outcome.upper_bound,
         reason=outcome.reason,
         settings=options.settings,
@@ -105,7 +104,13 @@ def solve_scheme(
     if null_jammer is not None and null_jammer not in (names := scenario.jammer_names):
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
     is_dipole = scenario.antenna_record.is_quadratic
-    family = build_family(scenario, any_antenna=True, any_channel=True, any_function=is_dipole)
+    family = build_family(
+        scenario,
+        any_antenna=True,
+        any_channel=True,
+        any_function=is_dipole,
+        any_objective=is_dipole and not scenario.has_custom_channels,
+    )
     if not is_dipole:
         from nullpose.solver.pattern import solve_pattern  # and SciPy with it
 

@@ -18,6 +18,7 @@ from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
+from nullpose.problem.family import Family
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import MOST_LEAVES
 from nullpose.solver.proof import MOST_HALVINGS, Proof
@@ -25,24 +26,31 @@ from nullpose.solver.result import Result
 from nullpose.solver.rigour import Rigour, bound_above
 
 
-def leaves_of(proof: Proof, axis: str) -> Leaves:
+def leaves_of(proof: Proof, axis: str, family: Family) -> Leaves:
     """Convert a proof's leaves, their boxes as dyadic parts of the root.
 
     Args:
         proof: with its root and leaves.
         axis: the name of its axis field in a certificate.
+        family: the ratios.
     """
-    return _of_profile(proof) if axis == "profile" else _of_dipole(proof)
+    return _of_profile(proof) if axis == "profile" else _of_dipole(proof, family)
 
 
-def _of_dipole(proof: Proof) -> Leaves:
+def _of_dipole(proof: Proof, family: Family) -> Leaves:
     from nullpose.solver.kernels.bounds import node
+    from nullpose.solver.kernels.bounds.signed_sum import fill_tangents
 
     rows = proof.leaves
     test = rows[:, node.KIND].astype(np.int64)
-    ratios, weights = rows[:, node.INDEX : node.WEIGHT].astype(np.int64), rows[:, node.WEIGHT : node.BALL]
-    has_mix = np.isin(test, (WORLD, TOWARDS, AFFINE))
-    mix, mixes = _mixes(ratios, weights, np.where(has_mix, rows[:, node.COUNT], 0).astype(np.int64))
+    ratios, weights = rows[:, node.INDEX : node.WEIGHT].astype(np.int64), rows[:, node.WEIGHT : node.TOUCH]
+    has_mix, count = np.isin(test, (WORLD, TOWARDS, AFFINE)), rows[:, node.COUNT]
+    if len(family.shares):
+        weights = np.empty((len(rows), len(family.shares)))
+        count = np.full(len(rows), weights.shape[1])
+        fill_tangents(family.arrays, rows, weights)
+        ratios = np.tile(np.arange(weights.shape[1]), (len(rows), 1))
+    mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0).astype(np.int64))
     point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0
     is_free = np.isin(test, (WORLD, TOWARDS))
@@ -194,8 +202,9 @@ def certificate_of(solution: Result) -> Certificate:
         raise UsageError(
             f"certificate: the proof {what}; ask for a wider --gap, or leave out --certificate and --verify"
         )
-    pose = solution.pose
-    value, bound = _ratios(solution, fields)
+    pose, known = solution.pose, {"any_antenna": True, "any_channel": True, "any_objective": True}
+    family = build_family(solution.scenario, **known)
+    value, bound = _ratios(solution, family, fields)
     return Certificate(
         scenario=solution.scenario,
         scheme=str(solution.scheme),
@@ -207,7 +216,7 @@ def certificate_of(solution: Result) -> Certificate:
         pitch_rad=pose.pitch_rad,
         yaw_rad=pose.yaw_rad,
         trees=tuple(
-            Tree(axis=axis, root_m=proof.root, leaves=leaves_of(proof, axis))
+            Tree(axis=axis, root_m=proof.root, leaves=leaves_of(proof, axis, family))
             for axis, proof in zip(fields, solution.proofs, strict=True)
         ),
         provenance=dict(solution.provenance),
@@ -237,14 +246,13 @@ def verified(solution: Result, on_progress: Callable[[int, int], None] | None = 
     )
 
 
-def _ratios(solution: Result, fields: Mapping[str, AxisField]) -> tuple[float, float]:
+def _ratios(solution: Result, family: Family, fields: Mapping[str, AxisField]) -> tuple[float, float]:
     """Evaluate the smallest ratio of a result's family at its pose, and the bound on it."""
     if not (objective := solution.objective).quantity.is_rate:
         assert objective.upper_bound is not None
         return objective.value, objective.upper_bound
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
-    family = build_family(solution.scenario, any_antenna=True, any_channel=True)
     place = exact(pose.position_m)
     value = float(smallest_ratio(family, place, axis, *profiles_of(fields), gains=excess_at(family, place)))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))

@@ -127,7 +127,7 @@ def compile_search() -> None:
     """Compile what is needed beside that, by a search of no round and a climb of no step."""
     from nullpose.solver.kernels.bounds.node import COLUMNS, keep_largest
     from nullpose.solver.kernels.bounds.root import fill_root
-    from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+    from nullpose.solver.kernels.linear_algebra.links import log_objective
     from nullpose.solver.kernels.search.search import search_and_climb
     from nullpose.solver.multistart import climb
 
@@ -136,8 +136,8 @@ def compile_search() -> None:
     family, weight = _smallest_family(), np.ones(1)
     up, high_m, row = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0]), np.zeros(COLUMNS)
     climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
-    fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, row)
-    min_log_ratio(family.arrays, high_m, up, weight, weight)
+    fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, up, row)
+    log_objective(family.arrays, high_m, up, weight, weight)
     keep_largest(weight, 1, row)
 
 

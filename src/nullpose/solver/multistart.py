@@ -75,18 +75,22 @@ class SearchSettings(NamedTuple):
 
 
 _LIGHT = SearchSettings(coarse=8, polished=1, rounds=1, patience=1, landmarks=2)
+_LIGHT_OF_MEAN = SearchSettings(coarse=32, polished=4, rounds=1, patience=1, landmarks=8)
 _NO_SEARCH = SearchSettings(coarse=0, polished=0, rounds=-1, patience=0)
 
 
-def search_settings(proof_follows: bool, field: AxisField) -> SearchSettings:
+def search_settings(proof_follows: bool, field: AxisField, is_mean: bool = False) -> SearchSettings:
     """Return the settings of a search: light if a proof follows, which repairs what the search misses.
 
     Args:
         proof_follows: whether one does.
         field: the axes; if a position gives the axis, the best place may be a needle over a landmark.
+        is_mean: whether a mean is maximised, which has more local maxima.
     """
     if not proof_follows:
         return SearchSettings()
+    if is_mean:
+        return _LIGHT_OF_MEAN
     return _LIGHT if field.is_free else _LIGHT._replace(landmarks=_ALL)
 
 

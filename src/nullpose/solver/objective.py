@@ -69,7 +69,7 @@ def objective_of(
     quantity = Quantity.of(scenario)
     bound = gap = None
     if ratio_bound is not None:
-        ratio = 2.0**value if quantity.is_rate else value
+        ratio = quantity.to_ratio(value)
         bound = max(value, quantity.of_ratio(float(bound_above(ratio, ratio_bound))))  # log2 is rounded
         gap = quantity.gap(value, bound)
     return Objective(

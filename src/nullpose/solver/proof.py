@@ -93,13 +93,13 @@ class _Run(BranchAndBound):
         bound: float,
         search: Callable[[], Incumbent] | None,
     ) -> None:
-        from nullpose.solver.kernels.bounds import branch, node, root
+        from nullpose.solver.kernels.bounds import branch, node, root, signed_sum
         from nullpose.solver.kernels.compiler.jit import entry_of
 
         super().__init__(limits, began, nodes)
         ratios = family.arrays
         self.family, self.axis_field = family, axis_field
-        self.node, self.branch = node, entry_of(branch.branch)
+        self.node, self.branch, self.touch = node, entry_of(branch.branch), signed_sum.touch
         self.incumbent, self.search = incumbent, search
         # the same on every machine: where improvements are noticed decides which pose is found
         self.chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
@@ -109,6 +109,7 @@ class _Run(BranchAndBound):
         self.has_gaps = axis_field.is_free and (
             len(ratios.numerator_point) > 2 or axis_field.band != (0.0, 1.0)
         )
+        self.is_mean = len(ratios.shares) > 0  # the gaps of a mean are small, and few boxes have one
         self.incumbent_row = np.zeros(node.COLUMNS)  # its multipliers are the incumbent's
         self.proved, farthest = entry_of(root.fill_root)(
             ratios,
@@ -117,6 +118,7 @@ class _Run(BranchAndBound):
             self.target,
             bound,
             incumbent.multipliers.copy(),
+            incumbent.axis,
             self.incumbent_row,
         )
         self.root = self.incumbent_row[None]
@@ -136,7 +138,7 @@ class _Run(BranchAndBound):
         pools: dict[float, WorkerPool] = {}
         examined, last = {_LATE: 0, _EARLY: 0}, self.node_limit - _FOR_STAGES
         for spare, boxes in _TRIES:
-            if spare == _EARLY and not self.has_gaps:
+            if spare == _EARLY and not (self.has_gaps and (boxes > _ALTERNATE or not self.is_mean)):
                 continue
             workers = pools.setdefault(spare, WorkerPool(self.root))
             self.spare, before = spare, self.nodes
@@ -194,11 +196,11 @@ class _Run(BranchAndBound):
 
     def _climb_from(self, position_m: FloatArray, axis: FloatArray, mu: float) -> bool:
         """Take up a pose, or the local maximum that it leads to, if it is better; check that it is."""
-        from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+        from nullpose.solver.kernels.linear_algebra.links import log_objective
 
         family = self.family.arrays
         logs = np.empty(len(family.denominator_isotropic)), np.empty(len(family.numerator_point))
-        start = float(min_log_ratio(family, position_m, axis, *logs))
+        start = float(log_objective(family, position_m, axis, *logs))
         found = climb(self.family, self.axis_field, position_m, axis, mu=mu, steps=100)
         if found.log_value < start:
             found = replace(found, log_value=start, position_m=position_m, axis=axis)
@@ -211,6 +213,7 @@ class _Run(BranchAndBound):
         self.incumbent = found
         self.incumbent_row, weights = np.zeros(self.node.COLUMNS), found.multipliers.copy()
         self.node.keep_largest(weights, len(weights), self.incumbent_row)
+        self.touch(self.incumbent_row, found.axis)
         return True
 
     def search_thoroughly(self) -> None:

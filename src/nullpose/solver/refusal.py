@@ -32,7 +32,10 @@ def refusal(scenario: Scenario, *, robust: bool = False) -> str | None:
             Inner(worst_polarised(require_dipole(scenario)))
         else:
             is_dipole = scenario.antenna_record.is_quadratic
-            build_family(scenario, any_antenna=True, any_channel=True, any_function=is_dipole)
+            known = is_dipole and not scenario.has_custom_channels
+            build_family(
+                scenario, any_antenna=True, any_channel=True, any_function=is_dipole, any_objective=known
+            )
     except UsageError as error:
         return str(error)
     return None

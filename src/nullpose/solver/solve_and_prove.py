@@ -74,7 +74,7 @@ def solve_and_prove(
     searches: list[Incumbent] = []
 
     def searched(field: AxisField, proof_follows: bool) -> Incumbent:
-        settings = search_settings(proof_follows, field)
+        settings = search_settings(proof_follows, field, len(family.shares) > 0)
         found = multistart(
             family, field, seed=options.seed, settings=settings, deadline=began + options.time_limit_s
         )

@@ -10,7 +10,7 @@ import numpy as np
 from nullpose.errors import checked, require_usage
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate
+from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.scenario import Scenario
 from nullpose.scenario.airspace import BORDER_M
 from nullpose.solver import Result, Status
@@ -119,14 +119,14 @@ def require_one_antenna(scenario: Scenario, verb: str) -> None:
 def evaluated(result: Result, scenario: Scenario, pose: Pose, upper_bound: float | None = None) -> Result:
     """Evaluate a pose in a scenario, with a bound if one holds; how it was found is that of a result."""
     links, quantity = tuple(evaluate(scenario, pose)), Quantity.of(scenario)
-    ratio_bound = 2.0**upper_bound if upper_bound is not None and quantity.is_rate else upper_bound
+    ratio_bound = None if upper_bound is None else quantity.to_ratio(upper_bound)
     rigour = None if upper_bound is None else result.rigour
     return replace(
         result,
         scenario=scenario,
         scheme="given",
         status=Status.POSE_GIVEN,
-        objective=objective_of(scenario, quantity.least(links), ratio_bound, rigour),
+        objective=objective_of(scenario, objective_of_links(scenario, links), ratio_bound, rigour),
         pose=pose,
         links=links,
         reason="",

@@ -167,7 +167,8 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
         each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in fixed]
         return np.asarray(np.max(each, axis=0))
     is_rate = result.objective.quantity.is_rate
-    if fields is not None and scenario.axis_band == (0.0, 1.0) and not is_rate:
+    is_smallest = scenario.objective_record.mean_offset is None
+    if fields is not None and scenario.axis_band == (0.0, 1.0) and not is_rate and is_smallest:
         axes = _exact_axes(scenario, positions_m, go_on)
     else:
         rank = _served if fields is None else objective_value

@@ -13,7 +13,7 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.linear_algebra.axis import best_axis
-from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.search.polish import polish
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -42,7 +42,7 @@ def run(family: Family, field: AxisField, p: np.ndarray, u: np.ndarray) -> tuple
 def value_at(family: Family, p: np.ndarray, u: np.ndarray) -> float:
     """Returns the smallest log ratio at a pose."""
     logs, out = np.empty(len(family.denominator_isotropic)), np.empty(len(family.numerator_point))
-    return min_log_ratio(family.arrays, p, u, logs, out)
+    return log_objective(family.arrays, p, u, logs, out)
 
 
 def log_ratio_slopes(family: Family, p: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies as st
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.linear_algebra.axis import best_axis
-from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.search.domain import push_out
 from nullpose.solver.kernels.search.search import cut_box
 
@@ -48,7 +48,7 @@ def test_no_better_pose_lies_outside_the_box_of_a_secrecy_family(seed: int, rand
     logs, out = np.empty(2), np.empty(3)
     values = np.array(
         [
-            min_log_ratio(family.arrays, p, u, logs, out)
+            log_objective(family.arrays, p, u, logs, out)
             for p, u in zip(positions, rng.normal(size=(200, 3)), strict=True)
         ]
     )

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.files import PlainTable, json_text
-from nullpose.physics import Pose, evaluate, pose_frames
+from nullpose.physics import Pose, evaluate, objective_of_links, pose_frames
 from nullpose.report.export.places import map_place, require_origin
 from nullpose.report.numbers import with_unit
 from nullpose.scenario import Airspace, NoFlyZone, Origin
@@ -72,7 +72,9 @@ def loss_words(result: Result) -> str:
     """
     scenario, pose, quantity = result.scenario, result.pose, result.objective.quantity
     level = Pose(pose.position_m, 0.0, 0.0, pose.yaw_rad, pose.mount_rad)
-    values = [quantity.in_unit(quantity.least(evaluate(scenario, each))) for each in (level, pose)]
+    values = [
+        quantity.in_unit(objective_of_links(scenario, evaluate(scenario, each))) for each in (level, pose)
+    ]
     left, whole = (with_unit(value, quantity) for value in values)
     sentences = [
         f"a plan holds no attitude: at a level hover there, at yaw {_heading_deg(result):.1f} deg clockwise "

@@ -9,7 +9,7 @@ import numpy as np
 
 from nullpose.files import PlainTable
 from nullpose.objectives import FloatArray, Quantity
-from nullpose.physics import Pose, evaluate, pose_frames
+from nullpose.physics import Pose, evaluate, objective_of_links, pose_frames
 from nullpose.physics.error_case import ErrorCase
 from nullpose.problem.robust import BindingCase
 from nullpose.scenario import Scenario
@@ -110,7 +110,7 @@ class GuardedPose:
     @property
     def nominal(self) -> float:
         """The objective without errors: a power ratio, or bits/s/Hz."""
-        return Quantity.of(self.scenario).least(evaluate(self.scenario, self.pose))
+        return objective_of_links(self.scenario, evaluate(self.scenario, self.pose))
 
     @property
     def guaranteed(self) -> float:

@@ -32,6 +32,7 @@ from nullpose.solver.kernels.bounds.node import (
     KIND,
     LEVEL,
     OFF_BAND,
+    TOUCH,
     WEIGHT,
     is_off_band,
     longest_side,
@@ -41,7 +42,7 @@ from nullpose.solver.kernels.bounds.node import (
 )
 from nullpose.solver.kernels.bounds.records import Workspace
 from nullpose.solver.kernels.bounds.sight import hidden_nowhere, in_sight
-from nullpose.solver.kernels.bounds.signed_sum import fill_sum, most_heard
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum, most_heard, touch
 from nullpose.solver.kernels.compiler.jit import (
     heap_kernel,
     inner_heap_kernel,
@@ -50,7 +51,7 @@ from nullpose.solver.kernels.compiler.jit import (
     small_kernel,
 )
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import corner_of, fill_affine, norm, store
 from nullpose.solver.kernels.search.domain import contains
@@ -111,6 +112,8 @@ def is_wide(row, least):
 def same_multipliers(row, other):
     """Check whether two rows have the same multipliers."""
     same = row[COUNT] == other[COUNT] and row[BAND] == other[BAND]
+    for s in range(TOUCH, BALL):
+        same = same and row[s] == other[s]
     for s in range(int(row[COUNT])):
         same = same and row[INDEX + s] == other[INDEX + s] and row[WEIGHT + s] == other[WEIGHT + s]
     return same
@@ -131,14 +134,14 @@ def beats_from(whole, domain, row, value, best, workspace, axis):
         return value > best
     if shadows and not value > best:
         return False
-    if math.exp(min_log_ratio(whole, centre, axis, logs[0], logs[1])) > best:
+    if math.exp(log_objective(whole, centre, axis, logs[0], logs[1])) > best:
         return True
     half = scratch(3)
     for i in range(3):  # many times what is between a shadow and a pose that is sure to be out of it
         half[i] = max(row[HALF + i], _APART_M)
     for corner in range(8 if shadows else 0):
         store(corner_of(centre, half, corner), workspace.place)
-        value = math.exp(min_log_ratio(whole, workspace.place, axis, logs[0], logs[1]))
+        value = math.exp(log_objective(whole, workspace.place, axis, logs[0], logs[1]))
         if value > best and contains(domain, workspace.place):
             return True
     return False
@@ -213,19 +216,22 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     workspace.expanded[:] = 0.0
     for j in family.denominator_point:
         fill_jet(family, j, False, axis_field, row, workspace)
-    row[KIND] = AFFINE
-    if lone_ratio(family, row, workspace):
+    row[KIND], is_mean = AFFINE, family.shares.shape[0] > 0
+    if is_mean:
+        fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+        touch(row, axis)
+    elif lone_ratio(family, row, workspace):
         return EXCLUDED, 0, 0
     for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
-        if attempt == 1:
+        if attempt == 1 and not is_mean:
             copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
         if attempt == 2:
-            reached = curved_multipliers(family, axis_field, row, workspace)
+            reached = math.inf if is_mean else curved_multipliers(family, axis_field, row, workspace)
             if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
                 fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
                 copy_into(row[CENTRE:HALF], workspace.place)
                 logs = workspace.log_denominators, workspace.values
-                value = math.exp(min_log_ratio(whole, workspace.place, axis, logs[0], logs[1]))
+                value = math.exp(log_objective(whole, workspace.place, axis, logs[0], logs[1]))
                 if value > goal.best * (1.0 + _BEATS):
                     return BETTER, 0, 1
         if excludes_curved(family, domain, axis_field, row, workspace, total):

@@ -116,7 +116,7 @@ def box_maximum(jet, half):
 @inner_kernel
 def excludes_curved(family, domain, axis_field, row, workspace, total):
     """Check whether the row's multipliers exclude its box; fill its border's, and the jet of their sum."""
-    if not row[COUNT] > 0.0:
+    if not (row[COUNT] > 0.0 or family.shares.shape[0] > 0):
         return False
     total[:], sums = 0.0, workspace.sums
     identity, size = fill_sum(family, row, sums)

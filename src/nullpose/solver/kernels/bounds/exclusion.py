@@ -40,7 +40,7 @@ from nullpose.solver.kernels.bounds.node import (
     cell_side,
 )
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
-from nullpose.solver.kernels.bounds.signed_sum import fill_sum, most_heard
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum, log_most_mean, most_heard
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.forms import bilinear, congruence, form_value
@@ -259,7 +259,7 @@ def constraint_of(axis_field, row, number, form):
 @inner_kernel
 def excludes(family, domain, axis_field, frame, row, workspace):
     """Check whether the row's multipliers exclude its box and cell; fill its border's, and the forecast."""
-    if not row[COUNT] > 0.0:
+    if not (row[COUNT] > 0.0 or family.shares.shape[0] > 0):
         return False
     matrix, slopes = scratch(6), workspace.slopes
     dipoles = family.ground_axes.shape[0] > 0
@@ -329,7 +329,11 @@ def excludes_within_borders(domain, row, matrix, slopes, is_horizontal):
 def out_of_reach(family, domain, row):
     """Return the kind of a box that needs no multipliers, too far or forbidden, or -1; fill its border."""
     centre, half, row[NU] = row[CENTRE:HALF], row[HALF:LEVEL], 0.0
-    for k in range(family.numerator_weight.shape[0]):
+    is_mean = family.shares.shape[0] > 0
+    if is_mean and log_most_mean(family, centre, half) < math.log(row[LEVEL]):
+        row[ANCHOR] = 0.0
+        return FAR
+    for k in range(0 if is_mean else family.numerator_weight.shape[0]):
         least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
         if (
             most_heard(family, k, min_square(family.points_m, family.numerator_point[k], centre, half))

@@ -10,6 +10,7 @@ from nullpose.problem.records import BAND_AXIS
 from nullpose.solver.kernels.bounds.ascent import POOL, Pool, ascend, lowest_missing, put_weights
 from nullpose.solver.kernels.bounds.exclusion import has_horizontal_axes
 from nullpose.solver.kernels.bounds.node import (
+    BALL,
     BAND,
     CELL,
     CENTRE,
@@ -17,6 +18,7 @@ from nullpose.solver.kernels.bounds.node import (
     HALF,
     LEVEL,
     SIDE,
+    TOUCH,
     keep_largest,
 )
 from nullpose.solver.kernels.bounds.whitened import (
@@ -31,7 +33,8 @@ from nullpose.solver.kernels.bounds.whitened import (
 from nullpose.solver.kernels.compiler.jit import inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers, positive_definite
-from nullpose.solver.kernels.linear_algebra.forms import smallest_form
+from nullpose.solver.kernels.linear_algebra.forms import congruence, smallest_form
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_square,
     copy_into,
@@ -149,10 +152,11 @@ def take_smallest(forms, every, below, most, pool, sides, total):
 
 
 @inner_kernel
-def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matrix):
+def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matrix, none):
     """Return the dual's primal value and how many forms it took: few at a time if there are many.
 
-    Begins with the pool and the ratios smallest at the start, and adds what turns out to be smaller.
+    Begins with the pool and the ratios smallest at the start, and adds what turns out to be smaller. ``none``
+    are the shares of no mean.
     """
     copy_into(start, matrix)
     below, found, counted = math.inf, math.inf, np.int64(0)
@@ -162,9 +166,20 @@ def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matri
         total = take_smallest(forms, every, below, max(_FEW, _MANY + sides - total), pool, sides, total)
         if total == counted:
             break
-        found = dual_multipliers(pool.forms, sides, total, level, stop, gap, start, pool.shares, matrix)
+        found = dual_multipliers(
+            pool.forms, sides, total, level, stop, gap, start, pool.shares, matrix, none, 0.0
+        )
         below, counted = found - _SLIGHT * level, total
     return found, total
+
+
+@inner_kernel
+def multiplier_accuracy(coarseness):
+    """Return how accurate an interior point's multipliers are to be: less exact where a box is large.
+
+    Those as sloppy as that exclude a box so small no sooner than its halves, for ever.
+    """
+    return max(_INTERIOR * coarseness, min(_FINE, max(_FINEST, coarseness)))
 
 
 @inner_heap_kernel
@@ -178,17 +193,56 @@ def interior_multipliers(
         return math.inf
     for k in range(ratios):
         ratio_form(family, has_horizontal_axes(axis_field), basis, row, whitening, k, forms[k])
-    # multipliers as sloppy as that exclude a box so small no sooner than its halves, for ever
-    accuracy = max(_INTERIOR * coarseness, min(_FINE, max(_FINEST, coarseness)))
-    primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix)
+    accuracy, none = multiplier_accuracy(coarseness), family.shares
+    primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix, none)
     top_eigenvector(matrix, v)
     _, reached = smallest_form(forms, v)
     if primal > level and primal - reached > coarseness * level:
         # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
-        primal, total = sparse_dual(forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix)
+        primal, total = sparse_dual(
+            forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix, none
+        )
         top_eigenvector(matrix, v)
     put_weights(pool, sides, total, ratios, weights)
     return primal
+
+
+@inner_kernel
+def fill_constraints(shares, sides, places, row):
+    """Fill the multipliers of the cell's sides and of the band into a row."""
+    row[SIDE] = row[SIDE + 1] = row[BAND] = 0.0
+    for c in range(sides):
+        row[abs(places[c])] += math.copysign(shares[c], places[c])
+
+
+@inner_heap_kernel
+def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarseness, v):
+    """Fill the form at which a mean's tangent is best, and the constraints' multipliers; return its value.
+
+    Minus infinity if no axis was met inside the row's cell and band.
+    """
+    ratios, start, matrix, turn = family.shares.shape[0], scratch(6), scratch(6), scratch(3, 3)
+    if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
+        return -math.inf
+    is_horizontal, accuracy = has_horizontal_axes(axis_field), multiplier_accuracy(coarseness)
+    forms, multipliers = np.empty((sides + ratios, 6)), np.empty(sides + ratios)
+    for k in range(sides + ratios):
+        if k < sides:
+            copy_into(pool.forms[k], forms[k])
+        else:
+            ratio_form(family, is_horizontal, basis, row, whitening, np.int64(k - sides), forms[k])
+            forms[k, 2] = 0.0 if is_horizontal else forms[k, 2]
+    found = dual_multipliers(
+        forms, sides, sides + ratios, 1.0, math.inf, accuracy, start, multipliers, matrix, family.shares,
+        family.offset,
+    )  # fmt: skip
+    copy_into(multipliers[:sides], pool.shares)
+    top_eigenvector(matrix, v)
+    for i in range(3):  # out of whitened coordinates, and out of the frame
+        for m in range(3):
+            turn[m, i] = dot(basis[i], whitening[2][:, m])
+    congruence(matrix, turn, row[TOUCH:BALL])
+    return found
 
 
 @inner_kernel
@@ -213,6 +267,17 @@ def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis
     for c in range(sides):
         pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])
     tolerance = max(_FINE, _LOOSE * coarseness)
+    if family.shares.shape[0] > 0:
+        found = touching_form(family, axis_field, basis, row, whitening, pool, sides, coarseness, v)
+        if found == -math.inf:
+            return math.inf, 0.0, False
+        fill_constraints(pool.shares, sides, places, row)
+        axis_of(basis, back, v, axis)
+        if axis_field.kind >= BAND_AXIS:
+            clamp_axis(axis_field, axis)
+        logs = workspace.log_denominators, every
+        reached = log_objective(family, row[CENTRE:HALF], axis, logs[0], logs[1])
+        return math.exp(found) / level, math.exp(reached) / level, True
     primal, followed, total = ascend(
         family,
         has_horizontal_axes(axis_field),
@@ -233,9 +298,7 @@ def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis
         followed = True
         if primal == math.inf:
             return math.inf, 0.0, False
-    row[SIDE] = row[SIDE + 1] = row[BAND] = 0.0
-    for c in range(sides):  # the multipliers of the cell's sides and of the band
-        row[abs(places[c])] += math.copysign(weights[ratios + c], places[c])
+    fill_constraints(weights[ratios:], sides, places, row)
     keep_largest(weights, ratios, row)
     if not followed:
         return primal / level, 0.0, False

@@ -23,7 +23,8 @@ COUNT = 17  # how many ratios have a multiplier
 INDEX = 18  # which they are
 SUPPORT = 8
 WEIGHT = INDEX + SUPPORT  # their multipliers, which sum to one
-BALL = WEIGHT + SUPPORT  # a keep-out ball that reaches into the box, or -1
+TOUCH = WEIGHT + SUPPORT  # of a mean: the form u u^T of an axis, or a mixture, at which its tangent is taken
+BALL = TOUCH + 6  # a keep-out ball that reaches into the box, or -1
 NU = BALL + 1  # and the multiplier of staying out of it, 1/m^2
 COLUMNS = NU + 1
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 from nullpose.solver.kernels.bounds.node import CENTRE, FACE, HALF, keep_largest
-from nullpose.solver.kernels.bounds.signed_sum import most_heard
+from nullpose.solver.kernels.bounds.signed_sum import most_heard, touch
 from nullpose.solver.kernels.compiler.jit import kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
+from nullpose.solver.kernels.linear_algebra.links import shifted_log
 from nullpose.solver.kernels.search.search import cut_box
 
 
@@ -20,6 +21,7 @@ def reach_by_distance(family, domain):
         domain: the positions.
     """
     best, farthest = math.inf, 0
+    mean = 0.0
     for k in range(family.numerator_weight.shape[0]):
         square = domain.keep_out_m**2
         away = 0.0
@@ -28,13 +30,17 @@ def reach_by_distance(family, domain):
             away += (x - min(max(x, domain.low_m[i]), domain.high_m[i])) ** 2
         ratio = most_heard(family, k, max(away, square))
         ratio /= family.denominator_isotropic[family.denominator_of[k]]
+        if family.shares.shape[0] > 0:
+            mean += family.shares[k] * shifted_log(family.offset, math.log(ratio))
         if ratio < best:
             best, farthest = ratio, k
+    if family.shares.shape[0] > 0:
+        best, farthest = math.exp(mean), 0
     return best * (1.0 + 1e-9), farthest
 
 
 @kernel
-def fill_root(family, domain, log_value, target, bound, weights, row):
+def fill_root(family, domain, log_value, target, bound, weights, axis, row):
     """Fill the box outside which no pose reaches the incumbent; return a bound on all, and its ratio.
 
     Args:
@@ -44,13 +50,14 @@ def fill_root(family, domain, log_value, target, bound, weights, row):
         target: the relative gap that is aimed at.
         bound: known before.
         weights: (ratios,) the incumbent's multipliers, which are used up.
+        axis: (3,) the incumbent's.
         row: (COLUMNS,) output, zeros before.
 
     Returns:
         The lower of the bound known and that from distances alone, and the ratio that the latter is from.
     """
     proved, farthest = reach_by_distance(family, domain)
-    proved, level, far = min(proved, bound), log_value, 0.0
+    proved, level, far = min(proved, bound), log_value, family.offset
     for isotropic in family.numerator_isotropic:
         far = max(far, isotropic)
     if far > 0.0:  # ratios tend to one far away, however little that is: the bound that is stated
@@ -60,6 +67,7 @@ def fill_root(family, domain, log_value, target, bound, weights, row):
     low, high = scratch(3), scratch(3)
     cut_box(family, domain.low_m, domain.high_m, level, low, high)
     keep_largest(weights, weights.shape[0], row)
+    touch(row, axis)
     for i in range(3):
         top = max(low[i], high[i])  # empty where two ratios are out of reach of each other: any place does
         row[CENTRE + i] = 0.5 * (low[i] + top)

@@ -134,6 +134,8 @@ def copy_side(side, sign, out):
 @inner_kernel
 def must_be_seen(family, row, k):
     """Check whether a ratio is too weak all over a box where its point's link is blocked."""
+    if family.shares.shape[0] > 0:  # of a mean no ratio must be anything
+        return False
     j, least = family.numerator_point[k], family.denominator_isotropic[family.denominator_of[k]]
     square, rest = (
         min_square(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL]),
@@ -296,5 +298,5 @@ def in_sight(family, domain, seen, row, workspace):
         family.denominator_of, family.denominator_isotropic, family.denominator_start,
         family.denominator_point, workspace.denominator_weight, family.turn, family.leak,
         family.ground_axes, family.ground_leaks, family.channels, family.shadows_of_point,
-        family.shadow_start, workspace.no_sides,
+        family.shadow_start, workspace.no_sides, family.shares, family.offset,
     )  # fmt: skip

@@ -1,15 +1,26 @@
 """The signed sum of links that a row's multipliers make: ``c_0 |u|^2 + sum_j c_j x_j``, ``x_j`` being link j.
 
 The multipliers ``lambda`` exclude every position and axis of a box where ``sum_k lambda_k (N_k - t D_k)`` is
-negative: a pose there has a ratio below the level t. Nothing beyond this file needs to know which ratio a
-link is of.
+negative: a pose there has a ratio below the level t. For the mean ``prod_k X_k^p_k`` of ``X_k = a + N_k / D``
+that is so where ``sum_k q_k (a D + N_k) - t prod_k (q_k / p_k)^p_k D`` is, for any positive q: the weighted
+arithmetic mean of the ``q_k X_k / p_k`` is no less than the geometric one. ``q_k = p_k / X_k`` at what the
+row's form receives is the tangent there. Nothing beyond this file needs to know which ratio a link is of.
 """
 
 from __future__ import annotations
 
-from nullpose.solver.kernels.bounds.node import COUNT, INDEX, LEVEL, WEIGHT
-from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
+import math
+
+import numpy as np
+
+from nullpose.solver.kernels.bounds.node import BALL, CENTRE, COUNT, HALF, INDEX, LEVEL, TOUCH, WEIGHT
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel, kernel, rare_kernel, small_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import most_excess
+from nullpose.solver.kernels.linear_algebra.forms import add_point
+from nullpose.solver.kernels.linear_algebra.links import shifted_log
+from nullpose.solver.kernels.linear_algebra.symmetric import add_square, fill_identity, form_product
+from nullpose.solver.kernels.linear_algebra.vectors import dot, square_range
 
 
 @inner_kernel
@@ -31,6 +42,8 @@ def fill_sum(family, row, sums):
     """Fill the coefficients of a row's sum, one for each point; return that of the identity and its parts."""
     identity = size = 0.0
     sums[:] = 0.0
+    if family.shares.shape[0] > 0:
+        return fill_mean(family, row, sums)
     for s in range(int(row[COUNT])):
         net, parts = add_ratio(family, int(row[INDEX + s]), row[LEVEL], row[WEIGHT + s], sums)
         identity, size = identity + net, size + parts
@@ -43,3 +56,66 @@ def most_heard(family, k, square):
     j = family.numerator_point[k]
     most = family.numerator_weight[k] * most_excess(family.channels, j, square) / square
     return family.numerator_isotropic[k] + most
+
+
+@kernel
+def touch(row, axis):
+    """Take the tangent of a row's mean at an axis, of any length."""
+    row[TOUCH:BALL] = 0.0
+    add_square(1.0 / dot(axis, axis), axis, row[TOUCH:BALL])
+
+
+@inner_kernel
+def received(family, j, row):
+    """Return what a row's form receives from point j at the box's centre, ``<M_j, U>``."""
+    world, form = scratch(3, 3), zeroed(6)
+    fill_identity(world)
+    add_point(family, j, row[CENTRE:HALF], world, 1.0, 0.0, form)
+    return form_product(form, row[TOUCH:BALL])
+
+
+@rare_kernel
+def fill_mean(family, row, sums):
+    """Do what ``fill_sum`` does for a mean of ratios."""
+    trace = row[TOUCH] + row[TOUCH + 1] + row[TOUCH + 2]
+    below, identity, weights, log_mean = trace * family.denominator_isotropic[0], 0.0, 0.0, 0.0
+    if not trace > 0.0:
+        return 0.0, 0.0
+    for e in range(family.denominator_weight.shape[0]):
+        below += family.denominator_weight[e] * received(family, family.denominator_point[e], row)
+    for k in range(family.shares.shape[0]):
+        j, isotropic = family.numerator_point[k], family.numerator_isotropic[k]
+        ratio = (isotropic * trace + family.numerator_weight[k] * received(family, j, row)) / below
+        x = max(family.offset + ratio, 1e-290)
+        q = family.shares[k] / x
+        sums[j] += q * family.numerator_weight[k]
+        identity, weights = identity + q * isotropic, weights + q
+        log_mean += family.shares[k] * math.log(x)
+    level = row[LEVEL] * math.exp(-log_mean) - family.offset * weights
+    for e in range(family.denominator_weight.shape[0]):
+        sums[family.denominator_point[e]] -= level * family.denominator_weight[e]
+    level *= family.denominator_isotropic[0]
+    return identity - level, identity + abs(level)
+
+
+@heap_kernel
+def fill_tangents(family, rows, tangents):
+    """Fill the multipliers q of a mean's ratios that the rows of leaves stand for, (l, ratios)."""
+    sums = np.empty(family.points_m.shape[0])
+    for i in range(rows.shape[0]):
+        sums[:] = 0.0
+        fill_mean(family, rows[i], sums)
+        for k in range(family.shares.shape[0]):
+            tangents[i, k] = sums[family.numerator_point[k]] / family.numerator_weight[k]
+
+
+@rare_kernel
+def log_most_mean(family, centre, half):
+    """Return the logarithm of the most that a mean is in a box, as distances alone show."""
+    total, below = 0.0, family.denominator_isotropic[0]
+    for k in range(family.shares.shape[0]):
+        square, _ = square_range(family.points_m[family.numerator_point[k]], centre, half, 3)
+        total += family.shares[k] * shifted_log(
+            family.offset, math.log(most_heard(family, k, square) / below)
+        )
+    return total + 1e-12 * (1.0 + abs(total))

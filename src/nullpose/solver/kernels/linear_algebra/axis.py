@@ -30,7 +30,7 @@ from nullpose.solver.kernels.linear_algebra.forms import (
     inverse_factor,
     smallest_form,
 )
-from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.linear_algebra.polynomial import real_roots
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     copy_into,
@@ -223,9 +223,9 @@ def best_axis(family, p, axis):
             congruence(numerators[k], back, forms[k])
         best_axis_of_forms(forms, v)
         store(unit((dot(back[0], v), dot(back[1], v), dot(back[2], v))), axis)
-        return min_log_ratio(family, p, axis, logs, f)
+        return log_objective(family, p, axis, logs, f)
     copy_into(v, axis)
-    best = min_log_ratio(family, p, axis, logs, f)
+    best = log_objective(family, p, axis, logs, f)
     for _ in range(_DINKELBACH_STEPS):
         for k in range(ratios):
             # without the divisor the iteration is only linear
@@ -233,7 +233,7 @@ def best_axis(family, p, axis):
             for m in range(6):
                 forms[k, m] = (numerators[k, m] - math.exp(best) * below[m]) / bilinear(below, axis, axis)
         best_axis_of_forms(forms, v)
-        value = min_log_ratio(family, p, v, logs, f)
+        value = log_objective(family, p, v, logs, f)
         if not value > best + 1e-15 * abs(best):
             break
         best = value

@@ -87,9 +87,23 @@ def feasible_step(matrix, slacks, changes, direction, trial):
     return 0.0
 
 
+@inner_kernel
+def primal_value(values, shares, offset):
+    """Return the smallest value, or with shares the logarithm of their mean."""
+    if shares.shape[0] == 0:
+        return smallest_of(values)
+    total = 0.0
+    for k in range(shares.shape[0]):
+        total += shares[k] * math.log(max(offset + values[k], 1e-290))
+    return total
+
+
 @heap_kernel
-def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, matrix):
+def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, matrix, shares, offset):
     """Fill the multipliers of forms, which sum to one, and of the ``sides`` constraints before them.
+
+    With shares, ``sum_k share_k log(a + <A_k, U>)`` is maximised in place of the smallest, and stated and
+    returned as that number; only the constraints get multipliers, in its units.
 
     Stops early when the matrix found already has ``min_k <A_k, U> > stop``: no multipliers then bring the
     largest eigenvalue below it. And when the multipliers bring it so far below that better ones gain little.
@@ -104,29 +118,35 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
         start: (6,) positive definite matrix of unit trace that meets the constraints strictly.
         multipliers: output, (total,) or more.
         matrix: output, (6,): the primal matrix U.
+        shares: (total - sides,) of a mean, or (0,).
+        offset: a.
 
     Returns:
         The primal value ``min_k <A_k, U>``.
     """
+    is_mean = shares.shape[0] > 0
     rates, values, slacks, changes = np.empty((total, 6)), np.empty(total), np.empty(total), np.zeros(total)
     duals, system, gradient = np.empty(total), scratch(6, 6), scratch(6)
     direction, trial = scratch(6), scratch(6)
     copy_into(start, matrix)
     for k in range(total):
         fill_slopes(forms[k], rates[k])
-        rates[k, 5] = 0.0 if k < sides else -1.0
+        rates[k, 5] = 0.0 if k < sides or is_mean else -1.0
         values[k] = form_product(forms[k], matrix)
-    smallest = smallest_of(values[sides:])
+    smallest = primal_value(values[sides:], shares, offset)
     mu, end = _FIRST * max(abs(level), abs(smallest)), gap * abs(level) / (total + 3)
-    s = smallest - mu * (total - sides)
+    s = 0.0 if is_mean else smallest - mu * (total - sides)
     below = stop if stop < math.inf else -math.inf
     for _ in range(_MOST_STEPS):
-        system[:, :], gradient[:], gradient[5] = 0.0, 0.0, 1.0
+        system[:, :], gradient[:] = 0.0, 0.0
+        gradient[5], system[5, 5] = (0.0, 1.0) if is_mean else (1.0, 0.0)
         for k in range(total):
-            slacks[k] = values[k] + s * rates[k, 5]
-            duals[k] = mu / slacks[k]
+            slacks[k] = values[k] + s * rates[k, 5] + (offset if is_mean and k >= sides else 0.0)
+            weight = shares[k - sides] if is_mean and k >= sides else mu
+            duals[k] = weight / slacks[k]
+            at = slice(k, k + 1)
+            add_constraints(slacks[at], duals[at], rates[at], np.int64(6), weight, system, gradient)
         add_log_det(matrix, mu, system, gradient)
-        add_constraints(slacks, duals, rates, np.int64(6), mu, system, gradient)
         if not cholesky_factor(system, np.int64(6)):
             break
         copy_into(gradient, direction)
@@ -140,7 +160,7 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
         s += step * direction[5]
         for k in range(total):
             values[k] += step * (changes[k] - rates[k, 5] * direction[5])
-        smallest = smallest_of(values[sides:])
+        smallest = primal_value(values[sides:], shares, offset)
         is_centred = inner(gradient, direction, 6) <= mu
         if smallest > stop or (is_centred and (mu <= end or mu * total <= _MARGIN * (below - smallest))):
             break
@@ -148,8 +168,8 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
             mu = max(_SHRINK * mu, 0.999 * end)
     for k in range(total):  # to first order in the last step: the slacks alone are far less accurate
         multipliers[k] = max(0.0, 1.0 - changes[k] / slacks[k]) / slacks[k]
-    weight = 0.0
-    for k in range(sides, total):
+    weight = 1.0 / mu if is_mean else 0.0
+    for k in range(sides, 0 if is_mean else total):
         weight += multipliers[k]
     for k in range(total):
         multipliers[k] /= weight

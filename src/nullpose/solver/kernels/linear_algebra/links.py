@@ -109,11 +109,28 @@ def log_ratios(family, p, u, log_denominators, out):
         out[k] = (math.log(value) if value > 0.0 else -math.inf) - log_denominator
 
 
+@inner_kernel
+def shifted_log(offset, log):
+    """Return ``log(a + x)`` from the logarithm of x, a being 0 or 1."""
+    return log if offset == 0.0 else max(0.0, log) + math.log1p(math.exp(-abs(log)))
+
+
+@small_kernel
+def objective_of(family, logs):
+    """Return the logarithm of what is maximised from those of the ratios: the smallest, or their mean's."""
+    if family.shares.shape[0] == 0:
+        return smallest_of(logs)
+    total = 0.0
+    for k in range(family.shares.shape[0]):
+        total += family.shares[k] * shifted_log(family.offset, logs[k])
+    return total
+
+
 @kernel
-def min_log_ratio(family, p, u, log_denominators, out):
-    """Return the smallest log ratio at a pose: the objective that every solver here maximises."""
+def log_objective(family, p, u, log_denominators, out):
+    """Return the logarithm of what every solver here maximises at a pose; fill the ratios'."""
     log_ratios(family, p, u, log_denominators, out)
-    return smallest_of(out)
+    return objective_of(family, out)
 
 
 @small_kernel

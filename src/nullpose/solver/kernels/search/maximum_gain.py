@@ -16,7 +16,7 @@ from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.axis import best_axis_of_forms
 from nullpose.solver.kernels.linear_algebra.channel import excess_at
 from nullpose.solver.kernels.linear_algebra.forms import bilinear, fill_forms, smallest_form
-from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, normalise, squared_distance, tangents
 
 _TIE = 1e-11
@@ -66,4 +66,4 @@ def maximum_gain_value(family, p, axis):
             normal[i] = point[i] - p[i]
         normalise(normal)
         quietest_on_circle(numerators, worst, level, denominators[0], normal, axis)
-    return min_log_ratio(family, p, axis, np.empty(groups), np.empty(ratios))
+    return log_objective(family, p, axis, np.empty(groups), np.empty(ratios))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from nullpose.objectives.ratios import Ratios
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS, NARROW_AXIS, Axes, Domain
-from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, rare_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.barrier import (
     barrier_value,
@@ -25,8 +25,8 @@ from nullpose.solver.kernels.linear_algebra.barrier import (
     residual,
     update_duals,
 )
-from nullpose.solver.kernels.linear_algebra.links import derivatives, log_ratios
-from nullpose.solver.kernels.linear_algebra.symmetric import copy_into, inner, smallest_of
+from nullpose.solver.kernels.linear_algebra.links import derivatives, log_objective, shifted_log
+from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, copy_into, inner, smallest_of
 from nullpose.solver.kernels.search.local_coordinates import (
     add_slack_slopes,
     axis_at,
@@ -53,13 +53,19 @@ FloatArray = NDArray[np.float64]
 
 
 class Problem(NamedTuple):
-    """What is polished: the chosen sides of forbidden pieces, and which coordinates are free."""
+    """What is polished: the chosen sides of forbidden pieces, and which coordinates are free.
+
+    Of a pose's values those from ``first`` to ``last`` are to be above the level: the log ratios, or the one
+    of a mean that stands behind them. After them come the slacks.
+    """
 
     family: Ratios
     domain: Domain
     axis_field: Axes
     chosen: NDArray[np.int64]
     free: NDArray[np.bool_]
+    first: int
+    last: int
 
 
 class Point(NamedTuple):
@@ -98,26 +104,23 @@ def enter(problem, pose):
 @inner_kernel
 def fill_values(problem, pose, logs, values):
     """Fill the log ratios of a pose and after them its slacks, infinite for a coordinate not free."""
-    p, u, ratios = pose[:3], pose[3:], ratio_count(problem)
-    log_ratios(problem.family, p, u, logs, values[:ratios])
-    domain_slacks(p, u, problem.domain, problem.axis_field, problem.chosen, values[ratios:])
+    p, u, last = pose[:3], pose[3:], problem.last
+    ratios = values[: problem.family.numerator_point.shape[0]]
+    value = log_objective(problem.family, p, u, logs, ratios)
+    if problem.first > 0:
+        values[problem.first] = value
+    domain_slacks(p, u, problem.domain, problem.axis_field, problem.chosen, values[last:])
     for i in range(3):
         if not problem.free[i]:
-            values[ratios + i] = values[ratios + 3 + i] = math.inf
-
-
-@inner_kernel
-def ratio_count(problem):
-    """Count the log ratios among the values."""
-    return problem.family.numerator_point.shape[0]
+            values[last + i] = values[last + 3 + i] = math.inf
 
 
 @inner_kernel
 def reached(problem, values):
-    """Return the smallest log ratio, minus infinity outside the domain."""
-    ratios, band = ratio_count(problem), values.shape[0] - 2
-    if smallest_of(values[ratios:band]) >= 0.0 and smallest_of(values[band:]) >= -_BAND_EDGE:
-        return smallest_of(values[:ratios])
+    """Return the logarithm of what is maximised, minus infinity outside the domain."""
+    band = values.shape[0] - 2
+    if smallest_of(values[problem.last : band]) >= 0.0 and smallest_of(values[band:]) >= -_BAND_EDGE:
+        return smallest_of(values[problem.first : problem.last])
     return -math.inf
 
 
@@ -142,28 +145,54 @@ def begin(problem, point, logs, best_pose):
 
 
 @inner_kernel
-def fill_gaps(point, ratios, t):
-    """Fill the gaps of a point at a level."""
+def fill_gaps(problem, point, t):
+    """Fill the gaps of a point at a level; the ratios of a mean have none."""
     for c in range(point.values.shape[0]):
-        point.gaps[c] = point.values[c] - (t if c < ratios else 0.0)
+        point.gaps[c] = math.inf if c < problem.first else point.values[c] - (t if c < problem.last else 0.0)
+
+
+@inner_kernel
+def slope_of_mean(family, k, log):
+    """Return the derivative of a mean's logarithm by that of ratio k."""
+    return family.shares[k] * math.exp(log - shifted_log(family.offset, log))
+
+
+@rare_kernel
+def mix_slopes(family, logs, duals, grads, hess):
+    """Fill the gradient of a mean's logarithm from the ratios'; add what bends it by their logarithms.
+
+    Its own dual stands behind those of the ratios, which are taken back: they have no gaps.
+    """
+    ratios = logs.shape[0]
+    grads[ratios, :] = 0.0
+    for k in range(ratios):
+        slope = slope_of_mean(family, k, logs[k])
+        bend = duals[ratios] * slope * (1.0 - slope / family.shares[k])
+        add_scaled(slope, grads[k], grads[ratios])
+        for i in range(6):
+            add_scaled(bend * grads[k, i], grads[k], hess[i])
+        duals[k] = 0.0
 
 
 @inner_kernel
 def linearise(problem, point, grads, parts, n, model, h):
     """Fill the rates of all gaps in the n search variables and the level, and the Lagrangian's Hessian."""
-    ratios = ratio_count(problem)
-    pose, duals, hess = point.pose, model.duals, scratch(6, 6)
-    f = point.values[:ratios]
+    ratios, first, last = problem.family.numerator_point.shape[0], problem.first, problem.last
+    pose, duals, hess, f = point.pose, model.duals, scratch(6, 6), point.values[:ratios]
+    for k in range(ratios if first > 0 else 0):
+        duals[k] = duals[first] * slope_of_mean(problem.family, k, f[k])
     derivatives(problem.family, pose[:3], pose[3:], duals[:ratios], f, grads[:ratios], hess, parts)
+    if first > 0:
+        mix_slopes(problem.family, f, duals, grads, hess)
     add_slack_slopes(
-        problem.domain, problem.axis_field, problem.chosen, pose, duals[ratios:], grads[ratios:], hess
+        problem.domain, problem.axis_field, problem.chosen, pose, duals[last:], grads[last:], hess
     )
     reduce_hessian(hess, model.directions, n, h)
     for c in range(duals.shape[0]):
         if point.gaps[c] < math.inf:
             for m in range(n):
                 model.rates[c, m] = inner(grads[c], model.directions[m], 6)
-        model.rates[c, n] = -1.0 if c < ratios else 0.0
+        model.rates[c, n] = -1.0 if first <= c < last else 0.0
     if problem.axis_field.kind >= NARROW_AXIS:  # a step at one height bends away from the straight one
         bend = pose[5] * inner(duals, grads[:, 5], duals.shape[0]) / (pose[3] ** 2 + pose[4] ** 2)
         for m in range(n - 2 if problem.axis_field.kind == NARROW_AXIS else n - 1, n):
@@ -173,14 +202,14 @@ def linearise(problem, point, grads, parts, n, model, h):
 @inner_kernel
 def longest_scale(problem, gaps, rates, step, n):
     """Return the largest share of a step that stays inside all but the balls, and the step's size."""
-    ratios, balls = ratio_count(problem), problem.domain.keep_out_points_m.shape[0]
+    last, balls = problem.last, problem.domain.keep_out_points_m.shape[0]
     largest = 0.0
     for m in range(n):
         largest = max(largest, abs(step[m]))
     scale = min(1.0, _LONGEST / largest)
-    for c in range(ratios, gaps.shape[0]):
+    for c in range(last, gaps.shape[0]):
         change = inner(rates[c], step, n)
-        if change < 0.0 and not ratios + 6 <= c < ratios + 6 + balls:
+        if change < 0.0 and not last + 6 <= c < last + 6 + balls:
             scale = min(scale, -_INSIDE * gaps[c] / change)
     return scale, largest
 
@@ -191,12 +220,13 @@ def line_search(problem, point, t, trial, model, n, mu, step, slope, scale, logs
 
     Before the step is shortened it is bent once, to follow a curved ridge. A share of zero: none climbs.
     """
-    ratios = ratio_count(problem)
-    f, new_f, bent = point.values[:ratios], trial.values[:ratios], scratch(6)
+    first = problem.first
+    f, new_f, bent = point.values[first : problem.last], trial.values[first : problem.last], scratch(6)
     floor = barrier_value(point.gaps, t, mu)
     for attempt in range(_ATTEMPTS):
         if attempt == 1:
-            bent_step(f, new_f, point.gaps, model.duals, model.rates, model.factor, n, scale, step, bent)
+            gaps, duals, rates = point.gaps[first:], model.duals[first:], model.rates[first:]
+            bent_step(f, new_f, gaps, duals, rates, model.factor, n, scale, step, bent)
             share, _ = longest_scale(problem, point.gaps, model.rates, bent, n)
             move(problem.axis_field, point.pose, model.directions, n, bent, share, trial.pose)
         else:
@@ -204,7 +234,7 @@ def line_search(problem, point, t, trial, model, n, mu, step, slope, scale, logs
             move(problem.axis_field, point.pose, model.directions, n, step, scale, trial.pose)
         fill_values(problem, trial.pose, logs, trial.values)
         new_t = best_level(new_f, mu)
-        fill_gaps(trial, ratios, new_t)
+        fill_gaps(problem, trial, new_t)
         value = barrier_value(trial.gaps, new_t, mu)
         if value >= floor + 1e-4 * scale * slope - 1e-15 * (1.0 + abs(floor)):
             return scale, new_t
@@ -217,15 +247,15 @@ def put_on_faces(problem, point, trial, model, logs, best, best_pose):
 
     A step in the search variables does so, since the axis must follow.
     """
-    ratios, m = ratio_count(problem), 0
+    last, m = problem.last, 0
     step, goal = zeroed(6), scratch(3)
     copy_into(point.pose[:3], goal)
     for i in range(3):
         if problem.free[i]:
             length = model.directions[m, i]
-            if model.duals[ratios + i] * length > _ACTIVE:
+            if model.duals[last + i] * length > _ACTIVE:
                 goal[i] = problem.domain.low_m[i]
-            if model.duals[ratios + 3 + i] * length > _ACTIVE:
+            if model.duals[last + 3 + i] * length > _ACTIVE:
                 goal[i] = problem.domain.high_m[i]
             step[m] = (goal[i] - point.pose[i]) / length
             m += 1
@@ -265,8 +295,10 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
     """Do what ``polish`` does in a domain."""
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
-    problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_))
-    count = ratios + slack_count(domain)
+    first = ratios if family.shares.shape[0] > 0 else 0
+    last = ratios + 1 if first > 0 else ratios
+    problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_), first, last)
+    count = last + slack_count(domain)
     point = Point(np.empty(6), np.empty(count), np.empty(count))
     trial = Point(np.empty(6), np.empty(count), np.empty(count))
     model = Model(np.zeros((5, 6)), np.zeros((count, 6)), np.empty(count), np.empty((6, 6)))
@@ -274,11 +306,11 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
     copy_into(p, point.pose)
     copy_into(u, point.pose[3:])
     best, value = begin(problem, point, logs, best_pose)
-    f, mu = point.values[:ratios], mu_start
+    f, mu = point.values[first:last], mu_start
     steps = stalled = 0
-    if value > -math.inf and smallest_of(point.values[ratios:]) > 0.0:
+    if value > -math.inf and smallest_of(point.values[last:]) > 0.0:
         t = best_level(f, mu)
-        fill_gaps(point, ratios, t)
+        fill_gaps(problem, point, t)
         for c in range(count):
             duals[c] = mu / point.gaps[c]
         grads, parts, h, step = np.empty((count, 6)), np.empty((groups, 50)), scratch(5, 5), scratch(6)
@@ -291,7 +323,7 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
                     break
                 mu = max(_MU_END, min(0.1 * mu, mu**1.5))
                 t = best_level(f, mu)
-                fill_gaps(point, ratios, t)
+                fill_gaps(problem, point, t)
             slope = newton_step(point.gaps, duals, model.rates, h, n, mu, model.factor, step)
             if math.isnan(slope):
                 break
@@ -316,7 +348,7 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
     for k in range(ratios):
         total += duals[k]
     for k in range(ratios):
-        multipliers[k] = duals[k] / total
+        multipliers[k] = duals[k] / total if total > 0.0 else 1.0 / ratios
     copy_into(best_pose[:3], p)
     copy_into(best_pose[3:], u)
     return best, steps

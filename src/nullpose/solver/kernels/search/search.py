@@ -12,12 +12,18 @@ import math
 import numpy as np
 
 from nullpose.problem.records import AFFINE_AXIS
-from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, kernel
+from nullpose.solver.kernels.compiler.jit import (
+    heap_kernel,
+    inner_heap_kernel,
+    inner_kernel,
+    kernel,
+    rare_kernel,
+)
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import reach_of
+from nullpose.solver.kernels.linear_algebra.channel import most_excess, reach_of
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
-from nullpose.solver.kernels.linear_algebra.links import min_log_ratio
+from nullpose.solver.kernels.linear_algebra.links import log_objective, shifted_log
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_scaled,
     copy_into,
@@ -34,7 +40,52 @@ _MAX_STEPS = 100
 _LEAST_GAIN = 1e-9
 _LEAST_CLIMB = 1e-12
 _ROUGH = 1e-2
+_FARTHEST_M, _BISECTIONS = 1e9, 30  # of the faces beyond which a mean is too small
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
+
+
+@inner_kernel
+def log_mean_beyond(family, low, high, side, face, sign):
+    """Return the logarithm of the most that a mean is beyond a face of a box, as distances alone show."""
+    total, below = 0.0, family.denominator_isotropic[0]
+    for k in range(family.shares.shape[0]):
+        j, square = family.numerator_point[k], 0.0
+        for i in range(3):
+            x = family.points_m[j, i]
+            gap = sign * (face - x) if i == side else max(low[i] - x, x - high[i])
+            square += max(0.0, gap) ** 2
+        most = family.numerator_weight[k] * most_excess(family.channels, j, square) / square
+        log = math.log((family.numerator_isotropic[k] + most) / below)
+        total += family.shares[k] * shifted_log(family.offset, log)
+    return total
+
+
+@rare_kernel
+def cut_box_of_mean(family, low, high, level, box_low, box_high):
+    """Cut a box around the nodes where beyond each face a mean stays below a level."""
+    for side in range(3):
+        for sign in (-1.0, 1.0):
+            start = -math.inf
+            for j in family.numerator_point:
+                start = max(start, sign * family.points_m[j, side])
+            inside, outside = 0.0, 1.0
+            while (
+                outside < _FARTHEST_M
+                and log_mean_beyond(family, low, high, side, sign * (start + outside), sign) > level
+            ):
+                inside, outside = outside, 2.0 * outside
+            if outside >= _FARTHEST_M:
+                continue
+            for _ in range(_BISECTIONS):
+                middle = 0.5 * (inside + outside)
+                if log_mean_beyond(family, low, high, side, sign * (start + middle), sign) > level:
+                    inside = middle
+                else:
+                    outside = middle
+            if sign > 0.0:
+                box_high[side] = min(box_high[side], start + outside)
+            else:
+                box_low[side] = max(box_low[side], -(start + outside))
 
 
 @kernel
@@ -44,6 +95,9 @@ def cut_box(family, low, high, level, box_low, box_high):
     npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
     copy_into(low, box_low)
     copy_into(high, box_high)
+    if family.shares.shape[0] > 0:
+        cut_box_of_mean(family, low, high, level, box_low, box_high)
+        return
     for k in range(nw.shape[0]):
         least, square = d0[den[k]] * math.exp(level) - n0[k], 0.0
         if least > 0.0:
@@ -81,8 +135,8 @@ def likely_axis(family, p, axis):
             congruence(plain, back, forms[k])
             if attempt == 0:
                 size = min(size, (forms[k, 0] + forms[k, 1] + forms[k, 2]) / 3.0)
-        axis_of_forms(forms, back, size, trial)
-        value = min_log_ratio(family, p, trial, logs, f)
+        axis_of_forms(forms, back, size, family.shares, family.offset, trial)
+        value = log_objective(family, p, trial, logs, f)
         if attempt > 0 and not value > best + 1e-3:
             break
         best = value
@@ -92,11 +146,23 @@ def likely_axis(family, p, axis):
 
 
 @inner_heap_kernel
-def axis_of_forms(forms, back, level, axis):
-    """Fill the axis that the dual of the smallest of several whitened forms suggests."""
+def axis_of_forms(forms, back, level, shares, offset, axis):
+    """Fill the axis that the dual of the smallest of several whitened forms, or of their mean, suggests."""
     start, matrix, v, multipliers = zeroed(6), scratch(6), scratch(3), np.empty(forms.shape[0])
     start[:3] = 1.0 / 3.0
-    dual_multipliers(forms, np.int64(0), forms.shape[0], level, math.inf, _ROUGH, start, multipliers, matrix)
+    dual_multipliers(
+        forms,
+        np.int64(0),
+        forms.shape[0],
+        level,
+        math.inf,
+        _ROUGH,
+        start,
+        multipliers,
+        matrix,
+        shares,
+        offset,
+    )
     top_eigenvector(matrix, v)
     for i in range(3):
         axis[i] = dot(back[i], v)
@@ -111,7 +177,7 @@ def start_axis(family, axis_field, p, u, logs, f):
     else:
         likely_axis(family, p, u)
         clamp_axis(axis_field, u)
-    return min_log_ratio(family, p, u, logs, f)
+    return log_objective(family, p, u, logs, f)
 
 
 @inner_kernel
