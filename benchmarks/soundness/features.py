@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -437,6 +438,29 @@ def _relay(rng: np.random.Generator) -> Table:
     return table | {"destination": end, "scheme": str(rng.choice(some))}
 
 
+def _mean(rng: np.random.Generator, objective: str) -> Table:
+    """Two to twenty nodes, some with weights, and up to three jammers, with what else a scene can state."""
+    makers = (_plain, _airframe, _no_fly, _together, _antennas)
+    while "eavesdroppers" in (table := makers[int(rng.integers(len(makers)))](rng)):
+        pass
+    nodes, jammers = int(rng.choice([2, 3, 4, 6, 10, 20])), int(rng.integers(4))
+    for kind, count in (("nodes", nodes), ("jammers", jammers)):
+        for _ in range(count - len(table[kind])):
+            place = rng.uniform(0.0, [60.0, 60.0, 5.0]).tolist()
+            table[kind].append({"position_m": place, "power_w": float(10.0 ** rng.uniform(-0.5, 0.5))})
+    del table["jammers"][jammers:]
+    for node in table["nodes"]:
+        node.pop("min_sinr_db", None)
+        if rng.uniform() < 0.3:
+            node["weight"] = float(10.0 ** rng.uniform(-1.0, 1.0))
+    if rng.uniform() < 0.3:
+        table["channel"] = _channel(rng)
+    some = ["optimum"] * 4
+    if "airframe" not in table:
+        some += ["vertical", "maximum-gain", *["zero-interference"] * jammers]
+    return table | {"objective": objective, "scheme": str(rng.choice(some))}
+
+
 _SIDES = ("x_m", "y_m", "altitude_m")
 
 FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
@@ -467,6 +491,8 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "ground-profile": _ground_profile,
     "downlink": _downlink,
     "relay": _relay,
+    "sum-rate": partial(_mean, objective="sum-rate"),
+    "proportional-fair": partial(_mean, objective="proportional-fair"),
 }
 
 ENDS = ("channel-ends", "narrow", "depths", "scales", "one-element")
@@ -485,7 +511,8 @@ def make_feature_scene(feature: str, number: int) -> Scene:
         try:
             scenario = Scenario.from_dict(table | {"name": f"{feature} {number}"})
             if scenario.array is None and scenario.antenna_record.is_quadratic:
-                build_family(scenario, any_channel=True)  # a jammer may be louder than a solver takes
+                # a jammer may be louder than a solver takes
+                build_family(scenario, any_channel=True, any_objective=True)
         except ScenarioError:
             if feature not in ENDS:
                 raise
