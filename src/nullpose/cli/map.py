@@ -34,7 +34,7 @@ def best_map(
     width: Width = None,
     json_output: JsonOutput = False,
 ) -> None:
-    """Draw a map of the smallest SINR at each position.
+    """Draw a map of the best value at each position.
 
     At each position the axis is the best one that the scheme allows.
 

@@ -22,7 +22,7 @@ def report(
         typer.Option(
             "--requirement-db",
             metavar="X",
-            help="Outage: a smallest SINR (margin, if nodes have min_sinr_db) below X dB.",
+            help="Outage: a value in dB (margin, if nodes have min_sinr_db) below X dB.",
             show_default="no outage for SINR, 0 dB for margins",
         ),
     ] = None,
@@ -31,7 +31,7 @@ def report(
         typer.Option(
             "--requirement-bps-hz",
             metavar="X",
-            help="Outage: a smallest secrecy rate below X bits/s/Hz.",
+            help="Outage: a rate below X bits/s/Hz.",
             show_default=False,
         ),
     ] = None,

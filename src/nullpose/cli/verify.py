@@ -73,10 +73,12 @@ def _proved_view(certificate: Certificate, leaves: int) -> View:
     from rich.text import Text
 
     from nullpose.certificate.subject import claim_numbers, claim_words, subject
+    from nullpose.objectives import Quantity
     from nullpose.report.document import document, head, pairs
     from nullpose.report.numbers import capitalised
 
     most, least, near = claim_numbers(certificate)
+    gives = "has" if Quantity.of(certificate.scenario).whole else "gives every node"
     rows = [
         ("upper bound", most),
         ("pose's value", least),
@@ -89,7 +91,5 @@ def _proved_view(certificate: Certificate, leaves: int) -> View:
         head(certificate.scenario.name),
         Text("PROVED", style="bold green"),
         pairs("", rows),
-        capitalised(
-            f"{claim_words(certificate)} above the bound. The stated pose gives every node the pose's value."
-        ),
+        capitalised(f"{claim_words(certificate)} above the bound. The stated pose {gives} the pose's value."),
     )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
 LEAST_RATE_BPS_HZ = 1e-3
-"""The relative gap of a smaller rate is that of this one, bits/s/Hz."""
+"""The relative gap of a smaller rate is that of this one, bits/s/Hz; of a sum, times its weights."""
+
+_Numbers = TypeVar("_Numbers", float, FloatArray)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +47,7 @@ class Quantity:
     field: str
     terminals: str = "the nodes"
     whole: str = ""
-    scale: float = 1.0
+    scale: float = field(default=1.0, compare=False)
 
     @classmethod
     def named(cls, name: str) -> Quantity:
@@ -71,6 +73,11 @@ class Quantity:
         return self.whole or f"smallest {self.noun}"
 
     @property
+    def smallest_short(self) -> str:
+        """The same for narrow columns, as in "SINR" or "sum rate"."""
+        return self.whole or self.short
+
+    @property
     def smallest_over(self) -> str:
         """The objective in words with those who count, as in "smallest SINR over the nodes"."""
         return f"{self.smallest} over {self.terminals}"
@@ -87,17 +94,17 @@ class Quantity:
         """Convert the smallest ratio of a problem, or a mean: to ``log2`` of it, at least 0, for a rate."""
         return self.scale * math.log2(max(1.0, ratio)) if self.is_rate else ratio
 
-    def to_ratio(self, value: float) -> float:
-        """Convert a number to the ratio that stands for it."""
-        return float(2.0 ** (value / self.scale)) if self.is_rate else value
+    def to_ratio(self, value: _Numbers) -> _Numbers:
+        """Convert numbers to the ratios that stand for them."""
+        return 2.0 ** (value / self.scale) if self.is_rate else value
 
     def gap(self, value: float, bound: float) -> float:
         """Return ``(bound - value) / value``, infinite for a ratio of zero.
 
-        A rate below ``LEAST_RATE_BPS_HZ`` counts as so much.
+        A rate below ``LEAST_RATE_BPS_HZ`` counts as so much, a sum below that times its weights likewise.
         """
         if self.is_rate:
-            return (bound - value) / max(value, LEAST_RATE_BPS_HZ)
+            return (bound - value) / max(value, LEAST_RATE_BPS_HZ * self.scale)
         return (bound - value) / value if value > 0.0 else math.inf
 
 

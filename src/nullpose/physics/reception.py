@@ -77,7 +77,7 @@ class Reception:
 def objective_value(
     scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, case: ErrorCase | None = None
 ) -> FloatArray:
-    """Evaluate the scenario's objective: the smallest SINR (paper eq. 2.2), SNR, margin or secrecy rate.
+    """Evaluate the scenario's objective: the smallest SINR (paper eq. 2.2), say, a sum of rates or a mean.
 
     Args:
         scenario: nodes, jammers, eavesdroppers, receiver and transmitter; one antenna, not an array.
@@ -102,7 +102,8 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
     """Evaluate the ratios of which the objective takes the smallest, when an error case comes true.
 
     Every node's margin, its SINR over its weight or requirement; or where the drone transmits the ratio
-    ``(1 + SNR_k) / (1 + SNR_e)`` of every node and eavesdropper, whose logarithm to base 2 is their rate.
+    ``(1 + SNR_k) / (1 + SNR_e)`` of every node and eavesdropper, whose logarithm to base 2 is their rate. Of
+    a sum of rates or a mean the one ratio that stands for it.
 
     Args:
         scenario: nodes, jammers, eavesdroppers, receiver and transmitter.
@@ -111,7 +112,10 @@ def ratios_under(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike, cas
         case: where everything actually is.
 
     Returns:
-        Array of shape ``(..., n_nodes, 1)``, or ``(..., n_nodes, n_eavesdroppers)``.
+        Array of shape ``(..., n_nodes, 1)``, ``(..., n_nodes, n_eavesdroppers)`` or ``(..., 1, 1)``.
     """
     reception, ratios_at = Reception(scenario, position_m, axis, case), scenario.objective_record.ratios_at
+    if scenario.objective_record.mean_offset is not None:
+        value = objective_value(scenario, position_m, axis, case)
+        return scenario.objective_record.quantity(scenario).to_ratio(value)[..., None, None]
     return node_values(reception)[..., None] if ratios_at is None else ratios_at(reception)

@@ -46,7 +46,8 @@ def comparison_view(comparison: ResultTable) -> View:
         *_absent(comparison),
         *_proof_lines(comparison),
         f"{work_words(starts, boxes)} (all cases together)",
-        f"* worst node: the {quantity.smallest} is here. Change: from the best case.",
+        f"* worst node: the {quantity.smallest} is here. " * (not quantity.whole)
+        + "Change: from the best case.",
         "Each upper bound holds for the poses that its scheme allows.",
         "All cases use one antenna on this file's vehicle. Other vehicles and arrays: compare --airframes",
     ]

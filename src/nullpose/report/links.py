@@ -20,8 +20,9 @@ _NULLED_DB = -150.0  # what is below it is rounding of the angle
 
 
 def binding_nodes(result: Result) -> frozenset[str]:
-    """List the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``."""
-    quantity = result.objective.quantity
+    """List the nodes that have the smallest SINR, margin or rate, within ``BINDING_RTOL``; none of a sum."""
+    if (quantity := result.objective.quantity).whole:
+        return frozenset()
     most = min(map(quantity.at, result.links)) * (1.0 + BINDING_RTOL)
     return frozenset(link.node for link in result.links if quantity.at(link) <= most)
 
@@ -62,13 +63,13 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
         counted[f"required {quantity.ratio} (dB)"] = [
             cell(each.min_sinr_db, ".6g") for each in scenario.terminals
         ]
-        counted["weight"] = [cell(each.weight, ".6g") for each in scenario.terminals]
     if scenario.objective_record.transmits:
         counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
     distances_m = [distance_m(result.pose, point_m) for point_m in scenario.terminal_positions_m]
     columns: dict[str, Sequence[str | None]] = {
         "node": [link.node for link in links],
         **counted,
+        "weight": [cell(each.weight, ".6g") for each in scenario.terminals],
         f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
         quantity.ratio: [None if counted else f"{link.sinr:.5g}" for link in links],
         "distance (m)": [f"{distance:.2f}" for distance in distances_m],

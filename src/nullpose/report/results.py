@@ -98,7 +98,7 @@ def evaluation_view(evaluation: Evaluation) -> View:
         "pose": [str(index) for index in range(1, len(results) + 1, step)],
         "position (m)": [" ".join(f"{x:z.2f}" for x in pose.position_m) for pose in poses],
         "attitude (deg)": [" ".join(_degrees(x, -2) for x in _angles_rad(pose).values()) for pose in poses],
-        f"{quantity.short} ({quantity.unit})": [
+        f"{quantity.smallest_short} ({quantity.unit})": [
             f"{quantity.in_unit(result.objective.value):.4f}" for result in shown
         ],
         "worst node": [result.binding_node for result in shown],

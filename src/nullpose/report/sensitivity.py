@@ -34,7 +34,7 @@ def sensitivity_view(result: Result) -> View | None:
     values = [quantity.in_unit(getattr(found, kind)) for kind in kinds]
     columns = {
         "error": list(kinds.values()),
-        f"lowest {quantity.short} ({quantity.unit})": [number(value, quantity) for value in values],
+        f"lowest {quantity.smallest_short} ({quantity.unit})": [number(value, quantity) for value in values],
         f"change ({quantity.unit})": [number(value - nominal, quantity) for value in values],
     }
     return document(

@@ -188,8 +188,9 @@ def solve_many(
 def _check(scenarios: Sequence[Scenario]) -> None:
     require_usage(len(scenarios), "scenarios: given none; allowed: one or more")
     for index, scenario in enumerate(scenarios):
-        if Quantity.of(scenario).is_rate or scenario.array is not None:
-            kind = "an array" if scenario.array is not None else "a secrecy rate"
+        quantity = Quantity.of(scenario)
+        if quantity.is_rate or quantity.whole or scenario.array is not None:
+            kind = "an array" if scenario.array is not None else f"the {quantity.smallest}"
             raise UsageError(
                 f"scenarios[{index}]: asks for {kind}; allowed: the smallest SINR or margin of one dipole; "
                 "use solve"

@@ -143,9 +143,13 @@ class Result:
         return self.details.label if self.details is not None else Scheme(self.scheme).label
 
     @property
-    def binding_node(self) -> str:
-        """Name of the node with the smallest SINR, margin or rate (the first, if several share it)."""
-        return min(self.links, key=self.objective.quantity.at).node
+    def binding_node(self) -> str | None:
+        """Name of the node with the smallest SINR, margin or rate (the first, if several share it).
+
+        None where a sum or a mean is maximised, to which every node adds.
+        """
+        quantity = self.objective.quantity
+        return None if quantity.whole else min(self.links, key=quantity.at).node
 
     @property
     def rigour(self) -> Rigour:

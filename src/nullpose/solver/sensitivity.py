@@ -85,12 +85,14 @@ class Sensitivity:
     def loss_db(self, kind: str = "all") -> float:
         """Evaluate the loss of the ratio behind the value, dB; 1 bit/s/Hz of a rate is 3 dB.
 
+        Of a sum of rates it is the mean loss, by weights.
+
         Args:
             kind: attitude, position, jammers or all.
         """
         before, after = self.nominal, getattr(self, kind)
         if self.quantity.is_rate:
-            return float(10.0 * math.log10(2.0) * (before - after))
+            return float(10.0 * math.log10(2.0) * (before - after) / self.quantity.scale)
         return 0.0 if before == after else self.quantity.in_unit(before) - self.quantity.in_unit(after)
 
     def to_dict(self) -> PlainTable:

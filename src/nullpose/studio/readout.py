@@ -76,8 +76,8 @@ def node_rows(answer: Answer) -> Iterator[tuple[str, list[str], bool]]:
             numbers = [f"{signed(link.sinr_db)} dB"]
             if link.margin_db is not None:
                 numbers.append(f"margin {signed(link.margin_db)} dB")
-            if link.secrecy_rate_bps_hz is not None:
-                numbers.append(f"{link.secrecy_rate_bps_hz:.3f} bits/s/Hz")
+            if quantity.is_rate:
+                numbers.append(f"{quantity.at(link):.3f} bits/s/Hz")
         yield link.node, numbers, link.node in answer.worst_nodes
 
 

@@ -66,16 +66,18 @@ class Stage:
         numbers = {
             each.node: with_unit(quantity.in_unit(quantity.at(each)), quantity) for each in result.links
         }
-        note = f"At nodes: {quantity.noun}, the smallest in bold"
+        bold = ", the smallest in bold" if worst else ""
+        note = f"At nodes: {quantity.noun}{bold}"
         key = _key_of(result.scenario) if is_narrow else {}
         if key:
-            note = f"Nodes with their {quantity.noun} in {quantity.unit}, the smallest in bold"
+            note = f"Nodes with their {quantity.noun} in {quantity.unit}{bold}"
             numbers = {name: text.removesuffix(f" {quantity.unit}") for name, text in numbers.items()}
         elif len(numbers) > _MOST_NUMBERS or len("".join(numbers)) > _MOST_LETTERS:
-            note = f"{capitalised(quantity.smallest)}: {numbers[min(worst)]}, at nodes in bold"
+            value = with_unit(quantity.in_unit(result.objective.value), quantity)
+            note = f"{capitalised(quantity.smallest)}: {value}{', at nodes in bold' if worst else ''}"
             numbers = {}
         beam, weakest = None, result.binding_node
-        if isinstance(result.details, ArrayDetails):  # which has one for each node
+        if weakest and isinstance(result.details, ArrayDetails):  # which has one for each node
             beam = weakest, result.details.weights[[link.node for link in result.links].index(weakest)]
         return cls(
             scenario=result.scenario,

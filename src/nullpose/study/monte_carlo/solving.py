@@ -12,7 +12,7 @@ import numpy as np
 from nullpose.errors import NullposeError
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose, evaluate, interferer_gains
+from nullpose.physics import Pose, evaluate, interferer_gains, objective_of_links
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Airframe, Scenario
 from nullpose.solver import (
@@ -120,10 +120,11 @@ def _found(
 def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
     if case.pose is not None:
         pose, quantity = case.pose.on(scene), Quantity.of(scene)
+        links = evaluate(scene, pose)
         faults = "; ".join(f"not allowed: {fault}" for fault in pose_faults(scene, pose))
-        weakest = min(evaluate(scene, pose), key=quantity.at)
-        columns = _found(scene, Status.POSE_GIVEN, pose, quantity.at(weakest), None, None)
-        return columns | {"reason": faults, "binding_node": weakest.node}
+        columns = _found(scene, Status.POSE_GIVEN, pose, objective_of_links(scene, links), None, None)
+        node = None if quantity.whole else min(links, key=quantity.at).node
+        return columns | {"reason": faults, "binding_node": node}
     tilts: PlainTable = {}
     if case.reach is not None and scene.airframe is not None:
         search = tilt_search(scene, case.reach, options | {"gap": case.gap})
@@ -155,7 +156,7 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
             alike[repr(_options_of(spec, case))].append(case)
     vehicles: dict[Airframe | None, dict[At, Scenario]] = defaultdict(dict)  # by the scene's own
     for at, scene in scenes.items():
-        if not Quantity.of(scene).is_rate:
+        if not (Quantity.of(scene).is_rate or Quantity.of(scene).whole):
             vehicles[scene.airframe][at] = scene.without_array
     rows = (
         row
