@@ -58,7 +58,7 @@ def build_family(
     require_usage(
         any_objective or record.mean_offset is None,
         f'objective: given "{record.name}"; allowed here: those of the smallest ratio, such as "{USUAL}". '
-        "solve, compare, sweep, map, vehicle and evaluate know it, for a dipole in channels that a file states",
+        "solve, compare, sweep, map, vehicle and evaluate know it for a dipole, in channels a file can state",
     )
     ratios = record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
