@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -47,7 +48,7 @@ class Quantity:
     field: str
     terminals: str = "the nodes"
     whole: str = ""
-    scale: float = field(default=1.0, compare=False)
+    scale: float = dataclasses.field(default=1.0, compare=False)
 
     @classmethod
     def named(cls, name: str) -> Quantity:
