@@ -75,7 +75,7 @@ def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:
 def sentence(certificate: Certificate, leaves: int) -> str:
     """State the claim of a certificate that was proved by so many leaves."""
     most, least, near = claim_numbers(certificate)
-    gives = "has" if Quantity.of(certificate.scenario).whole else "gives every node"
+    gives = Quantity.of(certificate.scenario).gives
     return (
         f"proved: {claim_words(certificate)} above {most}, and the stated pose {gives} {least} "
         f"or more, which is within {near} of it; {leaves} final boxes checked"
@@ -87,8 +87,8 @@ def claim_words(certificate: Certificate) -> str:
     scenario = certificate.scenario
     axes = RECORDS[certificate.scheme].sentence(scenario, certificate.null_jammer)
     quantity = Quantity.of(scenario)
-    what = f"has a {quantity.whole}" if quantity.whole else f"gives every node {quantity.with_article}"
-    return f"in this scenario{_left_out(certificate)} no position{_places(certificate)} {axes} {what}"
+    what = f"{axes} {quantity.gives} {quantity.with_article}"
+    return f"in this scenario{_left_out(certificate)} no position{_places(certificate)} {what}"
 
 
 def _left_out(certificate: Certificate) -> str:
@@ -108,7 +108,7 @@ def _places(certificate: Certificate) -> str:
     words = [f"{name} from {ends[0]!r} to {ends[1]!r} m" for name, ends in ranges.items() if ends]
     if inside:
         words.append(f"{inside} with a margin of {airspace.margin_m!r} m" if airspace.margin_m else inside)
-    words.append(f"at least {airspace.keep_out_m!r} m from every node, jammer and eavesdropper")
+    words.append(f"at least {airspace.keep_out_m!r} m from every point on the ground")
     return f" {', '.join(words)},"
 
 

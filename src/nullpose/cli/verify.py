@@ -78,7 +78,7 @@ def _proved_view(certificate: Certificate, leaves: int) -> View:
     from nullpose.report.numbers import capitalised
 
     most, least, near = claim_numbers(certificate)
-    gives = "has" if Quantity.of(certificate.scenario).whole else "gives every node"
+    gives = Quantity.of(certificate.scenario).gives
     rows = [
         ("upper bound", most),
         ("pose's value", least),

@@ -11,7 +11,7 @@ from nullpose.objectives.record import ObjectiveRecord, Quantity
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
-_MEAN = Quantity("mean_sinr", "SINR", "an SINR", "SINR", "dB", "SINR", "sinr", whole="mean SINR")
+_MEAN = Quantity("mean_sinr", "SINR", "a mean SINR", "SINR", "dB", "SINR", "sinr", whole="mean SINR")
 
 
 def _ratios(scenario: Scenario) -> Ratios:

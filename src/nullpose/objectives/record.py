@@ -29,7 +29,7 @@ class Quantity:
     Args:
         name: as in results: ``min_`` and the noun, as in ``"min_sinr"``.
         noun: its name, as in SINR, margin or secrecy rate.
-        with_article: the same with its article.
+        with_article: what is maximised with its article, but for being the smallest.
         short: the same for narrow columns.
         unit: dB, or bits/s/Hz.
         ratio: the name of the power ratio behind it: SINR at the drone, SNR at a node that receives.
@@ -77,6 +77,11 @@ class Quantity:
     def smallest_short(self) -> str:
         """The same for narrow columns, as in "SINR" or "sum rate"."""
         return self.whole or self.short
+
+    @property
+    def gives(self) -> str:
+        """What a pose does, before a number: that it has it, or gives it to every node."""
+        return "has" if self.whole else f"gives {self.terminals.replace('the nodes', 'every node')}"
 
     @property
     def smallest_over(self) -> str:

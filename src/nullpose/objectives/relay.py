@@ -15,10 +15,8 @@ if TYPE_CHECKING:
     from nullpose.scenario import Scenario
 
 _BOTH = "the nodes and the destination"
-_SINR = Quantity("min_hop_sinr", "SINR", "and the destination an SINR", "SINR", "dB", "SINR", "sinr", _BOTH)
-_MARGIN = Quantity(
-    "min_hop_margin", "margin", "and the destination a margin", "margin", "dB", "SINR", "margin", _BOTH
-)
+_SINR = Quantity("min_hop_sinr", "SINR", "an SINR", "SINR", "dB", "SINR", "sinr", _BOTH)
+_MARGIN = Quantity("min_hop_margin", "margin", "a margin", "margin", "dB", "SINR", "margin", _BOTH)
 
 
 def _ratios(scenario: Scenario) -> Ratios:

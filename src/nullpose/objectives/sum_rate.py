@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from nullpose.physics import Reception
     from nullpose.scenario import Scenario
 
-_RATE = Quantity("sum_rate", "rate", "a rate", "rate", "bits/s/Hz", "SINR", "rate_bps_hz", whole="sum rate")
+_RATE = Quantity(
+    "sum_rate", "rate", "a sum rate", "rate", "bits/s/Hz", "SINR", "rate_bps_hz", whole="sum rate"
+)
 
 
 def _ratios(scenario: Scenario) -> Ratios:
