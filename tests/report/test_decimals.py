@@ -13,6 +13,7 @@ from rich.console import Console
 
 from nullpose import Pose, Result, Scenario, evaluate, load, solve
 from nullpose.objectives import Quantity
+from nullpose.physics import objective_of_links
 from nullpose.problem.schemes import Scheme
 from nullpose.report.results import pose_cells, result_view
 from nullpose.solver import Status
@@ -74,7 +75,7 @@ def require_same(result: Result) -> None:
     printed = float(found[1])
     unit = 10.0 ** (math.floor(math.log10(max(abs(printed), 0.1))) - 6)
     for name, pose in typed_poses(result):
-        value = quantity.in_unit(quantity.least(evaluate(scenario, pose)))
+        value = quantity.in_unit(objective_of_links(scenario, evaluate(scenario, pose)))
         assert value == pytest.approx(printed, rel=0.0, abs=1.01 * unit), name
         if name == "attitude" and not any(pose_faults(scenario, result.pose)):
             assert not list(pose_faults(scenario, pose))
@@ -124,7 +125,7 @@ def given(scenario: Scenario, pose: Pose) -> Result:
         scheme=Scheme.OPTIMUM,
         status=Status.BEST_FOUND,
         reason="",
-        objective=objective_of(scenario, Quantity.of(scenario).least(links), None),
+        objective=objective_of(scenario, objective_of_links(scenario, links), None),
         pose=pose,
         links=links,
         stats=Stats(starts=0, evaluations=0, boxes=0),
