@@ -56,6 +56,8 @@ def unpack(reals, counts):
         np.zeros(1, np.int64),
         np.zeros(1, np.int64),
         np.zeros((0, 5)),
+        np.zeros(0),
+        0.0,
     )
     bounds = reals[e : e + 6]
     return family, bounds, reals[e + 6 : e + 6 + groups], reals[e + 6 + groups : e + 6 + groups + ratios]

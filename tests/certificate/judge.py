@@ -110,13 +110,16 @@ class Judge:
         if len(airspace.geofence_outline_m):
             low[:2] = np.maximum(low[:2], airspace.geofence_outline_m.min(axis=0))
             high[:2] = np.minimum(high[:2], airspace.geofence_outline_m.max(axis=0))
+        points = problem.points[problem.node]
+        gap2 = np.maximum(0.0, np.maximum(low - points, points - high)) ** 2
         for i in range(3):
-            at = problem.points[problem.node, i]
+            at, others2 = points[:, i], np.sum(gap2, axis=1) - gap2[:, i]
             for beyond, away_m in (
                 (root_m[0, i] > low[i], at - root_m[0, i]),
                 (root_m[1, i] < high[i], root_m[1, i] - at),
             ):
-                best = problem.best_received(np.maximum(away_m, 1e-9) * (1.0 + 1e-9))
+                least_m = np.sqrt(np.maximum(away_m, 1e-9) ** 2 + others2)
+                best = problem.best_received(least_m * (1.0 + 1e-9))
                 if beyond and np.all(best > bound):
                     return "root"
         return "root" if np.any(root_m[0] > root_m[1]) else ""

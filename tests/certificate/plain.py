@@ -97,7 +97,7 @@ def put_together(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3)
         roll_rad=attitude[0],
         pitch_rad=attitude[1],
         yaw_rad=attitude[2],
-        trees=tuple(Tree(axis=axis, root_m=p.root, leaves=leaves_of(p, axis)) for axis, p in trees),
+        trees=tuple(Tree(axis=axis, root_m=p.root, leaves=leaves_of(p, axis, family)) for axis, p in trees),
     )
 
 

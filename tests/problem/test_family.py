@@ -11,7 +11,7 @@ from nullpose.problem.family import Family
 from nullpose.problem.records import Domain
 
 FIELDS = [*Ratios._fields, *Domain._fields]
-ARRAYS = [name for name in FIELDS if name not in ("keep_out_m", "leak")]
+ARRAYS = [name for name in FIELDS if name not in ("keep_out_m", "leak", "offset")]
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +26,7 @@ def family(random_problem: Callable) -> Family:
         shadows_of_point=np.array([*[0] * len(plain.points_m), 1]),
         shadow_start=np.array([0, 1]),
         shadow_sides=np.array([[1.0, 0.0, 0.0, 3.0, 3.5]]),
+        shares=np.array([0.2, 0.3, 0.5]),
         piece_start=np.array([0, 1]),
         piece_sides=np.array([[1.0, 3.0, 4.0, 0.0, 2.0]]),
         zone_kind=np.array([1]),

@@ -4,9 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from nullpose import load
 from nullpose.certificate.certificate import FAR, WORLD
+from nullpose.problem.build import build_family
 from nullpose.solver.certificate_from_proof import leaves_of
 from nullpose.solver.kernels.bounds import node
+
+FAMILY = build_family(load("examples/paper.toml"))
 
 
 def proof_of(
@@ -39,7 +43,7 @@ def test_boxes_become_dyadic() -> None:
         index = [int(rng.integers(1 << int(d))) for d in depth]
         boxes.append(tuple(int(x) for pair in zip(depth, index, strict=True) for x in pair))
     proof.leaves = np.array([row_of(box, proof) for box in boxes])
-    assert leaves_of(proof, "free").box.tolist() == [list(box) for box in boxes]
+    assert leaves_of(proof, "free", FAMILY).box.tolist() == [list(box) for box in boxes]
 
 
 def test_cells_become_dyadic() -> None:
@@ -58,7 +62,7 @@ def test_cells_become_dyadic() -> None:
         rows.append(row)
         cells.append([face, depth[0], index[0], depth[1], index[1]])
     proof.leaves = np.array(rows)
-    assert leaves_of(proof, "free").cell.tolist() == cells
+    assert leaves_of(proof, "free", FAMILY).cell.tolist() == cells
 
 
 def test_equal_mixes_are_shared() -> None:
@@ -69,7 +73,7 @@ def test_equal_mixes_are_shared() -> None:
     rows[1][node.WEIGHT + 1] = 0.75
     rows[3][node.KIND], rows[3][node.ANCHOR] = FAR, 2.0
     proof.leaves = np.array(rows)
-    leaves = leaves_of(proof, "free")
+    leaves = leaves_of(proof, "free", FAMILY)
     assert leaves.mix.tolist() == [0, 1, 0, -1]
     assert leaves.mixes == ({0: 1.0}, {0: 0.25, 3: 0.75})
     assert leaves.point.tolist() == [-1, -1, -1, 2]

@@ -13,13 +13,14 @@ from nullpose.solver.compiling import compile_proof, compile_search, precompile
 from nullpose.solver.kernels.bounds.branch import branch
 from nullpose.solver.kernels.bounds.node import keep_largest
 from nullpose.solver.kernels.bounds.root import fill_root
+from nullpose.solver.kernels.bounds.signed_sum import touch
 from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.search.search import search_and_climb
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.solve_and_prove import solve_and_prove
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-KERNELS = (branch, search_and_climb, log_objective, keep_largest, fill_root)
+KERNELS = (branch, search_and_climb, log_objective, keep_largest, fill_root, touch)
 
 
 def test_both_halves_are_what_a_solve_calls(paper: Callable) -> None:

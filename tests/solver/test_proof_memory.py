@@ -91,7 +91,7 @@ def test_cells_of_axes_are_no_finer_than_their_box_tells() -> None:
     incumbent = multistart(family, band, seed=0)
     row, rows = np.zeros(node.COLUMNS), np.zeros((4096, node.COLUMNS))
     weights, level = incumbent.multipliers.copy(), np.exp(incumbent.log_value) * (1.0 + 1e-6)
-    fill_root(family.arrays, family.domain, incumbent.log_value, 1e-6, np.inf, weights, row)
+    fill_root(family.arrays, family.domain, incumbent.log_value, 1e-6, np.inf, weights, incumbent.axis, row)
     rows[0] = row
     goal, at_once = Goal(np.exp(incumbent.log_value), row, 1e9), 3_000  # axes are split before positions
     problem = family.arrays, family.domain, band.arrays

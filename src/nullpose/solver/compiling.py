@@ -127,6 +127,7 @@ def compile_search() -> None:
     """Compile what is needed beside that, by a search of no round and a climb of no step."""
     from nullpose.solver.kernels.bounds.node import COLUMNS, keep_largest
     from nullpose.solver.kernels.bounds.root import fill_root
+    from nullpose.solver.kernels.bounds.signed_sum import touch
     from nullpose.solver.kernels.linear_algebra.links import log_objective
     from nullpose.solver.kernels.search.search import search_and_climb
     from nullpose.solver.multistart import climb
@@ -139,6 +140,7 @@ def compile_search() -> None:
     fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, up, row)
     log_objective(family.arrays, high_m, up, weight, weight)
     keep_largest(weight, 1, row)
+    touch(row, up)
 
 
 def _smallest_family() -> Family:

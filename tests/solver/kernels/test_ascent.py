@@ -68,7 +68,9 @@ def test_it_agrees_with_the_interior_point(start: str, random_scene: Callable) -
         found, followed = ascended(family.arrays, row, mean, back, weights, v)
         best, matrix = np.empty(ratios), np.empty(6)
         third = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
-        wanted = dual_multipliers(forms, 0, ratios, level, math.inf, 1e-9, third, best, matrix)
+        wanted = dual_multipliers(
+            forms, 0, ratios, level, math.inf, 1e-9, third, best, matrix, np.empty(0), 0.0
+        )
         if math.isfinite(found):  # multipliers, good or not, bound the dual from above
             mix, top_axis = weights[:ratios] @ forms, np.empty(3)
             assert math.isclose(weights[:ratios].sum(), 1.0, rel_tol=1e-9)

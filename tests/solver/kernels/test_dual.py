@@ -7,6 +7,7 @@ from nullpose.certificate.forms import matrices
 from nullpose.solver.kernels.linear_algebra.axis import best_axis_of_forms
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 
+SMALLEST = (np.empty(0), 0.0)  # shares and offset of no mean
 ISOTROPIC = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
 
 
@@ -32,7 +33,9 @@ def test_multipliers_bound_the_best_axis(count: int) -> None:
         forms = random_forms(rng, count)
         best = best_axis_of_forms(forms, np.empty(3))
         multipliers, matrix = np.empty(count), np.empty(6)
-        primal = dual_multipliers(forms, 0, count, best, math.inf, 1e-7, ISOTROPIC, multipliers, matrix)
+        primal = dual_multipliers(
+            forms, 0, count, best, math.inf, 1e-7, ISOTROPIC, multipliers, matrix, *SMALLEST
+        )
         assert np.all(multipliers >= 0.0)
         assert np.sum(multipliers) == pytest.approx(1.0, abs=1e-12)
         bound = dual_value(forms, multipliers)
@@ -52,8 +55,8 @@ def test_a_side_only_lowers_the_bound() -> None:
         free, confined = np.empty(4), np.empty(5)
         level = best_axis_of_forms(forms, np.empty(3))
         arguments = (level, math.inf, 1e-7)
-        unbound = dual_multipliers(forms, 0, 4, *arguments, ISOTROPIC, free, np.empty(6))
+        unbound = dual_multipliers(forms, 0, 4, *arguments, ISOTROPIC, free, np.empty(6), *SMALLEST)
         both = np.vstack([side, forms])
-        bound = dual_multipliers(both, 1, 5, *arguments, start, confined, np.empty(6))
+        bound = dual_multipliers(both, 1, 5, *arguments, start, confined, np.empty(6), *SMALLEST)
         assert bound <= unbound * (1.0 + 1e-5)
         assert dual_value(both, confined) == pytest.approx(bound, rel=1e-5)

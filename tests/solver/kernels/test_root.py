@@ -34,5 +34,5 @@ def test_the_box_holds_what_reaches_the_value(random_scene: Callable) -> None:
         axis = rng.normal(size=(5000, 3))
         value = np.min(sinr(scene, position_m, axis / np.linalg.norm(axis, axis=1, keepdims=True)), axis=1)
         level, row = np.quantile(value, 0.9), np.zeros(COLUMNS)
-        fill_root(family.arrays, family.domain, np.log(level), 1e-3, 1e9, np.ones(3), row)
+        fill_root(family.arrays, family.domain, np.log(level), 1e-3, 1e9, np.ones(3), np.ones(3), row)
         assert np.all(np.abs(position_m[value >= level] - row[:3]) <= row[3:6])
