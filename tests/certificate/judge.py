@@ -63,6 +63,8 @@ class Judge:
         for before, tree in zip(self.sound["trees"], data["trees"], strict=True):
             leaves = {name: np.array(c) for name, c in tree["leaves"].items() if name != "mixes"}
             leaves.setdefault("band", np.zeros(len(leaves["test"])))
+            for column, width in {"box": 6, "cell": 5, "sides": 2}.items():  # also of a tree without leaves
+                leaves[column] = leaves[column].reshape(-1, width)
             mixes = [dict(map(tuple, mix)) for mix in tree["leaves"]["mixes"]]
             words = (
                 self.ranges(leaves, mixes, problem, data["upper_bound"], axes[tree["axis"]] is None)
