@@ -57,10 +57,11 @@ def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: Float
         weight: (slots, l) q.
         level: (l,) t.
     """
-    power, total = log(Interval(level)), Interval(np.zeros(len(level)))
+    whole = Interval(family.shares).total()  # one, but for rounding: the mean's logarithm over it is a mean
+    power, total = log(Interval(level)) / whole, Interval(np.zeros(len(level)))
     for k, share in enumerate(family.shares):
-        q = np.sum(np.where(ratio == k, weight, 0.0), axis=0)
-        power = power + (log(Interval(q)) - log(Interval(share))) * share
+        q, p = np.sum(np.where(ratio == k, weight, 0.0), axis=0), Interval(share) / whole
+        power = power + (log(Interval(q)) - log(p)) * p
         total = total + q
     result = exp(power) - total * family.offset
     return where(result.low >= 0.0, result, np.nan)

@@ -16,7 +16,7 @@ _SINR = Quantity("min_sinr", "SINR", "an SINR", "SINR", "dB", "SINR", "sinr")
 _MARGIN = Quantity("min_margin", "margin", "a margin", "margin", "dB", "SINR", "margin")
 
 
-def ratios_at_drone(scenario: Scenario, *others: str, has_margins: bool = True) -> Ratios:
+def ratios_at_drone(scenario: Scenario, *others: str) -> Ratios:
     """Build one ratio for each node, over a denominator that all share.
 
     ``(g0 P_k / (sigma^2 Gamma_k)) T(s_k - p)`` over ``I + sum_j (g0 J_j / sigma^2) T(m_j - p)``:
@@ -26,11 +26,11 @@ def ratios_at_drone(scenario: Scenario, *others: str, has_margins: bool = True) 
     Args:
         scenario: nodes, jammers and receiver.
         others: kinds of points that come after them for further ratios, as in ``"destination"``.
-        has_margins: whether ``Gamma_k`` is what the node requires; otherwise it is 1.
     """
     n_nodes, n_jammers = len(scenario.nodes), len(scenario.jammers)
     scale = scenario.reference_gain / scenario.receiver.noise_power_w  # 1/W, per m^-2
-    weights = scale * scenario.node_powers_w / (scenario.node_required_sinr if has_margins else 1.0)
+    is_mean = scenario.objective_record.mean_offset is not None  # then Gamma_k is 1
+    weights = scale * scenario.node_powers_w / (1.0 if is_mean else scenario.node_required_sinr)
     return Ratios(
         numerator_isotropic=np.zeros(n_nodes),
         numerator_weight=weights * gains_of(scenario, "node"),

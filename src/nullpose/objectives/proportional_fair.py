@@ -2,39 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
-from nullpose.objectives.min_sinr import ratios_at_drone
-from nullpose.objectives.ratios import Ratios
-from nullpose.objectives.record import ObjectiveRecord, Quantity
-
-if TYPE_CHECKING:
-    from nullpose.scenario import Scenario
+from nullpose.objectives.min_sinr import MIN_SINR
+from nullpose.objectives.record import Quantity
 
 _MEAN = Quantity("mean_sinr", "SINR", "a mean SINR", "SINR", "dB", "SINR", "sinr", whole="mean SINR")
 
-
-def _ratios(scenario: Scenario) -> Ratios:
-    """Build the nodes' SINR ratios; ``prod_k SINR_k^(w_k / W)`` is maximised, W the sum of the weights."""
-    return ratios_at_drone(scenario, has_margins=False)._replace(shares=scenario.node_shares)
-
-
-PROPORTIONAL_FAIR = ObjectiveRecord(
+PROPORTIONAL_FAIR = replace(
+    MIN_SINR,
     name="proportional-fair",
     summary="the mean SINR in dB of the nodes that the drone hears, by their weights",
     quantities=(_MEAN,),
     quantity=lambda scenario: _MEAN,
-    ratios=_ratios,
     evaluate=lambda reception: {"sinr": reception.sinr},
     mean_offset=0.0,
-    interferers="jammers",
-    needs=("nodes.power",),
-    unused=(
-        "transmitter",
-        "eavesdroppers",
-        "destination",
-        "nodes.noise",
-        "nodes.jamming",
-        "nodes.min_sinr_db",
-    ),
+    unused=(*MIN_SINR.unused, "nodes.min_sinr_db"),
 )

@@ -192,13 +192,24 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
         for place, keys, present in _places_of(need, scenario, points):
             if not present:
                 yield place, f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
+    without_meaning = {
+        other.name: {key for each in other.unused for key in _keys_of(each)} for other in RECORDS.values()
+    }
     for unused in record.unused:
-        others = [f'"{other.name}"' for other in RECORDS.values() if unused not in other.unused]
-        advice = f"remove it, or write objective = {' or '.join(others)}"
-        for _, _, present in _places_of(unused, scenario, points):
-            yield from (
-                (place, f'has no meaning with objective = "{record.name}"; {advice}') for place in present
+        for place in (each for *_, present in _places_of(unused, scenario, points) for each in present):
+            others = [f'"{name}"' for name, keys in without_meaning.items() if place[-1] not in keys]
+            yield (
+                place,
+                f'has no meaning with objective = "{record.name}"; remove it, or write objective = '
+                f"{' or '.join(others)}",
             )
+
+
+def _keys_of(need: str) -> list[str]:
+    """List the keys of a quantity of the nodes, such as ``nodes.power``; of a table its own."""
+    quantity = need.partition(".")[2]
+    groups = (ways.groups for ways in Node.ways if quantity and ways.groups[0][0].startswith(quantity))
+    return [key for group in next(groups, ((quantity or need,),)) for key in group]
 
 
 def _places_of(
@@ -216,8 +227,7 @@ def _places_of(
         table = table_of(type(scenario), kind)
         yield (kind,), [table.heading() if table else kind], [(kind,)] if getattr(scenario, kind) else []
     else:
-        ways = (ways.groups for ways in Node.ways if ways.groups[0][0].startswith(quantity))
-        keys = [key for group in next(ways, ((quantity,),)) for key in group]
+        keys = _keys_of(need)
         yield from (
             (place, keys, [(*place, key) for key in keys if getattr(point, key) is not None])
             for place, point in points.items()

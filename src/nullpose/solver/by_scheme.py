@@ -86,6 +86,22 @@ def _note_on_nulls(scenario: Scenario, outcome: Outcome) -> str:
     )
 
 
+def family_of(scenario: Scenario) -> Family:
+    """Build the family of a scenario with one antenna.
+
+    Raises:
+        UsageError: no search and proof here know its channels or its objective with its antenna.
+    """
+    is_dipole = scenario.antenna_record.is_quadratic
+    return build_family(
+        scenario,
+        any_antenna=True,
+        any_channel=True,
+        any_function=is_dipole,
+        any_objective=is_dipole and not scenario.has_custom_channels,
+    )
+
+
 def solve_scheme(
     scenario: Scenario, record: SchemeRecord, options: SolveOptions, null_jammer: str | None
 ) -> tuple[Outcome, Mapping[str, AxisField] | None]:
@@ -103,15 +119,8 @@ def solve_scheme(
     """
     if null_jammer is not None and null_jammer not in (names := scenario.jammer_names):
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
-    is_dipole = scenario.antenna_record.is_quadratic
-    family = build_family(
-        scenario,
-        any_antenna=True,
-        any_channel=True,
-        any_function=is_dipole,
-        any_objective=is_dipole and not scenario.has_custom_channels,
-    )
-    if not is_dipole:
+    family = family_of(scenario)
+    if not scenario.antenna_record.is_quadratic:
         from nullpose.solver.pattern import solve_pattern  # and SciPy with it
 
         return solve_pattern(scenario, family, options), {}

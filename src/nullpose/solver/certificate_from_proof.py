@@ -202,8 +202,8 @@ def certificate_of(solution: Result) -> Certificate:
         raise UsageError(
             f"certificate: the proof {what}; ask for a wider --gap, or leave out --certificate and --verify"
         )
-    pose, known = solution.pose, {"any_antenna": True, "any_channel": True, "any_objective": True}
-    family = build_family(solution.scenario, **known)
+    pose = solution.pose
+    family = build_family(solution.scenario, any_antenna=True, any_channel=True, any_objective=True)
     value, bound = _ratios(solution, family, fields)
     return Certificate(
         scenario=solution.scenario,

@@ -177,7 +177,13 @@ def _multistart(family: Family, axis_field: AxisField, seed: int, settings: Sear
 
 
 def climb(
-    family: Family, axis_field: AxisField, position_m: FloatArray, axis: FloatArray, *, mu: float, steps: int
+    family: Family,
+    axis_field: AxisField,
+    position_m: FloatArray,
+    axis: FloatArray,
+    *,
+    mu: float = _CLIMBS[0],
+    steps: int = _CLIMB_STEPS,
 ) -> Incumbent:
     """Return the local maximum that a pose leads to.
 

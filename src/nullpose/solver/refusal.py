@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from nullpose.errors import UsageError
 from nullpose.physics.gain import worst_polarised
-from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
+from nullpose.solver.by_scheme import family_of
 from nullpose.solver.robust.guarantee import Inner, require_dipole
 
 
@@ -31,11 +31,7 @@ def refusal(scenario: Scenario, *, robust: bool = False) -> str | None:
         if robust:
             Inner(worst_polarised(require_dipole(scenario)))
         else:
-            is_dipole = scenario.antenna_record.is_quadratic
-            known = is_dipole and not scenario.has_custom_channels
-            build_family(
-                scenario, any_antenna=True, any_channel=True, any_function=is_dipole, any_objective=known
-            )
+            family_of(scenario)
     except UsageError as error:
         return str(error)
     return None

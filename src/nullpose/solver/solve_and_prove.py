@@ -15,7 +15,6 @@ from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import Proof, prove
 
 _UPRIGHT = 0.99  # the least u_z^2 of axes that are all about vertical
-_MU, _STEPS = 1e-4, 300  # of a climb from a pose of the vertical
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -80,7 +79,7 @@ def solve_and_prove(
         )
         if field.is_free and _UPRIGHT < field.band[0] < field.band[1] == 1.0 and not proof_follows:
             upright = searched(AxisField.vertical(), False)  # a needle that a band's search may miss
-            climbed = climb(family, field, upright.position_m, upright.axis, mu=_MU, steps=_STEPS)
+            climbed = climb(family, field, upright.position_m, upright.axis)
             found = max(found, climbed, key=lambda each: each.log_value)
         searches.append(found)
         return searches[-1]

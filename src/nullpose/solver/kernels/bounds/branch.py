@@ -42,7 +42,7 @@ from nullpose.solver.kernels.bounds.node import (
 )
 from nullpose.solver.kernels.bounds.records import Workspace
 from nullpose.solver.kernels.bounds.sight import hidden_nowhere, in_sight
-from nullpose.solver.kernels.bounds.signed_sum import fill_sum, most_heard, touch
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum, touch
 from nullpose.solver.kernels.compiler.jit import (
     heap_kernel,
     inner_heap_kernel,
@@ -51,7 +51,7 @@ from nullpose.solver.kernels.compiler.jit import (
     small_kernel,
 )
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.linear_algebra.links import log_objective
+from nullpose.solver.kernels.linear_algebra.links import log_objective, most_heard
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import corner_of, fill_affine, norm, store
 from nullpose.solver.kernels.search.domain import contains
@@ -159,7 +159,7 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
     kind, anchor = best_frame(family, has_horizontal_axes(axis_field), row, workspace.sums)
     frame = frame_at(family, kind, anchor, centre, half, basis)
     row[KIND], row[ANCHOR] = kind, anchor
-    workspace.expanded[:] = 0.0
+    workspace.expanded_side[:] = 0.0
     primal, reached, followed = math.inf, 0.0, False
     for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
         if attempt == 1:
@@ -213,7 +213,7 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half, family = row[HALF:LEVEL], in_sight(whole, domain, seen, row, workspace)
     total = scratch(JET)
-    workspace.expanded[:] = 0.0
+    workspace.expanded_side[:] = 0.0
     for j in family.denominator_point:
         fill_jet(family, j, False, axis_field, row, workspace)
     row[KIND], is_mean = AFFINE, family.shares.shape[0] > 0
@@ -223,7 +223,9 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     elif lone_ratio(family, row, workspace):
         return EXCLUDED, 0, 0
     for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
-        if attempt == 1 and not is_mean:
+        if attempt == 1:
+            if is_mean:  # whose multipliers are those of the axis
+                continue
             copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
         if attempt == 2:
             reached = math.inf if is_mean else curved_multipliers(family, axis_field, row, workspace)
@@ -234,6 +236,8 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
                 value = math.exp(log_objective(whole, workspace.place, axis, logs[0], logs[1]))
                 if value > goal.best * (1.0 + _BEATS):
                     return BETTER, 0, 1
+            if is_mean:
+                break
         if excludes_curved(family, domain, axis_field, row, workspace, total):
             return EXCLUDED, 0, 1 if attempt == 2 else 0
     return BY_POSITION, impact(total, half), 1

@@ -40,9 +40,9 @@ def add_jet(weight, jet, total):
 def fill_jet(family, j, is_above, axis_field, row, workspace):
     """Fill the jet of link j over a row's box, unless the box's is there."""
     side = 1.0 if is_above else -1.0
-    if workspace.expanded[j] != side:
+    if workspace.expanded_side[j] != side:
         link_jet(family, j, is_above, axis_field, row[CENTRE:HALF], row[HALF:LEVEL], workspace.jets[j])
-        workspace.expanded[j] = side
+        workspace.expanded_side[j] = side
 
 
 @inner_kernel

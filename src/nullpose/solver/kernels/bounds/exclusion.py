@@ -40,10 +40,11 @@ from nullpose.solver.kernels.bounds.node import (
     cell_side,
 )
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
-from nullpose.solver.kernels.bounds.signed_sum import fill_sum, log_most_mean, most_heard
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum, log_most_mean
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.forms import bilinear, congruence, form_value
+from nullpose.solver.kernels.linear_algebra.links import most_heard
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_identity,
     add_scaled,
@@ -335,10 +336,8 @@ def out_of_reach(family, domain, row):
         return FAR
     for k in range(0 if is_mean else family.numerator_weight.shape[0]):
         least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
-        if (
-            most_heard(family, k, min_square(family.points_m, family.numerator_point[k], centre, half))
-            < least
-        ):
+        square = min_square(family.points_m, family.numerator_point[k], centre, half)
+        if most_heard(family, k, square) < least:
             row[ANCHOR] = k  # not where the multipliers are: a later stage begins with them
             return FAR
     border = forbidding(domain, centre, half)

@@ -168,10 +168,10 @@ def reach_of_link(family, j, is_above, centre, half):
 def expand_once(family, j, is_above, frame, centre, half, workspace):
     """Fill link j's form, its slopes and the bounds of ``expand_point``, unless the box's are there."""
     side, form, slopes = (1.0 if is_above else -1.0), workspace.forms[j], workspace.form_slopes[j]
-    if workspace.expanded[j] != side:
+    if workspace.expanded_side[j] != side:
         bends = expand_point(family, j, is_above, frame, centre, half, form, slopes)
         workspace.bends[j, 0], workspace.bends[j, 1] = bends
-        workspace.expanded[j] = side
+        workspace.expanded_side[j] = side
 
 
 @small_kernel

@@ -152,11 +152,11 @@ def take_smallest(forms, every, below, most, pool, sides, total):
 
 
 @inner_kernel
-def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matrix, none):
+def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matrix, shares):
     """Return the dual's primal value and how many forms it took: few at a time if there are many.
 
-    Begins with the pool and the ratios smallest at the start, and adds what turns out to be smaller. ``none``
-    are the shares of no mean.
+    Begins with the pool and the ratios smallest at the start, and adds what turns out to be smaller. Of no
+    mean: the shares are (0,).
     """
     copy_into(start, matrix)
     below, found, counted = math.inf, math.inf, np.int64(0)
@@ -167,7 +167,7 @@ def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matri
         if total == counted:
             break
         found = dual_multipliers(
-            pool.forms, sides, total, level, stop, gap, start, pool.shares, matrix, none, 0.0
+            pool.forms, sides, total, level, stop, gap, start, pool.shares, matrix, shares, 0.0
         )
         below, counted = found - _SLIGHT * level, total
     return found, total
@@ -193,14 +193,16 @@ def interior_multipliers(
         return math.inf
     for k in range(ratios):
         ratio_form(family, has_horizontal_axes(axis_field), basis, row, whitening, k, forms[k])
-    accuracy, none = multiplier_accuracy(coarseness), family.shares
-    primal, total = sparse_dual(forms, every, sides, total, level, level, accuracy, start, pool, matrix, none)
+    accuracy, shares = multiplier_accuracy(coarseness), family.shares
+    primal, total = sparse_dual(
+        forms, every, sides, total, level, level, accuracy, start, pool, matrix, shares
+    )
     top_eigenvector(matrix, v)
     _, reached = smallest_form(forms, v)
     if primal > level and primal - reached > coarseness * level:
         # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
         primal, total = sparse_dual(
-            forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix, none
+            forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix, shares
         )
         top_eigenvector(matrix, v)
     put_weights(pool, sides, total, ratios, weights)

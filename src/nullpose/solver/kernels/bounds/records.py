@@ -53,7 +53,7 @@ class Workspace(NamedTuple):
         values: (ratios,).
         gradients: (ratios, 3).
         sums: (points,) coefficients of links.
-        expanded: (points,) whether the box's expansion of a link is there: 1 from above, -1 from below.
+        expanded_side: (points,) whether the box's expansion of a link is there: 1 from above, -1 from below.
         forms: (points, 6) expansions: forms at the centre.
         form_slopes: (points, 3, 6) their slopes.
         bends: (points, 2) bounds on the second derivatives of forms and of link vectors.
@@ -73,7 +73,7 @@ class Workspace(NamedTuple):
     values: FloatArray
     gradients: FloatArray
     sums: FloatArray
-    expanded: FloatArray
+    expanded_side: FloatArray
     forms: FloatArray
     form_slopes: FloatArray
     bends: FloatArray

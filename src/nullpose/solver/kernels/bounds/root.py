@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from nullpose.solver.kernels.bounds.node import CENTRE, FACE, HALF, keep_largest
-from nullpose.solver.kernels.bounds.signed_sum import most_heard, touch
+from nullpose.solver.kernels.bounds.signed_sum import touch
 from nullpose.solver.kernels.compiler.jit import kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.links import shifted_log
+from nullpose.solver.kernels.linear_algebra.links import log_most_share, most_heard
 from nullpose.solver.kernels.search.search import cut_box
 
 
@@ -20,18 +20,17 @@ def reach_by_distance(family, domain):
         family: the ratios; no gain is above 1.
         domain: the positions.
     """
-    best, farthest = math.inf, 0
-    mean = 0.0
+    best, farthest, mean = math.inf, 0, 0.0
     for k in range(family.numerator_weight.shape[0]):
         square = domain.keep_out_m**2
         away = 0.0
         for i in range(3):
             x = family.points_m[family.numerator_point[k], i]
             away += (x - min(max(x, domain.low_m[i]), domain.high_m[i])) ** 2
-        ratio = most_heard(family, k, max(away, square))
-        ratio /= family.denominator_isotropic[family.denominator_of[k]]
+        away = max(away, square)
+        ratio = most_heard(family, k, away) / family.denominator_isotropic[family.denominator_of[k]]
         if family.shares.shape[0] > 0:
-            mean += family.shares[k] * shifted_log(family.offset, math.log(ratio))
+            mean += log_most_share(family, k, away)
         if ratio < best:
             best, farthest = ratio, k
     if family.shares.shape[0] > 0:

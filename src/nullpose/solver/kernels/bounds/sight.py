@@ -7,9 +7,9 @@ from nullpose.objectives.ratios import Ratios
 from nullpose.solver.kernels.bounds.expansion import min_square
 from nullpose.solver.kernels.bounds.link_field import excess_end
 from nullpose.solver.kernels.bounds.node import CENTRE, HALF, LEVEL
-from nullpose.solver.kernels.bounds.signed_sum import most_heard
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
+from nullpose.solver.kernels.linear_algebra.links import most_heard
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import dot, norm
 
@@ -137,11 +137,9 @@ def must_be_seen(family, row, k):
     if family.shares.shape[0] > 0:  # of a mean no ratio must be anything
         return False
     j, least = family.numerator_point[k], family.denominator_isotropic[family.denominator_of[k]]
-    square, rest = (
-        min_square(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL]),
-        family.numerator_isotropic[k],
-    )
-    return rest + (most_heard(family, k, square) - rest) * family.channels[j, BLOCKED] < row[LEVEL] * least
+    square = min_square(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL])
+    clear = most_heard(family, k, square) - family.numerator_isotropic[k]
+    return family.numerator_isotropic[k] + clear * family.channels[j, BLOCKED] < row[LEVEL] * least
 
 
 @inner_kernel

@@ -14,11 +14,10 @@ import math
 import numpy as np
 
 from nullpose.solver.kernels.bounds.node import BALL, CENTRE, COUNT, HALF, INDEX, LEVEL, TOUCH, WEIGHT
-from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel, kernel, rare_kernel, small_kernel
+from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_kernel, kernel, rare_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import most_excess
 from nullpose.solver.kernels.linear_algebra.forms import add_point
-from nullpose.solver.kernels.linear_algebra.links import shifted_log
+from nullpose.solver.kernels.linear_algebra.links import log_most_share
 from nullpose.solver.kernels.linear_algebra.symmetric import add_square, fill_identity, form_product
 from nullpose.solver.kernels.linear_algebra.vectors import dot, square_range
 
@@ -50,14 +49,6 @@ def fill_sum(family, row, sums):
     return identity, size
 
 
-@small_kernel
-def most_heard(family, k, square):
-    """Return the most that numerator k is over ``|u|^2`` beyond a distance whose square is given."""
-    j = family.numerator_point[k]
-    most = family.numerator_weight[k] * most_excess(family.channels, j, square) / square
-    return family.numerator_isotropic[k] + most
-
-
 @kernel
 def touch(row, axis):
     """Take the tangent of a row's mean at an axis, of any length."""
@@ -66,8 +57,8 @@ def touch(row, axis):
 
 
 @inner_kernel
-def received(family, j, row):
-    """Return what a row's form receives from point j at the box's centre, ``<M_j, U>``."""
+def link_to_form(family, j, row):
+    """Evaluate the link of point j to a row's form at the box's centre, ``<M_j, U>``."""
     world, form = scratch(3, 3), zeroed(6)
     fill_identity(world)
     add_point(family, j, row[CENTRE:HALF], world, 1.0, 0.0, form)
@@ -82,10 +73,10 @@ def fill_mean(family, row, sums):
     if not trace > 0.0:
         return 0.0, 0.0
     for e in range(family.denominator_weight.shape[0]):
-        below += family.denominator_weight[e] * received(family, family.denominator_point[e], row)
+        below += family.denominator_weight[e] * link_to_form(family, family.denominator_point[e], row)
     for k in range(family.shares.shape[0]):
         j, isotropic = family.numerator_point[k], family.numerator_isotropic[k]
-        ratio = (isotropic * trace + family.numerator_weight[k] * received(family, j, row)) / below
+        ratio = (isotropic * trace + family.numerator_weight[k] * link_to_form(family, j, row)) / below
         x = max(family.offset + ratio, 1e-290)
         q = family.shares[k] / x
         sums[j] += q * family.numerator_weight[k]
@@ -103,19 +94,16 @@ def fill_tangents(family, rows, tangents):
     """Fill the multipliers q of a mean's ratios that the rows of leaves stand for, (l, ratios)."""
     sums = np.empty(family.points_m.shape[0])
     for i in range(rows.shape[0]):
-        sums[:] = 0.0
-        fill_mean(family, rows[i], sums)
+        fill_sum(family, rows[i], sums)
         for k in range(family.shares.shape[0]):
             tangents[i, k] = sums[family.numerator_point[k]] / family.numerator_weight[k]
 
 
 @rare_kernel
 def log_most_mean(family, centre, half):
-    """Return the logarithm of the most that a mean is in a box, as distances alone show."""
-    total, below = 0.0, family.denominator_isotropic[0]
+    """Bound the logarithm of a mean in a box, as distances alone show."""
+    total = 0.0
     for k in range(family.shares.shape[0]):
         square, _ = square_range(family.points_m[family.numerator_point[k]], centre, half, 3)
-        total += family.shares[k] * shifted_log(
-            family.offset, math.log(most_heard(family, k, square) / below)
-        )
+        total += log_most_share(family, k, square)
     return total + 1e-12 * (1.0 + abs(total))

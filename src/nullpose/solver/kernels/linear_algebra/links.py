@@ -16,7 +16,7 @@ import math
 
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet, sight_gain
+from nullpose.solver.kernels.linear_algebra.channel import excess_at, excess_jet, most_excess, sight_gain
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     PLACE,
     add_scaled,
@@ -113,6 +113,21 @@ def log_ratios(family, p, u, log_denominators, out):
 def shifted_log(offset, log):
     """Return ``log(a + x)`` from the logarithm of x, a being 0 or 1."""
     return log if offset == 0.0 else max(0.0, log) + math.log1p(math.exp(-abs(log)))
+
+
+@small_kernel
+def most_heard(family, k, square):
+    """Bound numerator k over ``|u|^2`` beyond a distance whose square is given."""
+    j = family.numerator_point[k]
+    most = family.numerator_weight[k] * most_excess(family.channels, j, square) / square
+    return family.numerator_isotropic[k] + most
+
+
+@inner_kernel
+def log_most_share(family, k, square):
+    """Bound what ratio k adds to a mean's logarithm beyond a distance whose square is given."""
+    log = math.log(most_heard(family, k, square) / family.denominator_isotropic[0])
+    return family.shares[k] * shifted_log(family.offset, log)
 
 
 @small_kernel

@@ -20,10 +20,10 @@ from nullpose.solver.kernels.compiler.jit import (
     rare_kernel,
 )
 from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
-from nullpose.solver.kernels.linear_algebra.channel import most_excess, reach_of
+from nullpose.solver.kernels.linear_algebra.channel import reach_of
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
-from nullpose.solver.kernels.linear_algebra.links import log_objective, shifted_log
+from nullpose.solver.kernels.linear_algebra.links import log_most_share, log_objective
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_scaled,
     copy_into,
@@ -46,17 +46,15 @@ _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of thr
 
 @inner_kernel
 def log_mean_beyond(family, low, high, side, face, sign):
-    """Return the logarithm of the most that a mean is beyond a face of a box, as distances alone show."""
-    total, below = 0.0, family.denominator_isotropic[0]
+    """Bound the logarithm of a mean beyond a face of a box, as distances alone show."""
+    total = 0.0
     for k in range(family.shares.shape[0]):
-        j, square = family.numerator_point[k], 0.0
+        square = 0.0
         for i in range(3):
-            x = family.points_m[j, i]
+            x = family.points_m[family.numerator_point[k], i]
             gap = sign * (face - x) if i == side else max(low[i] - x, x - high[i])
             square += max(0.0, gap) ** 2
-        most = family.numerator_weight[k] * most_excess(family.channels, j, square) / square
-        log = math.log((family.numerator_isotropic[k] + most) / below)
-        total += family.shares[k] * shifted_log(family.offset, log)
+        total += log_most_share(family, k, square)
     return total
 
 
