@@ -5,13 +5,14 @@ from dataclasses import replace
 from hypothesis import given, strategies as st
 
 from nullpose import Pose, Status
+from nullpose.objectives import RECORDS, USUAL
 from nullpose.report.certainty import certainty_lines, counted
 from nullpose.report.numbers import rounded_up
 from nullpose.solver import Objective
 from nullpose.study import Case, ResultRow, ResultTable
 
 POSE = Pose((0.0, 0.0, 8.0), 0.0, 0.0)
-VALUE = Objective(name="min_sinr", value=1.0, value_db=0.0)
+VALUE = Objective(quantity=RECORDS[USUAL].quantities[0], value=1.0, value_db=0.0)
 SEARCHED = ResultRow(
     value=1.0,
     case=Case(name="optimum", scheme="optimum"),

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from nullpose import Scenario, load
 from nullpose.report.answer import antennas_answer as answer
-from nullpose.report.comparison import antennas_view
+from nullpose.report.comparison import antennas_view, comparison_view
 from nullpose.study import compare_antennas, compare_schemes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -26,6 +26,19 @@ def test_what_does_not_apply_has_its_reason(paper: Scenario) -> None:
     assert scheme == "zero-interference"
     assert "jammer" in reason
     assert len(comparison.to_dict()["rows"]) == 3
+
+
+def test_rates_have_a_column_in_mbit(paper: Scenario) -> None:
+    """If a bandwidth is stated; ratios have none."""
+    receiver = {"bandwidth_hz": 20e6, "noise_figure_db": 6.0, "reference_gain_db": -80.0}
+    for objective, count in (("sum-rate", 1), ("min-sinr", 0)):
+        table = paper.to_dict() | {"objective": objective, "receiver": receiver}
+        found = compare_schemes(Scenario.from_dict(table), certify=False)
+        file = io.StringIO()
+        Console(width=100, file=file).print(comparison_view(found))
+        assert file.getvalue().count("Mbit/s") == count
+        if count:
+            assert f"{20.0 * found.rows[0].objective.value:.4f}" in file.getvalue()
 
 
 def test_every_number_is_there() -> None:

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import pytest
 
+from nullpose.objectives import RECORDS
 from nullpose.report.numbers import axis_label, bound_text, bound_words, number, percent, value_words
 from nullpose.solver import Objective
 
 MINUS = "\N{MINUS SIGN}"
-MARGIN = Objective(name="min_margin", value=2.0, value_db=10.0 * math.log10(2.0), upper_bound=2.0001)
-RATE = Objective(
-    name="min_secrecy_rate", value=1.25, value_db=math.nan, upper_bound=1.2500011, relative_gap=1e-6
-)
+_MARGIN, (_RATE,) = RECORDS["min-sinr"].quantities[1], RECORDS["secrecy-rate"].quantities
+MARGIN = Objective(quantity=_MARGIN, value=2.0, value_db=10.0 * math.log10(2.0), upper_bound=2.0001)
+RATE = Objective(quantity=_RATE, value=1.25, value_db=math.nan, upper_bound=1.2500011, relative_gap=1e-6)
 
 
 def test_numbers() -> None:
@@ -42,6 +42,16 @@ def test_only_ratios_are_told_in_decibels() -> None:
     assert value_words(MARGIN) == "3.0103 dB (2)"
     assert bound_words(RATE).endswith("bits/s/Hz (relative gap 1.0e-06)")
     assert bound_words(replace(RATE, upper_bound=None, relative_gap=None)) == ""
+
+
+def test_a_rate_with_a_bandwidth_is_told_in_mbit_too() -> None:
+    """Value and bound; the bound is rounded up in this unit as well."""
+    wide = replace(RATE, quantity=replace(RATE.quantity, mbps=17.3))
+    assert value_words(wide) == "1.25 bits/s/Hz (21.625 Mbit/s)"
+    rate, mbit = bound_words(wide).split(" (")
+    assert rate == bound_words(RATE).split(" (")[0]
+    assert mbit.endswith(" Mbit/s; relative gap 1.0e-06)")
+    assert 0.0 <= float(mbit.split()[0]) - 17.3 * 1.2500011 < 1e-5
 
 
 @pytest.mark.parametrize("objective", [MARGIN, RATE])

@@ -10,6 +10,7 @@ from importlib.metadata import version
 
 import pytest
 
+from nullpose.objectives import RECORDS, USUAL
 from nullpose.physics import Link, Pose, evaluate
 from nullpose.scenario import Scenario
 from nullpose.solver import Objective, Result, Status, solve
@@ -113,7 +114,7 @@ def test_a_number_that_json_lacks_is_null(solution: Result) -> None:
     """A link in the null is minus infinity in dB, which JSON cannot hold: it becomes null."""
     silent = dataclasses.replace(
         solution,
-        objective=Objective(name="min_sinr", value=0.0, value_db=-math.inf),
+        objective=Objective(quantity=RECORDS[USUAL].quantities[0], value=0.0, value_db=-math.inf),
         links=(Link("S1", {"sinr": 0.0, "sinr_db": -math.inf}), solution.links[1]),
     )
     data = json.loads(json.dumps(silent.to_dict(), allow_nan=False))

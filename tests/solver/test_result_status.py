@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from nullpose import Airframe, Array, Scenario, Scheme, SolveError, Status, solve, solve_many, sweep
-from nullpose.objectives import RECORDS
+from nullpose.objectives import RECORDS, Quantity
 from nullpose.solver import Result
 from nullpose.solver.objective import Objective, status_of
 
@@ -99,9 +99,10 @@ def test_a_contradiction_is_a_fault_of_nullpose(share: float, monkeypatch: pytes
     assert unfinished.objective.relative_gap > 1e-6
 
 
-@pytest.mark.parametrize("name", [one.name for record in RECORDS.values() for one in record.quantities])
-def test_rounding_alone_is_no_contradiction(name: str) -> None:
+@pytest.mark.parametrize("quantity", [one for record in RECORDS.values() for one in record.quantities])
+def test_rounding_alone_is_no_contradiction(quantity: Quantity) -> None:
     """Numbers that miss the gap by their rounding are not certified, and no fault."""
-    missed = Objective(name=name, value=1.0, value_db=0.0, upper_bound=1.0 + 1e-6, relative_gap=1e-6 + 1e-13)
+    numbers = {"value": 1.0, "value_db": 0.0, "upper_bound": 1.0 + 1e-6, "relative_gap": 1e-6 + 1e-13}
+    missed = Objective(quantity=quantity, **numbers)
     assert status_of(missed, 1e-6, "") == (Status.GAP_NOT_REACHED, "the rounding of value and bound")
     assert status_of(replace(missed, relative_gap=1e-6), 1e-6, "a limit") == (Status.CERTIFIED, "")

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nullpose import load, solve
+from nullpose import Scenario, load, solve
 from nullpose.report.numbers import MINUS
 from nullpose.solver import Result
 from nullpose.studio.answer import Notice, Progress, answer_of, signed
@@ -55,8 +55,19 @@ def test_it_says_how_good_the_pose_is(proved: State) -> None:
     older = card_html(replace(proved, version=2))  # numbers of an older scene are grey
     assert "np-old" in older
     assert "solving" in older
+    assert "Mbit/s" not in html
     (on_card,) = set(re.findall('data-version="([^"]+)"', html))
     assert f'data-version="{on_card}"' in readout_html(proved)
+
+
+def test_a_rate_with_a_bandwidth_is_in_mbit_too() -> None:
+    """The value and the bound of the proof."""
+    receiver = {"bandwidth_hz": 20e6, "noise_figure_db": 6.0, "reference_gain_db": -80.0}
+    table = _PAPER.to_dict() | {"objective": "sum-rate", "receiver": receiver}
+    found = solve(Scenario.from_dict(table), gap=1e-2)
+    html = card_html(State(scenario=found.scenario).with_event(answer_of(1, OPTIMUM, found)))
+    value, bound = (signed(20.0 * each, 4) for each in (found.objective.value, found.objective.upper_bound))
+    assert f"{value} Mbit/s, upper bound {bound}" in html
 
 
 def test_while_the_solver_is_compiled_it_says_so() -> None:

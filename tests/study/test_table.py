@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from nullpose import Link, Pose, Status
+from nullpose.objectives import RECORDS, USUAL
 from nullpose.solver import Objective
 from nullpose.solver.result import Stats
 from nullpose.study import Case, ResultRow, ResultTable
@@ -18,7 +19,7 @@ def row(value: float, scheme: str, db: float = 0.0, node: str = "S1") -> ResultR
     """Returns a row with an easy pose."""
     ratio = 10.0 ** (db / 10.0)
     pose = Pose(np.array([1.0, 2.0, 8.0]), roll_rad=0.0, pitch_rad=math.pi / 2)
-    objective = Objective(name="min_sinr", value=ratio, value_db=db)
+    objective = Objective(quantity=RECORDS[USUAL].quantities[0], value=ratio, value_db=db)
     return ResultRow(
         value=value,
         case=Case(name=scheme, scheme=scheme),

@@ -37,6 +37,7 @@ class Quantity:
         terminals: over whom the smallest is taken.
         whole: what is maximised, as in sum rate; empty for the smallest.
         scale: a rate is so many times the logarithm of the ratio that stands for it.
+        mbps: Mbit/s of 1 bit/s/Hz; None without a bandwidth, or for no rate.
     """
 
     name: str
@@ -49,19 +50,15 @@ class Quantity:
     terminals: str = "the nodes"
     whole: str = ""
     scale: float = dataclasses.field(default=1.0, compare=False)
-
-    @classmethod
-    def named(cls, name: str) -> Quantity:
-        """Find the quantity of a name, as in ``min_sinr``."""
-        from nullpose.objectives import RECORDS
-
-        quantities = (quantity for record in RECORDS.values() for quantity in record.quantities)
-        return next(quantity for quantity in quantities if quantity.name == name)
+    mbps: float | None = dataclasses.field(default=None, compare=False)
 
     @classmethod
     def of(cls, scenario: Scenario) -> Quantity:
         """Return the quantity that a scenario maximises."""
-        return scenario.objective_record.quantity(scenario)
+        quantity, bandwidth_hz = scenario.objective_record.quantity(scenario), scenario.rate_bandwidth_hz
+        if not quantity.is_rate or bandwidth_hz is None:
+            return quantity
+        return dataclasses.replace(quantity, mbps=1e-6 * bandwidth_hz)
 
     @property
     def is_rate(self) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 from nullpose.physics.types import FloatArray
 from nullpose.report.answer import answer_lines, antennas_answer, sufficing
 from nullpose.report.certainty import rigour_lines
-from nullpose.report.document import Row, View, beside, document, grouped, head, rows, table
+from nullpose.report.document import Row, View, beside, cell, document, grouped, head, rows, table
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import bound_text, capitalised
@@ -158,6 +158,7 @@ def _values(
             "power ratio": [f"{each.value:.5g}" if has_ratio else None for each in objectives],
             "value": _texts(values, 4),
             "bound": [bound_text(each, 4) for each in objectives],
+            "Mbit/s": [cell(each.value_mbps, ".4f") for each in objectives],
             f"change ({quantity.unit})": _texts(values - quantity.in_unit(whole.objective.value), 3),
             "suffices": verdicts or [None] * len(found),
             "status": [_STATUS[row.status] for row in found],

@@ -60,29 +60,37 @@ def with_unit(value: float, quantity: Quantity) -> str:
 
 
 def value_words(objective: Objective) -> str:
-    """Write the objective's value, as in ``0.98 dB (1.25)``."""
+    """Write the objective's value, as in ``0.98 dB (1.25)`` or ``2.1 bits/s/Hz (42 Mbit/s)``."""
     quantity, value = objective.quantity, objective.value
     words = f"{round(quantity.in_unit(value), 7):.7g} {quantity.unit}"
-    return words if quantity.is_rate else f"{words} ({value:.7g})"
+    rate = "" if objective.value_mbps is None else f" ({round(objective.value_mbps, 7):.7g} Mbit/s)"
+    return f"{words}{rate}" if quantity.is_rate else f"{words} ({value:.7g})"
 
 
 def bound_words(objective: Objective) -> str:
     """Write the bound and the gap, nothing if nothing is proved."""
     if objective.upper_bound is None or objective.relative_gap is None:
         return ""
-    unit = objective.quantity.unit
-    return f"upper bound {bound_text(objective)} {unit} (relative gap {objective.relative_gap:.1e})"
+    unit, factor = objective.quantity.unit, objective.quantity.mbps
+    rate = "" if factor is None else f"{bound_text(objective, factor=factor)} Mbit/s; "
+    return f"upper bound {bound_text(objective)} {unit} ({rate}relative gap {objective.relative_gap:.1e})"
 
 
-def bound_text(objective: Objective, digits: int = 0) -> str:
-    """Round the bound up to so many decimals of its unit; 0 for as many as tell it from the value."""
+def bound_text(objective: Objective, digits: int = 0, factor: float = 1.0) -> str:
+    """Round the bound up to so many decimals of its unit; 0 for as many as tell it from the value.
+
+    Args:
+        objective: with its bound.
+        digits: how many decimals.
+        factor: of another unit, such as Mbit/s, to the quantity's.
+    """
     if objective.upper_bound is None:
         return "-"
     quantity = objective.quantity
-    if not math.isfinite(bound := quantity.in_unit(objective.upper_bound)):
+    if not math.isfinite(bound := factor * quantity.in_unit(objective.upper_bound)):
         return number(bound, quantity)
     if not digits:
-        apart = min(max(bound - quantity.in_unit(objective.value), 1e-12), 1.0)
+        apart = min(max(bound - factor * quantity.in_unit(objective.value), 1e-12), 1.0)
         digits = min(12, max(2, math.ceil(-math.log10(apart)) + 1))
     return f"{math.ceil(bound * 10**digits) / 10**digits:.{digits}f}"
 

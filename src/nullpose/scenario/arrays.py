@@ -255,6 +255,14 @@ class PointArrays:
         """Noise and jamming at the destination's receiver [W], (1,), as of a node that receives."""
         return read_only([self._noise_w(end) + self._jamming_w(end) for end in self.destinations], (-1,))
 
+    @property
+    def rate_bandwidth_hz(self) -> float | None:
+        """The bandwidth of all who receive what a rate is of [Hz]; None if one states none, or another."""
+        at = (*self.nodes, *self.eavesdroppers) if self.objective_record.transmits else ()
+        receivers = [point if point.noise_power_w else self.receiver for point in at] or [self.receiver]
+        first, *others = {receiver.bandwidth_hz for receiver in receivers}
+        return None if others else first
+
     def _noise_w(self, point: Terminal | Eavesdropper) -> float:
         return point.noise_power_w or self.receiver.noise_power_w
 

@@ -20,7 +20,7 @@ class Objective:
     """The number that was maximised, evaluated at the reported pose, and what is proved about it.
 
     Args:
-        name: that of its quantity, as in ``"min_sinr"``, the smallest SINR over the nodes (paper eq. 2.2).
+        quantity: what the number is of, and its unit, as the smallest SINR over the nodes (paper eq. 2.2).
         value: that number: a power ratio, or bits/s/Hz for a rate.
         value_db: the same in dB; not a number for a rate.
         upper_bound: no pose exceeds this; None if nothing is proved.
@@ -29,7 +29,7 @@ class Objective:
         rigour: how sure the bound is.
     """
 
-    name: str
+    quantity: Quantity
     value: float
     value_db: float
     upper_bound: float | None = None
@@ -37,18 +37,31 @@ class Objective:
     rigour: Rigour = Rigour.NONE
 
     @property
-    def quantity(self) -> Quantity:
-        """What the number is of, and its unit."""
-        return Quantity.named(self.name)
+    def name(self) -> str:
+        """The name of its quantity, as in ``"min_sinr"``."""
+        return self.quantity.name
+
+    @property
+    def value_mbps(self) -> float | None:
+        """The value in Mbit/s; None without a bandwidth, or for no rate."""
+        return None if (factor := self.quantity.mbps) is None else factor * self.value
+
+    @property
+    def upper_bound_mbps(self) -> float | None:
+        """The bound in Mbit/s; None likewise, or if nothing is proved."""
+        factor, bound = self.quantity.mbps, self.upper_bound
+        return None if factor is None or bound is None else factor * bound
 
     def to_dict(self) -> PlainTable:
         """Write value and bound as plain data for JSON; None for a number that JSON cannot hold."""
+        rate = {"value_mbps": self.value_mbps, "upper_bound_mbps": self.upper_bound_mbps}
         return {
             "name": self.name,
             "value": self.value,
             "value_db": _finite(self.value_db),
             "upper_bound": self.upper_bound,
             "relative_gap": _finite(self.relative_gap),
+            **({} if self.value_mbps is None else rate),
         }
 
 
@@ -73,7 +86,7 @@ def objective_of(
         bound = max(value, quantity.of_ratio(float(bound_above(ratio, ratio_bound))))  # log2 is rounded
         gap = quantity.gap(value, bound)
     return Objective(
-        name=quantity.name,
+        quantity=quantity,
         value=value,
         value_db=math.nan if quantity.is_rate else quantity.in_unit(value),
         upper_bound=bound,
