@@ -15,6 +15,7 @@ import pytest
 from benchmarks.chromium import pixels
 from matplotlib.image import imread
 from numpy.typing import NDArray
+from playwright.sync_api import Page
 from tests.studio.browser.hand import EXAMPLES, PAPER, Hand
 
 from nullpose import load, solve
@@ -131,6 +132,12 @@ def test_the_plots_curves_leave_it_where_they_are_below_it(hand: Hand) -> None:
     assert _blue(picture[:, leaves + 3 :]) == 0
 
 
+def _stops(page: Page) -> list[list[float]]:
+    """Return the colours of the card's scale from its low end to its high one."""
+    gradient = page.locator(".np-scale").last.evaluate("bar => getComputedStyle(bar).backgroundImage")
+    return [[float(part) for part in rgb.split(",")] for rgb in re.findall(r"rgb\((.*?)\)", gradient)]
+
+
 def test_a_link_has_the_legends_colour(hand: Hand) -> None:
     """That of its SINR in the card's scale, along the part of it that nothing hides."""
     page = hand.page
@@ -141,8 +148,8 @@ def test_a_link_has_the_legends_colour(hand: Hand) -> None:
     hand.until(lambda: links.inner_text().startswith("lines to nodes: "))
     low, high = map(float, re.findall(r"-?\d+(?:\.\d+)?", links.inner_text().replace(MINUS, "-")))
     assert low < min(link.sinr_db for link in hand.session.state.current(case_named("Vertical")).result.links)
-    gradient = page.locator(".np-scale").last.evaluate("bar => getComputedStyle(bar).backgroundImage")
-    stops = [[float(part) for part in rgb.split(",")] for rgb in re.findall(r"rgb\((.*?)\)", gradient)]
+    stops: list[list[float]] = []
+    hand.until(lambda: stops.extend(_stops(page)) or stops)  # a card that is being replaced has no style
     hand.choose(0, "no map")  # the links are seen through the plane of the map
     page.wait_for_timeout(1500)
     answer = hand.session.state.current(hand.session.state.case)
