@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from benchmarks.soundness.ends import channel_ends, narrow_airframe, quiet, rescaled, with_depths
 from benchmarks.soundness.scenes import Scene
+from benchmarks.soundness.search import feasible, nearest_in_band
 from nullpose.channel import ENVIRONMENTS
 from nullpose.errors import ScenarioError
+from nullpose.physics import Reception
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
 
@@ -439,7 +441,10 @@ def _relay(rng: np.random.Generator) -> Table:
 
 
 def _mean(rng: np.random.Generator, objective: str) -> Table:
-    """Two to twenty nodes, some with weights, and up to three jammers, with what else a scene can state."""
+    """Two to twenty nodes, some with weights, and up to three jammers, with what else a scene can state.
+
+    In half of the scenes that leave the axis free nodes require what they have at some pose, or less.
+    """
     makers = (_plain, _airframe, _no_fly, _together, _antennas)
     while "eavesdroppers" in (table := makers[int(rng.integers(len(makers)))](rng)):
         pass
@@ -458,7 +463,25 @@ def _mean(rng: np.random.Generator, objective: str) -> Table:
     some = ["optimum"] * 4
     if "airframe" not in table:
         some += ["vertical", "maximum-gain", *["zero-interference"] * jammers]
-    return table | {"objective": objective, "scheme": str(rng.choice(some))}
+    table |= {"objective": objective, "scheme": str(rng.choice(some))}
+    if table["scheme"] == "optimum" and rng.uniform() < 0.5:
+        _require(rng, table)
+    return table
+
+
+def _require(rng: np.random.Generator, table: Table) -> None:
+    """Let nodes require up to 6 dB less than what they have at a random pose, if one is met."""
+    plain = Scenario.from_dict({key: value for key, value in table.items() if key != "scheme"})
+    low, high = np.maximum(plain.airspace.lower_m, -20.0), np.minimum(plain.airspace.upper_m, 80.0)
+    places = rng.uniform(low, high, (200, 3))
+    places = places[feasible(plain, places)]
+    if not len(places):
+        return
+    axis = nearest_in_band(rng.normal(size=(1, 3)), *plain.axis_band)[0]
+    heard = Reception(plain, places[0], axis).sinr
+    for node, sinr in zip(table["nodes"], heard, strict=True):
+        if rng.uniform() < 0.5 and sinr > 1e-9:
+            node["min_sinr_db"] = float(10.0 * np.log10(sinr) - rng.uniform(0.0, 6.0))
 
 
 _SIDES = ("x_m", "y_m", "altitude_m")

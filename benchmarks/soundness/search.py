@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from nullpose.physics import objective_value
+from nullpose.physics import allowed_value
 from nullpose.scenario import Scenario
 
 FloatArray = NDArray[np.float64]
@@ -111,7 +111,7 @@ def _walks(
         out = np.full(len(p), -np.inf)
         if np.any(allowed):
             unit = directions[allowed] / length[allowed]
-            out[allowed] = objective_value(scenario, p[allowed], _orientations(unit))
+            out[allowed] = allowed_value(scenario, p[allowed], _orientations(unit))
         return out
 
     p = rng.uniform(bounds_m[0], bounds_m[1], size=(starts, 3))

@@ -1,6 +1,7 @@
 """Builders and plain algebra that the tests of the verifier share."""
 
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,7 @@ from nullpose.certificate.certificate import COLUMNS, TOWARDS, WORLD
 from nullpose.certificate.channels import excess_at
 from nullpose.certificate.forms import matrices
 from nullpose.certificate.interval import Interval
-from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
+from nullpose.certificate.pose_value import Exact, antenna_axis, exact, ratios_at, value_of
 from nullpose.channel import LinkChannel, PointChannels, excess_gain
 from nullpose.channel.elevation import elevation_excess
 from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, WIDTH
@@ -28,6 +29,11 @@ from nullpose.solver.solve_and_prove import solve_and_prove
 _ENOUGH_S = 600.0  # the kernels may have to be compiled first
 
 seeds = st.integers(0, 2**32 - 1)
+
+
+def value_at(family: Family, position: Exact, axis: Exact, gains: Interval | None = None) -> Fraction:
+    """Return what is maximised at a pose, by the verifier's numbers."""
+    return value_of(family, ratios_at(family, position, axis, gains=gains))
 
 
 def accepted(certificate: Certificate) -> str:
@@ -85,7 +91,7 @@ def put_together(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3)
     attitude = (0.0, lean, float(np.arctan2(north, east)))
     position = exact(outcome.incumbent.position_m)
     axis, gains = antenna_axis(attitude, mount_rad), excess_at(family, position)
-    value = float(smallest_ratio(family, position, axis, gains=gains))
+    value = float(value_at(family, position, axis, gains=gains))
     trees = zip(fields, outcome.proofs, strict=True)
     return Certificate(
         scenario=scenario,

@@ -4,12 +4,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from tests.certificate.plain import boxes_at, excess_over, random_family
+from tests.certificate.plain import boxes_at, excess_over, random_family, value_at
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.channels import amplitude, excess, excess_at, most_excess
 from nullpose.certificate.forms import COLUMN, ROW
-from nullpose.certificate.pose_value import exact, smallest_ratio
+from nullpose.certificate.pose_value import exact
 from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel
 from nullpose.channel.free_space import constant_channel
@@ -146,9 +146,9 @@ def test_the_value_with_channels_is_a_lower_bound() -> None:
     """Numerators take the lower ends of the gains, denominators the upper ones."""
     family = random_family(np.random.default_rng(3), 2, 2, channel=power_law(2.7, 1.0))
     place, axis = np.array([10.0, 12.0, 15.0]), np.array([0.3, -0.8, 0.2])
-    least = smallest_ratio(family, exact(place), exact(axis), gains=excess_at(family, exact(place)))
+    least = value_at(family, exact(place), exact(axis), gains=excess_at(family, exact(place)))
     wide = excess_at(family, exact(place) + Fraction(1, 10**17))
-    other = smallest_ratio(family, exact(place), exact(axis), gains=wide)
+    other = value_at(family, exact(place), exact(axis), gains=wide)
     assert float(least) == pytest.approx(float(other), rel=1e-13)
 
 

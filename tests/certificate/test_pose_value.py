@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from tests.certificate.plain import dense_ratios, random_family, seeds
+from tests.certificate.plain import dense_ratios, random_family, seeds, value_at
 
 from nullpose.certificate.pose_value import (
     antenna_axis,
@@ -15,7 +15,6 @@ from nullpose.certificate.pose_value import (
     exact,
     field_offset,
     sine_cosine,
-    smallest_ratio,
 )
 from nullpose.physics import (
     Pose,
@@ -72,7 +71,7 @@ def test_the_smallest_ratio_is_the_smallest_sinr(
     pose = Pose(rng.uniform([-20.0, -20.0, 8.0], [120.0, 120.0, 30.0]), roll, pitch, yaw)
     expected = min_sinr(scenario, pose)
     axis = antenna_axis((roll, pitch, yaw))
-    value = float(smallest_ratio(build_family(scenario), exact(pose.position_m), axis))
+    value = float(value_at(build_family(scenario), exact(pose.position_m), axis))
     # a node near the null has a gain that is the difference of nearly equal numbers in the physics
     assert value == pytest.approx(expected, rel=1e-13, abs=1e-12)
 
@@ -82,7 +81,7 @@ def test_several_denominators(seed: int) -> None:
     """Each ratio takes its own denominator, as in the secrecy rates that the family allows for."""
     rng = np.random.default_rng(seed)
     family, p, u = random_family(rng, 4, 2, groups=3), np.array([1.0, 2.0, 20.0]), rng.normal(size=3)
-    value = float(smallest_ratio(family, exact(p), exact(u)))
+    value = float(value_at(family, exact(p), exact(u)))
     assert value == pytest.approx(dense_ratios(family, p, u).min(), rel=1e-12)
 
 

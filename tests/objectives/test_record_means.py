@@ -9,7 +9,7 @@ from benchmarks.soundness.check import check_scene
 from benchmarks.soundness.features import make_feature_scene
 
 from nullpose.certificate import Certificate, verify
-from nullpose.errors import ScenarioError, UsageError
+from nullpose.errors import UsageError
 from nullpose.physics import Pose, evaluate, objective_value
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario, load
@@ -200,13 +200,3 @@ def test_what_does_not_know_them_says_so(objective: str) -> None:
     with pytest.raises(UsageError, match=f'^objective: given "{objective}"'):
         build_family(scenario)
     assert solve(scenario, certify=False).binding_node is None
-
-
-def test_advice_names_objectives_in_which_the_key_has_a_meaning() -> None:
-    """A required SINR is refused, and a secrecy rate, which has no use for one either, is not advised."""
-    table = load("examples/paper.toml").to_dict() | {"objective": "sum-rate"}
-    table["nodes"][0]["min_sinr_db"] = 3.0
-    with pytest.raises(ScenarioError, match=r"nodes\[0\]\.min_sinr_db: has no meaning") as refused:
-        Scenario.from_dict(table)
-    assert '"min-sinr"' in str(refused.value)
-    assert "secrecy" not in str(refused.value)

@@ -17,8 +17,9 @@ from nullpose.certificate.pose_value import (
     body_axes,
     exact,
     field_offset,
+    ratios_at,
     sine_cosine,
-    smallest_ratio,
+    value_of,
 )
 from nullpose.certificate.profile import profiles_of
 from nullpose.objectives import Quantity
@@ -84,7 +85,11 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     )
     if fault:
         return f"pose: {fault}"
-    value = smallest_ratio(family, position, axis, *profiles_of(fields), gains=excess_at(family, position))
+    ratios = ratios_at(family, position, axis, *profiles_of(fields), gains=excess_at(family, position))
+    least = exact(family.requirements) * (1 - Fraction(VALUE_RTOL))
+    for k in np.flatnonzero(ratios[: len(least)] < least):
+        return f"pose: {certificate.scenario.nodes[k].name} misses its min_sinr_db"
+    value = value_of(family, ratios)
     if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
         quantity = Quantity.of(certificate.scenario)
         kind = "mean" if quantity.whole else "smallest"

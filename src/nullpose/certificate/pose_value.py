@@ -133,18 +133,17 @@ def link(
     return isotropic
 
 
-def smallest_ratio(
+def ratios_at(
     family: Family,
     position: Exact,
     axis: Exact,
     profile: Profile | None = None,
     *,
     gains: Interval | None = None,
-) -> Fraction:
-    """Return the smallest ratio at a pose (of paper eq. 2.1, say), exactly for the numbers given.
+) -> Exact:
+    """Return the ratios at a pose (paper eq. 2.1, say), exactly for the numbers given, (ratios,).
 
-    With channels a lower bound of it, as near as their excess gains are enclosed; of a mean of ratios, one as
-    near as logarithms are.
+    With channels lower bounds of them, as near as their excess gains are enclosed.
 
     Args:
         family: the ratios.
@@ -175,7 +174,14 @@ def smallest_ratio(
         [sum(entries[a:b], below) for a, b, below in zip(starts, starts[1:], isotropic, strict=False)]
     )
     above = exact(family.numerator_weight) * heard[family.numerator_point]
-    ratios = (exact(family.numerator_isotropic) + above) / denominators[family.denominator_of]
+    return np.asarray((exact(family.numerator_isotropic) + above) / denominators[family.denominator_of])
+
+
+def value_of(family: Family, ratios: Exact) -> Fraction:
+    """Return what is maximised from the ratios at a pose: the smallest, or a lower bound of their mean.
+
+    The bound is as near as logarithms are.
+    """
     if not len(family.shares):
         return Fraction(min(ratios))
     power = Interval(0.0)

@@ -87,7 +87,9 @@ def claim_words(certificate: Certificate) -> str:
     scenario = certificate.scenario
     axes = RECORDS[certificate.scheme].sentence(scenario, certificate.null_jammer)
     quantity = Quantity.of(scenario)
-    what = f"{axes} {quantity.gives} {quantity.with_article}"
+    required = quantity.whole and any(node.min_sinr_db is not None for node in scenario.nodes)
+    among = ", the two meeting every min_sinr_db," if required else ""
+    what = f"{axes}{among} {quantity.gives} {quantity.with_article}"
     return f"in this scenario{_left_out(certificate)} no position{_places(certificate)} {what}"
 
 

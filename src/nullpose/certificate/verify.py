@@ -162,7 +162,7 @@ def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[
 
 def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: float) -> str:
     """Find the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
-    leaves, ratios = tree.leaves, len(family.numerator_point)
+    leaves, numbers = tree.leaves, len(family.numerator_point) + len(family.requirements)
     no_point, no_mix = np.zeros((2, len(leaves)), dtype=bool)
     for kind, test in _TESTS.items():
         if test.points is not None:
@@ -190,7 +190,7 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         if np.any(mask):
             return f"leaf {int(np.argmax(mask))}: {words}"
     for number, mix in enumerate(leaves.mixes):
-        if not mix or any(not (0 <= k < ratios and w >= 0.0) for k, w in mix.items()):
+        if not mix or any(not (0 <= k < numbers and w >= 0.0) for k, w in mix.items()):
             return f"multipliers {number}: a ratio that does not exist, or a negative weight"
     return "" if np.all(tree.root_m[0] <= tree.root_m[1]) else "the root box is empty"
 

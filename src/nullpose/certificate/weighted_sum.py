@@ -1,4 +1,8 @@
-"""The signed sum of links that a leaf's multipliers make, ``sum_k lambda_k (N_k - t D_g(k))``."""
+"""The signed sum of links that a leaf's multipliers make, ``sum_k lambda_k (N_k - t D_g(k))``.
+
+Of a mean of R ratios the numbers from R on are requirements: with them ``sum_k nu_k (N_k - r_k D)`` comes on
+top, which is not negative where every ratio is its ``r_k`` or more.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +53,7 @@ def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: Float
     With ``X_k = a + N_k / D`` that is ``prod_k X_k^p_k``. Where it is at least t,
     ``sum_k q_k X_k >= t prod_k (q_k / p_k)^p_k`` for any positive q, as the arithmetic mean of the
     ``q_k X_k / p_k`` is no less than the geometric one. What is returned is the right side less
-    ``a sum_k q_k``, or not a number where that may be below zero.
+    ``a sum_k q_k``, or not a number where that may be below zero; zero where there is no q.
 
     Args:
         family: the ratios.
@@ -64,7 +68,8 @@ def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: Float
         power = power + (log(Interval(q)) - log(p)) * p
         total = total + q
     result = exp(power) - total * family.offset
-    return where(result.low >= 0.0, result, np.nan)
+    stands = np.any((ratio < len(family.shares)) & (weight > 0.0), axis=0)
+    return where(stands, where(result.low >= 0.0, result, np.nan), 0.0)
 
 
 def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Term]]:
@@ -77,6 +82,7 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         family: the ratios.
         leaves: with multipliers and level.
     """
+    ratios = len(family.numerator_point)
     leaks = np.zeros(len(family.points_m))
     leaks[: len(family.ground_leaks)] = family.ground_leaks * (family.ground_leaks < 1.0)
     leaky, twin = np.flatnonzero(leaks), np.cumsum(leaks > 0.0) + len(leaks) - 1
@@ -89,7 +95,8 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         leaking = where(split, scale * leak, 0.0)
         return [dipole, Term(np.where(split, twin[point], point), leaking, sign)]
 
-    ratio, weight = mix_slots(leaves)
+    number, weight = mix_slots(leaves)
+    ratio, is_required = number % ratios, number >= ratios
     identity = Interval(np.zeros(len(leaves)))
     terms: list[Term] = []
     for k, w in zip(ratio, weight, strict=True):
@@ -101,7 +108,8 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         counts = np.any(mine > 0.0, axis=0)
         level = Interval(mine).total() * leaves.level
         if len(family.shares):
-            level = mean_level(family, ratio, weight, leaves.level)
+            least = np.append(family.requirements, 0.0)[np.where(is_required, ratio, -1)]
+            level = mean_level(family, number, weight, leaves.level) + (Interval(weight) * least).total()
         identity = where(counts, identity - level * isotropic, identity)
         for e in range(*family.denominator_start[g : g + 2]) if np.any(counts) else ():
             point = np.full(len(leaves), family.denominator_point[e])

@@ -17,5 +17,4 @@ PROPORTIONAL_FAIR = replace(
     quantity=lambda scenario: _MEAN,
     evaluate=lambda reception: {"sinr": reception.sinr},
     mean_offset=0.0,
-    unused=(*MIN_SINR.unused, "nodes.min_sinr_db"),
 )

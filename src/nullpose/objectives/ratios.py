@@ -53,6 +53,8 @@ class Ratios(NamedTuple):
         shares: (r,) of a geometric mean ``prod_k (a + ratio_k)^share_k``, summing to one, where that is
             maximised and not the smallest ratio; all ratios have one denominator then. Or (0,).
         offset: a, 0 or 1.
+        requirements: (r,) the least that each ratio of a mean may be, 0 where any will do; or (0,), where
+            none has to be anything.
     """
 
     points_m: FloatArray
@@ -74,6 +76,7 @@ class Ratios(NamedTuple):
     shadow_sides: FloatArray = np.zeros((0, 5))
     shares: FloatArray = np.zeros(0)
     offset: float = 0.0
+    requirements: FloatArray = np.zeros(0)
 
 
 def points_of(scenario: Scenario, *kinds: str, others: tuple[str, ...] = ()) -> dict[str, Any]:

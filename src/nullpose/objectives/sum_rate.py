@@ -33,5 +33,4 @@ SUM_RATE = replace(
     quantity=lambda scenario: replace(_RATE, scale=float(np.sum(scenario.node_weights))),
     evaluate=_evaluate,
     mean_offset=1.0,
-    unused=(*MIN_SINR.unused, "nodes.min_sinr_db"),
 )

@@ -40,6 +40,7 @@ from nullpose.physics.pose import Pose
 from nullpose.physics.poses import Poses
 from nullpose.physics.reception import (
     Reception,
+    allowed_value,
     node_values,
     objective_value,
     ratios_under,
@@ -62,6 +63,7 @@ __all__ = [
     "PoseFrames",
     "Poses",
     "Reception",
+    "allowed_value",
     "antenna_axis",
     "antenna_gain",
     "array_channels",

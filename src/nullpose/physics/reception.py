@@ -92,6 +92,22 @@ def objective_value(
     return record.value(scenario, record.evaluate(Reception(scenario, position_m, axis, case)))
 
 
+def allowed_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Evaluate the objective, minus infinity where a sum or a mean leaves a node below what it requires.
+
+    Args:
+        scenario: as for ``objective_value``.
+        position_m: likewise.
+        axis: likewise.
+    """
+    reception, record = Reception(scenario, position_m, axis), scenario.objective_record
+    value = record.value(scenario, record.evaluate(reception))
+    if record.mean_offset is None:
+        return value
+    is_met = np.all(reception.sinr >= scenario.node_requirements, axis=-1)
+    return np.asarray(np.where(is_met, value, -np.inf))
+
+
 def node_values(reception: Reception) -> FloatArray:
     """Evaluate the maximised quantity of every terminal, ``(..., n_terminals)``: ratios, or bits/s/Hz."""
     record = reception.scenario.objective_record

@@ -63,7 +63,12 @@ def build_family(
     ratios = record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     if record.mean_offset is not None:
-        ratios = ratios._replace(shares=scenario.node_shares, offset=record.mean_offset)
+        required = scenario.node_requirements
+        ratios = ratios._replace(
+            shares=scenario.node_shares,
+            offset=record.mean_offset,
+            requirements=required[: len(required) * bool(np.any(required))],
+        )
     family = Family(**ratios._asdict(), **domain_of(scenario, ratios.points_m))
     _refuse_the_loudest(scenario, family)
     return family

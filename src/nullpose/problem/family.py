@@ -51,6 +51,20 @@ class Family:
         return Family(**self.arrays._asdict(), **place._asdict())
 
     @property
+    def required_ratios(self) -> Family:
+        """The ratios of a mean that have requirements, each over its own: met where none is below 1."""
+        kept = np.flatnonzero(self.requirements)
+        least, none = self.requirements[kept], np.zeros(0)
+        return self.changed(
+            numerator_isotropic=self.numerator_isotropic[kept] / least,
+            numerator_weight=self.numerator_weight[kept] / least,
+            numerator_point=self.numerator_point[kept],
+            denominator_of=self.denominator_of[kept],
+            shares=none,
+            requirements=none,
+        )
+
+    @property
     def fields(self) -> dict[str, FloatArray | IntArray | float]:
         """Every array by name, and the keep-out radius."""
         return self.arrays._asdict() | self.domain._asdict()

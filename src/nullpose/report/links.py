@@ -60,15 +60,13 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
     if quantity.noun != quantity.ratio:
         numbers = [quantity.in_unit(quantity.at(link)) for link in links]
         counted[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
-        counted[f"required {quantity.ratio} (dB)"] = [
-            cell(each.min_sinr_db, ".6g") for each in scenario.terminals
-        ]
     if scenario.objective_record.transmits:
         counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
     distances_m = [distance_m(result.pose, point_m) for point_m in scenario.terminal_positions_m]
     columns: dict[str, Sequence[str | None]] = {
         "node": [link.node for link in links],
         **counted,
+        f"required {quantity.ratio} (dB)": [cell(each.min_sinr_db, ".6g") for each in scenario.terminals],
         "weight": [cell(each.weight, ".6g") for each in scenario.terminals],
         f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
         quantity.ratio: [None if counted else f"{link.sinr:.5g}" for link in links],

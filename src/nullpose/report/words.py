@@ -66,7 +66,9 @@ def requirement_words(result: Result) -> str:
     """
     nodes, bound = result.scenario.terminals, result.objective.upper_bound
     pairs = zip(result.links, nodes, strict=True)
-    spare = sorted((link.margin_db or 0.0, link.node) for link, node in pairs if node.min_sinr_db is not None)
+    spare = sorted(
+        (link.sinr_db - node.min_sinr_db, link.node) for link, node in pairs if node.min_sinr_db is not None
+    )
     missed = [margin for margin in spare if margin[0] < 0.0]
     words = ", ".join(
         f"node {node}: {abs(db):.2f} dB {'below' if db < 0.0 else 'above'} what it requires"
@@ -74,7 +76,8 @@ def requirement_words(result: Result) -> str:
     )
     if not missed:
         return f"every requirement is met; {words}" if spare else ""
-    is_impossible = len(spare) == len(nodes) and bound is not None and bound < 1.0
+    every = len(spare) == len(nodes) and not result.objective.quantity.whole
+    is_impossible = every and bound is not None and bound < 1.0
     return (
         f"missed: {words}{'; proved: no pose of this case meets every requirement' if is_impossible else ''}"
     )

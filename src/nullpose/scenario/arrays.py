@@ -112,6 +112,11 @@ class PointArrays:
         """The weights over their sum, (n_nodes,)."""
         return self.node_weights / np.sum(self.node_weights)
 
+    @property
+    def node_requirements(self) -> Floats:
+        """The SINR that each node requires, linear, 0 where it states none, (n_nodes,)."""
+        return np.array([0.0 if each.min_sinr_db is None else each.required_sinr for each in self.nodes])
+
     node_antennas = _antennas("nodes")
     """The nodes' antennas; None where all are isotropic."""
     node_channels = _channels("nodes")

@@ -13,7 +13,7 @@ from nullpose.objectives import RECORDS
 from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.channel import Channel, CustomChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of
-from nullpose.scenario.ground_points import GroundPoint, Node
+from nullpose.scenario.ground_points import GroundPoint, Node, Terminal
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.origin_faults import is_placed, origin_faults
 from nullpose.scenario.plausibility import too_small
@@ -192,6 +192,13 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
         for place, keys, present in _places_of(need, scenario, points):
             if not present:
                 yield place, f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
+    for place, point in points.items() if record.mean_offset is None else ():
+        if isinstance(point, Terminal) and point.weight is not None and point.min_sinr_db is not None:
+            yield (
+                place,
+                "both weight and min_sinr_db are given, at most one is allowed with objective = "
+                f'"{record.name}"; remove either, or maximise a sum of rates or a mean',
+            )
     without_meaning = {
         other.name: {key for each in other.unused for key in _keys_of(each)} for other in RECORDS.values()
     }

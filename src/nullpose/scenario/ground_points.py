@@ -242,14 +242,14 @@ class GroundPoint(Section):
         )
 
 
-_WISH, _JAMMING = at_most_one("weight", "min_sinr_db"), at_most_one("jamming_w", "jamming_dbm")
+_JAMMING = at_most_one("jamming_w", "jamming_dbm")
 
 
 class Terminal(Noisy):
     """An end of a link that counts: what it asks for, and what its receiver gets beside the signal.
 
     Args:
-        weight: its margin is its SINR over this; or else
+        weight: its margin is its SINR over this, or how often it counts in a mean.
         min_sinr_db: the SINR that it requires [dB]; its margin is its SINR over this.
         noise_w: noise of its own receiver [W], where the drone transmits to it; or else
         noise_dbm: the same in dBm; or else
@@ -263,13 +263,12 @@ class Terminal(Noisy):
 
     weight: Weight | None = optional(
         "What the node's SINR is divided by before the smallest is taken: a node of weight 2 is "
-        "given twice the SINR; or how often it counts in a sum of rates or a mean. Either this or "
-        "min_sinr_db, or neither, which is a weight of 1.",
+        "given twice the SINR; or how often it counts in a sum of rates or a mean. Left out: 1.",
         2.0,
     )
     min_sinr_db: RatioDecibels | None = optional(
-        "The SINR that the node requires, in dB; what counts is how far it is exceeded. Either "
-        "this or weight, or neither.",
+        "The SINR that the node requires, in dB. Where the smallest counts, what counts is how far it is "
+        "exceeded, and the node has no weight; under a sum of rates or a mean every pose must reach it.",
         3.0,
     )
     jamming_w: Watts | None = optional(
@@ -306,7 +305,6 @@ class Node(Terminal, Powered, GroundPoint):
         PLACE,
         ALTITUDE,
         at_most_one("power_w", "power_dbm"),
-        _WISH,
         NOISE,
         _JAMMING,
     )
@@ -318,7 +316,7 @@ class Destination(Terminal, GroundPoint):
     Its keys are those of a ground point and of a terminal.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, _WISH, NOISE, _JAMMING)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, NOISE, _JAMMING)
 
     name: Label = Field(
         default="destination",

@@ -11,7 +11,7 @@ import numpy as np
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, PROFILE, TOWARDS, WORLD
 from nullpose.certificate.channels import excess_at
-from nullpose.certificate.pose_value import antenna_axis, exact, smallest_ratio
+from nullpose.certificate.pose_value import antenna_axis, exact, ratios_at, value_of
 from nullpose.certificate.profile import profiles_of
 from nullpose.errors import UsageError, checked, require_usage
 from nullpose.objectives.ratios import IntArray
@@ -44,13 +44,15 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
     rows = proof.leaves
     test = rows[:, node.KIND].astype(np.int64)
     ratios, weights = rows[:, node.INDEX : node.WEIGHT].astype(np.int64), rows[:, node.WEIGHT : node.TOUCH]
-    has_mix, count = np.isin(test, (WORLD, TOWARDS, AFFINE)), rows[:, node.COUNT]
+    has_mix, count = np.isin(test, (WORLD, TOWARDS, AFFINE)), rows[:, node.COUNT].astype(np.int64)
     if len(family.shares):
-        weights = np.empty((len(rows), len(family.shares)))
-        count = np.full(len(rows), weights.shape[1])
-        fill_tangents(family.arrays, rows, weights)
-        ratios = np.tile(np.arange(weights.shape[1]), (len(rows), 1))
-    mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0).astype(np.int64))
+        tangents, required = np.empty((2, len(rows), len(family.shares)))
+        fill_tangents(family.arrays, rows, tangents)
+        required[:] = 0.0  # their numbers follow those of the ratios
+        used = np.arange(node.SUPPORT) < count[:, None]
+        required[np.nonzero(used)[0], ratios[used]] = weights[used]
+        ratios, weights, count = _used(np.hstack([tangents, required]))
+    mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0))
     point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0
     is_free = np.isin(test, (WORLD, TOWARDS))
@@ -79,12 +81,7 @@ def _of_profile(proof: Proof) -> Leaves:
     widest = math.pi / 2.0 if proof.is_even else math.pi
     turns = rows[:, [3, 5]], rows[:, [HALF + 3, HALF + 5]]
     turned = _parts(np.array([0.0, -math.pi]), np.array([widest, math.pi]), *turns)
-    ratios = np.tile(np.arange(rows.shape[1] - WARM), (len(rows), 1))
-    weights = rows[:, WARM:]
-    # the multipliers that count come first
-    order = np.argsort(weights <= 0.0, axis=1, kind="stable")
-    ratios, weights = (np.take_along_axis(each, order, axis=1) for each in (ratios, weights))
-    mix, mixes = _mixes(ratios, weights, np.maximum(1, np.sum(weights > 0.0, axis=1)))
+    mix, mixes = _mixes(*_used(rows[:, WARM:]))
     return Leaves(
         box=_parts(proof.root[0], proof.root[1], rows[:, :3], rows[:, HALF : HALF + 3]),
         cell=np.concatenate([rows[:, [CHART]].astype(np.int64), turned], axis=1),
@@ -98,6 +95,13 @@ def _of_profile(proof: Proof) -> Leaves:
         ball=np.full(len(rows), -1),
         ball_multiplier=none,
     )
+
+
+def _used(weights: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
+    """Order multipliers, (l, n), so that those that count come first; return which they are and how many."""
+    order = np.argsort(weights <= 0.0, axis=1, kind="stable")
+    count = np.maximum(1, np.sum(weights > 0.0, axis=1))
+    return order, np.take_along_axis(weights, order, axis=1), count
 
 
 def _parts(low: FloatArray, high: FloatArray, centre: FloatArray, half: FloatArray) -> IntArray:
@@ -254,5 +258,6 @@ def _ratios(solution: Result, family: Family, fields: Mapping[str, AxisField]) -
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
     place = exact(pose.position_m)
-    value = float(smallest_ratio(family, place, axis, *profiles_of(fields), gains=excess_at(family, place)))
+    ratios = ratios_at(family, place, axis, *profiles_of(fields), gains=excess_at(family, place))
+    value = float(value_of(family, ratios))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))

@@ -139,7 +139,7 @@ def compile_search() -> None:
     climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
     fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, up, row)
     log_objective(family.arrays, high_m, up, weight, weight)
-    keep_largest(weight, 1, row)
+    keep_largest(weight, 1, row, False)
     touch(row, up)
 
 

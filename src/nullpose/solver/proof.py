@@ -212,7 +212,7 @@ class _Run(BranchAndBound):
             return False
         self.incumbent = found
         self.incumbent_row, weights = np.zeros(self.node.COLUMNS), found.multipliers.copy()
-        self.node.keep_largest(weights, len(weights), self.incumbent_row)
+        self.node.keep_largest(weights, len(weights), self.incumbent_row, self.is_mean)
         self.touch(self.incumbent_row, found.axis)
         return True
 

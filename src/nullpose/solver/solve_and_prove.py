@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
+from nullpose.errors import SolveError
+from nullpose.physics.decibel import to_db
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 from nullpose.solver.compiling import compile_search, limit_clock, precompile
@@ -14,6 +16,7 @@ from nullpose.solver.multistart import Incumbent, climb, multistart, search_sett
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import Proof, prove
 
+_ALL_MET = -1e3  # logarithms of a mean below this are of poses that miss a requirement
 _UPRIGHT = 0.99  # the least u_z^2 of axes that are all about vertical
 
 
@@ -65,7 +68,7 @@ def solve_and_prove(
         bound: known before of more axes than the fields have.
 
     Raises:
-        SolveError: no pose reaches every node.
+        SolveError: no pose reaches every node, or what it requires.
     """
     # compiling must not count against the time limit
     (precompile if options.certify else compile_search)()
@@ -86,6 +89,8 @@ def solve_and_prove(
 
     each = [incumbent or searched(field, options.certify) for field in fields]
     chosen = max(range(len(each)), key=lambda i: each[i].log_value)
+    if each[chosen].log_value < _ALL_MET:
+        chosen, each[chosen] = _within_requirements(family, fields, options)
     best = each[chosen]
     proofs: list[Proof] = []
     reason = ""
@@ -117,4 +122,26 @@ def solve_and_prove(
         cells=0 if has_leaves else sum(proof.nodes for proof in proofs),
         upper_bound=max(p.upper_bound for p in proofs) if proofs else None,
         reason=reason,
+    )
+
+
+def _within_requirements(
+    family: Family, fields: Sequence[AxisField], options: SolveOptions
+) -> tuple[int, Incumbent]:
+    """Return the index of a field and a pose under it that meets the requirements of a mean's ratios.
+
+    Raises:
+        SolveError: there is none, or none was found.
+    """
+    nearest = solve_and_prove(family.required_ratios, fields, replace(options, of_rate=False))
+    found = nearest.incumbent
+    if found.log_value >= 0.0:
+        return nearest.chosen, climb(family, fields[nearest.chosen], found.position_m, found.axis)
+    missed_db, bound = -to_db(math.exp(found.log_value)), nearest.upper_bound
+    proved = ""
+    if bound is not None and bound < 1.0:
+        proved = f", and proved: every pose misses one by {-to_db(bound):.6g} dB or more"
+    raise SolveError(
+        "nodes.min_sinr_db: no pose was found that meets every requirement; the best misses one by "
+        f"{missed_db:.6g} dB{proved}. Lower min_sinr_db by as much, or widen the airspace"
     )

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from nullpose.errors import checked, require_usage
-from nullpose.physics import destination_snr, objective_value, to_db
+from nullpose.physics import allowed_value, destination_snr, to_db
 from nullpose.physics.sinr import received_from_sources_w
 from nullpose.physics.types import FloatArray
 from nullpose.problem.build import build_family
@@ -90,6 +90,7 @@ def value_map(
     usable = scenario.open_airspace.allows(grid) & (nearest_m >= scenario.airspace.keep_out_m - BORDER_M)
     values = np.full(usable.shape, np.nan)
     values[usable] = _best_values(result, grid[usable], go_on)
+    values[np.isneginf(values)] = np.nan  # what a node requires is met there at no axis that was tried
     quantity = result.objective.quantity
     is_pattern = not scenario.antenna_record.is_quadratic
     return Field(
@@ -160,20 +161,20 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
     """Return the objective at each position with the axis of the result's case, shape (n,)."""
     scenario, held = result.scenario, result.pose.orientation(result.scenario.antenna_record)
     if not scenario.antenna_record.is_quadratic:
-        return objective_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
+        return allowed_value(scenario, positions_m, np.broadcast_to(held, (len(positions_m), 3, 3)))
     scheme = result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM  # of a robust pose
     fields = scheme.record.fields(scenario, result.null_jammer)
     if fixed := [field for field in (fields or {}).values() if not field.is_free]:
-        each = [objective_value(scenario, positions_m, field.axis_at(positions_m)) for field in fixed]
+        each = [allowed_value(scenario, positions_m, field.axis_at(positions_m)) for field in fixed]
         return np.asarray(np.max(each, axis=0))
     is_rate = result.objective.quantity.is_rate
     is_smallest = scenario.objective_record.mean_offset is None
     if fields is not None and scenario.axis_band == (0.0, 1.0) and not is_rate and is_smallest:
         axes = _exact_axes(scenario, positions_m, go_on)
     else:
-        rank = _served if fields is None else objective_value
+        rank = _served if fields is None else allowed_value
         axes = _ranked_axes(scenario, positions_m, held, rank, go_on)
-    return objective_value(scenario, positions_m, axes)
+    return allowed_value(scenario, positions_m, axes)
 
 
 def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:

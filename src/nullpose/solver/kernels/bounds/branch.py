@@ -209,6 +209,22 @@ def lone_ratio(family, row, workspace):
 
 
 @rare_kernel
+def misses_one(family, axis_field, row, workspace, axis):
+    """Fill the axis at a box's centre; check whether it misses a requirement, which is the row's then."""
+    fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+    lowest = 1.0
+    if family.requirements.shape[0] > 0:
+        log_objective(family, row[CENTRE:HALF], axis, workspace.log_denominators, workspace.values)
+    for k in range(family.requirements.shape[0]):
+        met = math.exp(workspace.values[k]) / max(family.requirements[k], 1e-290)
+        if met < lowest:
+            lowest = met
+            row[COUNT], row[INDEX], row[WEIGHT] = 1.0, k, 1.0 / family.requirements[k]
+    row[TOUCH:BALL] = 0.0
+    return lowest < 1.0
+
+
+@rare_kernel
 def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half, family = row[HALF:LEVEL], in_sight(whole, domain, seen, row, workspace)
@@ -218,15 +234,21 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
         fill_jet(family, j, False, axis_field, row, workspace)
     row[KIND], is_mean = AFFINE, family.shares.shape[0] > 0
     if is_mean:
-        fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+        missed = misses_one(family, axis_field, row, workspace, axis)
+        if missed and excludes_curved(family, domain, axis_field, row, workspace, total):
+            return EXCLUDED, 0, 0
+        copy_into(goal.multipliers[COUNT:TOUCH], row[COUNT:TOUCH])  # those of requirements
         touch(row, axis)
     elif lone_ratio(family, row, workspace):
         return EXCLUDED, 0, 0
     for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
         if attempt == 1:
             if is_mean:  # whose multipliers are those of the axis
-                continue
-            copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
+                if row[COUNT] == 0.0:
+                    continue
+                row[COUNT] = 0.0
+            else:
+                copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
         if attempt == 2:
             reached = math.inf if is_mean else curved_multipliers(family, axis_field, row, workspace)
             if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):

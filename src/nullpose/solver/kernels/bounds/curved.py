@@ -210,7 +210,7 @@ def curved_multipliers(family, axis_field, row, workspace):
                 radius = max(0.0, radius + total[BEND + e])
             values[k] += (0.5 if i == j else 1.0) * radius * half[i] * half[j]
     mix_in(values, gradients, half, weights[:ratios])
-    keep_largest(weights, ratios, row)
+    keep_largest(weights, ratios, row, False)
     return smallest
 
 

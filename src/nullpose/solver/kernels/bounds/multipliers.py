@@ -14,6 +14,7 @@ from nullpose.solver.kernels.bounds.node import (
     BAND,
     CELL,
     CENTRE,
+    COUNT,
     FACE,
     HALF,
     LEVEL,
@@ -52,6 +53,10 @@ _FINE = 1e-5  # accuracy of the multipliers
 _FINEST = 1e-10  # and at one position
 _LOOSE = 0.03  # and in units of a box's size
 _INTERIOR = 0.01  # and of an interior point's, likewise
+_BARELY = 1e-9
+_EASED = 0.2  # of a box's size: by how much requirements that no form meets are eased beyond what one meets
+_STRICTER = 1e-4  # than required, so that an axis near the form's is likely to meet what is required
+_MET = 1.1  # times a requirement, from where on a form leaves room enough inside it
 _GRID = 9  # of lines across a cell
 
 
@@ -219,32 +224,67 @@ def fill_constraints(shares, sides, places, row):
 
 @inner_heap_kernel
 def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarseness, v):
-    """Fill the form at which a mean's tangent is best, and the constraints' multipliers; return its value.
+    """Fill the form at which a mean's tangent is best, and multipliers; return their value and if it is met.
 
-    Minus infinity if no axis was met inside the row's cell and band.
+    The value is minus infinity if no axis was met inside the row's cell and band. Where no form meets the
+    requirements, these are eased until one does; or, where that is more than what the box is wide, their
+    multipliers stand alone.
     """
     ratios, start, matrix, turn = family.shares.shape[0], scratch(6), scratch(6), scratch(3, 3)
+    row[COUNT], row[TOUCH:BALL] = 0.0, 0.0
     if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
-        return -math.inf
+        return -math.inf, False
     is_horizontal, accuracy = has_horizontal_axes(axis_field), multiplier_accuracy(coarseness)
-    forms, multipliers = np.empty((sides + ratios, 6)), np.empty(sides + ratios)
-    for k in range(sides + ratios):
+    required, share, is_met = np.flatnonzero(family.requirements), 1.0, True
+    first = sides + required.shape[0]
+    forms, multipliers, weights = np.empty((first + ratios, 6)), np.empty(first + ratios), np.zeros(ratios)
+    for k in range(first + ratios):
         if k < sides:
             copy_into(pool.forms[k], forms[k])
         else:
-            ratio_form(family, is_horizontal, basis, row, whitening, np.int64(k - sides), forms[k])
+            of = required[k - sides] if k < first else np.int64(k - first)
+            ratio_form(family, is_horizontal, basis, row, whitening, of, forms[k])
             forms[k, 2] = 0.0 if is_horizontal else forms[k, 2]
+    if first > sides:
+        for k in range(sides, first):
+            for m in range(6):
+                forms[k, m] /= family.requirements[required[k - sides]]
+        met = dual_multipliers(
+            forms, sides, first, 1.0, _MET, accuracy, start, multipliers, matrix, family.shares[:0], 0.0
+        )
+        is_met = met > 1.0 + _BARELY
+        if met < 1.0 - coarseness:
+            keep_required(family, required, sides, multipliers, pool, weights, row)
+            return math.log(max(met, 1e-290) * row[LEVEL]), False
+        share = met * (1.0 - max(_STRICTER, _EASED * coarseness))
+        if is_met:
+            share = 1.0 + min(_STRICTER, 0.5 * (met - 1.0))
+        copy_into(matrix, start)
+        for k in range(sides, first):
+            for m in range(3):
+                forms[k, m] -= 0.0 if is_horizontal and m == 2 else share
     found = dual_multipliers(
-        forms, sides, sides + ratios, 1.0, math.inf, accuracy, start, multipliers, matrix, family.shares,
+        forms, first, first + ratios, 1.0, math.inf, accuracy, start, multipliers, matrix, family.shares,
         family.offset,
     )  # fmt: skip
-    copy_into(multipliers[:sides], pool.shares)
+    for k in range(sides, first):  # the value at what is required, for which the multipliers hold as well
+        found += multipliers[k] * (share - 1.0)
+    keep_required(family, required, sides, multipliers, pool, weights, row)
     top_eigenvector(matrix, v)
     for i in range(3):  # out of whitened coordinates, and out of the frame
         for m in range(3):
             turn[m, i] = dot(basis[i], whitening[2][:, m])
     congruence(matrix, turn, row[TOUCH:BALL])
-    return found
+    return found, is_met
+
+
+@inner_kernel
+def keep_required(family, required, sides, multipliers, pool, weights, row):
+    """Keep the multipliers of constraints: of the cell's sides, and of requirements, over these."""
+    copy_into(multipliers[:sides], pool.shares)
+    for i in range(required.shape[0]):
+        weights[required[i]] = multipliers[sides + i] / family.requirements[required[i]]
+    keep_largest(weights, weights.shape[0], row, True)
 
 
 @inner_kernel
@@ -270,10 +310,12 @@ def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis
         pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])
     tolerance = max(_FINE, _LOOSE * coarseness)
     if family.shares.shape[0] > 0:
-        found = touching_form(family, axis_field, basis, row, whitening, pool, sides, coarseness, v)
+        found, is_met = touching_form(family, axis_field, basis, row, whitening, pool, sides, coarseness, v)
         if found == -math.inf:
             return math.inf, 0.0, False
         fill_constraints(pool.shares, sides, places, row)
+        if not is_met:
+            return math.exp(found) / level, 0.0, False
         axis_of(basis, back, v, axis)
         if axis_field.kind >= BAND_AXIS:
             clamp_axis(axis_field, axis)
@@ -301,7 +343,7 @@ def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis
         if primal == math.inf:
             return math.inf, 0.0, False
     fill_constraints(weights[ratios:], sides, places, row)
-    keep_largest(weights, ratios, row)
+    keep_largest(weights, ratios, row, False)
     if not followed:
         return primal / level, 0.0, False
     axis_of(basis, back, v, axis)

@@ -22,7 +22,7 @@ BAND = 16  # multiplier of the band: of its upper end, or, if negative, minus th
 COUNT = 17  # how many ratios have a multiplier
 INDEX = 18  # which they are
 SUPPORT = 8
-WEIGHT = INDEX + SUPPORT  # their multipliers, which sum to one
+WEIGHT = INDEX + SUPPORT  # their multipliers, which sum to one; of a mean those of their requirements
 TOUCH = WEIGHT + SUPPORT  # of a mean: the form u u^T of an axis, or a mixture, at which its tangent is taken
 BALL = TOUCH + 6  # a keep-out ball that reaches into the box, or -1
 NU = BALL + 1  # and the multiplier of staying out of it, 1/m^2
@@ -45,8 +45,8 @@ def cell_side(face, cell, side, out):
 
 
 @kernel
-def keep_largest(weights, total, row):
-    """Put the largest multipliers, scaled to sum to one, into a row."""
+def keep_largest(weights, total, row, is_mean):
+    """Put the largest multipliers into a row, scaled to sum to one unless they are beside those of a mean."""
     chosen = 0
     gathered = 0.0
     for s in range(min(SUPPORT, total)):
@@ -62,6 +62,8 @@ def keep_largest(weights, total, row):
         weights[lead] = 0.0
         chosen += 1
     row[COUNT] = chosen
+    if is_mean:
+        return
     for s in range(chosen):
         row[WEIGHT + s] /= gathered
     for side in range(3):  # and the band's

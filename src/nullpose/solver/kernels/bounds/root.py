@@ -65,7 +65,7 @@ def fill_root(family, domain, log_value, target, bound, weights, axis, row):
     level -= 1e-9 if level > 1e-6 or level < 0.0 else 1e-3 * level
     low, high = scratch(3), scratch(3)
     cut_box(family, domain.low_m, domain.high_m, level, low, high)
-    keep_largest(weights, weights.shape[0], row)
+    keep_largest(weights, weights.shape[0], row, family.shares.shape[0] > 0)
     touch(row, axis)
     for i in range(3):
         top = max(low[i], high[i])  # empty where two ratios are out of reach of each other: any place does

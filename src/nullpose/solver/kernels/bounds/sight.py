@@ -296,5 +296,5 @@ def in_sight(family, domain, seen, row, workspace):
         family.denominator_of, family.denominator_isotropic, family.denominator_start,
         family.denominator_point, workspace.denominator_weight, family.turn, family.leak,
         family.ground_axes, family.ground_leaks, family.channels, family.shadows_of_point,
-        family.shadow_start, workspace.no_sides, family.shares, family.offset,
+        family.shadow_start, workspace.no_sides, family.shares, family.offset, family.requirements,
     )  # fmt: skip

@@ -4,7 +4,9 @@ The multipliers ``lambda`` exclude every position and axis of a box where ``sum_
 negative: a pose there has a ratio below the level t. For the mean ``prod_k X_k^p_k`` of ``X_k = a + N_k / D``
 that is so where ``sum_k q_k (a D + N_k) - t prod_k (q_k / p_k)^p_k D`` is, for any positive q: the weighted
 arithmetic mean of the ``q_k X_k / p_k`` is no less than the geometric one. ``q_k = p_k / X_k`` at what the
-row's form receives is the tangent there. Nothing beyond this file needs to know which ratio a link is of.
+row's form receives is the tangent there. Where ratio k of a mean must be r_k or more, ``nu_k (N_k - r_k D)``
+comes on top, for any ``nu_k >= 0``; without a form it stands alone. Nothing beyond this file needs to know
+which ratio a link is of.
 """
 
 from __future__ import annotations
@@ -41,10 +43,13 @@ def fill_sum(family, row, sums):
     """Fill the coefficients of a row's sum, one for each point; return that of the identity and its parts."""
     identity = size = 0.0
     sums[:] = 0.0
-    if family.shares.shape[0] > 0:
-        return fill_mean(family, row, sums)
+    is_mean = family.shares.shape[0] > 0
+    if is_mean:
+        identity, size = fill_mean(family, row, sums)
     for s in range(int(row[COUNT])):
-        net, parts = add_ratio(family, int(row[INDEX + s]), row[LEVEL], row[WEIGHT + s], sums)
+        k = int(row[INDEX + s])
+        level = family.requirements[k] if is_mean else row[LEVEL]
+        net, parts = add_ratio(family, k, level, row[WEIGHT + s], sums)
         identity, size = identity + net, size + parts
     return identity, size
 
@@ -67,7 +72,7 @@ def link_to_form(family, j, row):
 
 @rare_kernel
 def fill_mean(family, row, sums):
-    """Do what ``fill_sum`` does for a mean of ratios."""
+    """Do what ``fill_sum`` does for a mean of ratios, requirements left aside."""
     trace = row[TOUCH] + row[TOUCH + 1] + row[TOUCH + 2]
     below, identity, weights, log_mean = trace * family.denominator_isotropic[0], 0.0, 0.0, 0.0
     if not trace > 0.0:
@@ -94,7 +99,8 @@ def fill_tangents(family, rows, tangents):
     """Fill the multipliers q of a mean's ratios that the rows of leaves stand for, (l, ratios)."""
     sums = np.empty(family.points_m.shape[0])
     for i in range(rows.shape[0]):
-        fill_sum(family, rows[i], sums)
+        sums[:] = 0.0
+        fill_mean(family, rows[i], sums)
         for k in range(family.shares.shape[0]):
             tangents[i, k] = sums[family.numerator_point[k]] / family.numerator_weight[k]
 

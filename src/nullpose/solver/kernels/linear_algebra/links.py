@@ -26,6 +26,9 @@ from nullpose.solver.kernels.linear_algebra.symmetric import (
 )
 from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, minus, row, scaled, store
 
+MISSED = -1e4
+"""What is added to the logarithm of the least share that is met of a requirement, where one is missed."""
+
 
 @inner_kernel
 def seen_axis(turn, j, u):
@@ -132,13 +135,19 @@ def log_most_share(family, k, square):
 
 @small_kernel
 def objective_of(family, logs):
-    """Return the logarithm of what is maximised from those of the ratios: the smallest, or their mean's."""
+    """Return the logarithm of what is maximised from those of the ratios: the smallest, or their mean's.
+
+    Where a requirement is missed, it is below that of any mean.
+    """
     if family.shares.shape[0] == 0:
         return smallest_of(logs)
-    total = 0.0
+    total = missing = 0.0
     for k in range(family.shares.shape[0]):
         total += family.shares[k] * shifted_log(family.offset, logs[k])
-    return total
+    for k in range(family.requirements.shape[0]):
+        if family.requirements[k] > 0.0:
+            missing = min(missing, logs[k] - math.log(family.requirements[k]))
+    return total if missing == 0.0 else MISSED + missing
 
 
 @kernel

@@ -45,6 +45,7 @@ _MU_END = 1e-12
 _LONGEST = 0.7
 _INSIDE = 0.995
 _ATTEMPTS = 31
+_EASE = 0.1  # of the least gap over a requirement that is left when the pose has followed
 _BAND_EDGE = 1e-12  # an axis put on the end of a band is off it by rounding
 _ACTIVE = 1e-5  # the least multiplier of a face on which a pose is put
 _FACE_LOSS = 1e-12  # what that may cost
@@ -56,7 +57,8 @@ class Problem(NamedTuple):
     """What is polished: the chosen sides of forbidden pieces, and which coordinates are free.
 
     Of a pose's values those from ``first`` to ``last`` are to be above the level: the log ratios, or the one
-    of a mean that stands behind them. After them come the slacks.
+    of a mean that stands behind them. After them come the slacks. A mean's ratios are to be above their
+    requirements, by which ``ease`` is taken off as long as the pose misses one: (1,), of the logarithms.
     """
 
     family: Ratios
@@ -66,6 +68,7 @@ class Problem(NamedTuple):
     free: NDArray[np.bool_]
     first: int
     last: int
+    ease: FloatArray
 
 
 class Point(NamedTuple):
@@ -77,12 +80,16 @@ class Point(NamedTuple):
 
 
 class Model(NamedTuple):
-    """The problem around a point: change of the pose by each variable, gaps' rates and multipliers."""
+    """The problem around a point: change of the pose by each variable, gaps' rates and multipliers.
+
+    And the weight of each log ratio in the Lagrangian: its multiplier, or what it has by the mean's as well.
+    """
 
     directions: FloatArray
     rates: FloatArray
     duals: FloatArray
     factor: FloatArray
+    weights: FloatArray
 
 
 @inner_kernel
@@ -146,9 +153,24 @@ def begin(problem, point, logs, best_pose):
 
 @inner_kernel
 def fill_gaps(problem, point, t):
-    """Fill the gaps of a point at a level; the ratios of a mean have none."""
-    for c in range(point.values.shape[0]):
-        point.gaps[c] = math.inf if c < problem.first else point.values[c] - (t if c < problem.last else 0.0)
+    """Fill the gaps of a point at a level; those of a mean's ratios are above their requirements."""
+    requirements = problem.family.requirements
+    for c in range(problem.first):
+        point.gaps[c] = math.inf
+    for c in range(requirements.shape[0]):
+        if requirements[c] > 0.0:
+            point.gaps[c] = point.values[c] - math.log(requirements[c]) + problem.ease[0]
+    for c in range(problem.first, point.values.shape[0]):
+        point.gaps[c] = point.values[c] - (t if c < problem.last else 0.0)
+
+
+@inner_kernel
+def ease_requirements(problem, point, t, least):
+    """Ease requirements, or make them as strict as they are, so that each has a gap of at least this."""
+    problem.ease[0] = 0.0
+    fill_gaps(problem, point, t)
+    problem.ease[0] = max(0.0, least - smallest_of(point.gaps[: problem.first]))
+    fill_gaps(problem, point, t)
 
 
 @inner_kernel
@@ -158,20 +180,16 @@ def slope_of_mean(family, k, log):
 
 
 @rare_kernel
-def mix_slopes(family, logs, duals, grads, hess):
-    """Fill the gradient of a mean's logarithm from the ratios'; add what bends it by their logarithms.
-
-    Its own dual stands behind those of the ratios, which are taken back: they have no gaps.
-    """
+def mix_slopes(family, logs, dual, grads, hess):
+    """Fill the gradient of a mean's logarithm from the ratios'; add what bends it by their logarithms."""
     ratios = logs.shape[0]
     grads[ratios, :] = 0.0
     for k in range(ratios):
         slope = slope_of_mean(family, k, logs[k])
-        bend = duals[ratios] * slope * (1.0 - slope / family.shares[k])
+        bend = dual * slope * (1.0 - slope / family.shares[k])
         add_scaled(slope, grads[k], grads[ratios])
         for i in range(6):
             add_scaled(bend * grads[k, i], grads[k], hess[i])
-        duals[k] = 0.0
 
 
 @inner_kernel
@@ -179,11 +197,12 @@ def linearise(problem, point, grads, parts, n, model, h):
     """Fill the rates of all gaps in the n search variables and the level, and the Lagrangian's Hessian."""
     ratios, first, last = problem.family.numerator_point.shape[0], problem.first, problem.last
     pose, duals, hess, f = point.pose, model.duals, scratch(6, 6), point.values[:ratios]
-    for k in range(ratios if first > 0 else 0):
-        duals[k] = duals[first] * slope_of_mean(problem.family, k, f[k])
-    derivatives(problem.family, pose[:3], pose[3:], duals[:ratios], f, grads[:ratios], hess, parts)
+    for k in range(ratios):
+        of_mean = duals[first] * slope_of_mean(problem.family, k, f[k]) if first > 0 else 0.0
+        model.weights[k] = duals[k] + of_mean
+    derivatives(problem.family, pose[:3], pose[3:], model.weights, f, grads[:ratios], hess, parts)
     if first > 0:
-        mix_slopes(problem.family, f, duals, grads, hess)
+        mix_slopes(problem.family, f, duals[first], grads, hess)
     add_slack_slopes(
         problem.domain, problem.axis_field, problem.chosen, pose, duals[last:], grads[last:], hess
     )
@@ -202,13 +221,13 @@ def linearise(problem, point, grads, parts, n, model, h):
 @inner_kernel
 def longest_scale(problem, gaps, rates, step, n):
     """Return the largest share of a step that stays inside all but the balls, and the step's size."""
-    last, balls = problem.last, problem.domain.keep_out_points_m.shape[0]
+    first, last, balls = problem.first, problem.last, problem.domain.keep_out_points_m.shape[0]
     largest = 0.0
     for m in range(n):
         largest = max(largest, abs(step[m]))
     scale = min(1.0, _LONGEST / largest)
-    for c in range(last, gaps.shape[0]):
-        change = inner(rates[c], step, n)
+    for c in range(gaps.shape[0]):
+        change = 0.0 if first <= c < last else inner(rates[c], step, n)
         if change < 0.0 and not last + 6 <= c < last + 6 + balls:
             scale = min(scale, -_INSIDE * gaps[c] / change)
     return scale, largest
@@ -270,6 +289,19 @@ def put_on_faces(problem, point, trial, model, logs, best, best_pose):
     return best
 
 
+@inner_kernel
+def fill_multipliers(problem, duals, multipliers):
+    """Fill the multipliers of ratios, scaled; those of a mean in place of their logarithms."""
+    total, requirements = 0.0, problem.family.requirements
+    for c in range(problem.first, problem.last):
+        total += duals[c]
+    for k in range(multipliers.shape[0]):
+        multipliers[k] = duals[k] / total if problem.first == 0 else 0.0
+    for k in range(requirements.shape[0]):
+        if requirements[k] > 0.0:
+            multipliers[k] = duals[k] / (total * requirements[k])
+
+
 @heap_kernel
 def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
     """Improve a pose in place to a local maximum; return its smallest log ratio and the steps taken.
@@ -284,7 +316,8 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         u: unit axis, (3,), updated; ignored on entry when the field is affine.
         mu_start: first barrier weight, in units of the log ratio.
         max_steps: limit on interior-point steps.
-        multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one.
+        multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one; of a mean those
+            of ``ratio - requirement``, the multiplier of its logarithm being one.
     """
     sight = domain_in_sight(family, domain, p)
     return polish_within(family, sight, axis_field, p, u, mu_start, max_steps, multipliers)
@@ -297,11 +330,12 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
     first = ratios if family.shares.shape[0] > 0 else 0
     last = ratios + 1 if first > 0 else ratios
-    problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_), first, last)
+    problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_), first, last, np.zeros(1))
     count = last + slack_count(domain)
     point = Point(np.empty(6), np.empty(count), np.empty(count))
     trial = Point(np.empty(6), np.empty(count), np.empty(count))
-    model = Model(np.zeros((5, 6)), np.zeros((count, 6)), np.empty(count), np.empty((6, 6)))
+    directions, rates, factor = np.zeros((5, 6)), np.zeros((count, 6)), np.empty((6, 6))
+    model = Model(directions, rates, np.empty(count), factor, np.empty(ratios))
     best_pose, logs, duals = scratch(6), np.empty(groups), model.duals
     copy_into(p, point.pose)
     copy_into(u, point.pose[3:])
@@ -311,6 +345,9 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
     if value > -math.inf and smallest_of(point.values[last:]) > 0.0:
         t = best_level(f, mu)
         fill_gaps(problem, point, t)
+        if family.requirements.shape[0] > 0:
+            ease_requirements(problem, point, t, mu)
+            mu = max(mu, problem.ease[0])
         for c in range(count):
             duals[c] = mu / point.gaps[c]
         grads, parts, h, step = np.empty((count, 6)), np.empty((groups, 50)), scratch(5, 5), scratch(6)
@@ -319,11 +356,14 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
             n = local_coordinates(family, axis_field, point.pose, problem.free, model.directions)
             linearise(problem, point, grads, parts, n, model, h)
             if stalled >= 2 or residual(point.gaps, duals, model.rates, n, mu) <= 10.0 * mu:
-                if mu <= _MU_END or stalled >= 6:
+                if problem.ease[0] > 0.0:
+                    ease_requirements(problem, point, t, _EASE * smallest_of(point.gaps[:first]))
+                elif mu <= _MU_END or stalled >= 6:
                     break
-                mu = max(_MU_END, min(0.1 * mu, mu**1.5))
-                t = best_level(f, mu)
-                fill_gaps(problem, point, t)
+                else:
+                    mu = max(_MU_END, min(0.1 * mu, mu**1.5))
+                    t = best_level(f, mu)
+                    fill_gaps(problem, point, t)
             slope = newton_step(point.gaps, duals, model.rates, h, n, mu, model.factor, step)
             if math.isnan(slope):
                 break
@@ -344,11 +384,7 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
         best = put_on_faces(problem, point, trial, model, logs, best, best_pose)
     else:
         duals[:] = 1.0
-    total = 0.0
-    for k in range(ratios):
-        total += duals[k]
-    for k in range(ratios):
-        multipliers[k] = duals[k] / total if total > 0.0 else 1.0 / ratios
+    fill_multipliers(problem, duals, multipliers)
     copy_into(best_pose[:3], p)
     copy_into(best_pose[3:], u)
     return best, steps
