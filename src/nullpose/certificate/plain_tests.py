@@ -16,39 +16,40 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 
 
-def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Check which boxes keep their node too far off to reach the level, whatever the axis.
+def out_of_reach(family: Family, level: FloatArray | float, square: FloatArray) -> np.ndarray:
+    """Check where no axis reaches a level, from the distances of the nodes alone.
 
-    ``N <= n + w g(a) / a^2`` and ``D >= d``, a being the least distance that box and keep-out ball allow and
-    g the largest excess gain of the channel there.
+    ``N_k <= n_k + w_k g_k / a_k^2`` and ``D >= d``, g being the largest excess gain of the channel beyond the
+    distance a: one ratio is not above the level, or their mean is not.
+
+    Args:
+        family: the ratios.
+        level: (...) t.
+        square: (..., ratios) lower bounds on the squared distances.
+    """
+    point, below = family.numerator_point, family.denominator_isotropic[family.denominator_of]
+    heard = most_excess(family, point, square) * Interval(family.numerator_weight)
+    if len(family.shares):
+        ratios = (heard / square + family.numerator_isotropic) / below + family.offset
+        total = Interval(0.0)
+        for k, share in enumerate(family.shares):
+            total = total + log(ratios[..., k]) * share
+        return np.asarray(total.high <= log(Interval(level)).low)
+    lack = Interval(level)[..., None] * below - family.numerator_isotropic
+    return np.asarray(np.any((square > 0.0) & ((square * lack - heard).low >= 0.0), axis=-1))
+
+
+def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+    """Check which boxes are too far from the nodes to reach the level, whatever the axis.
 
     Args:
         family: the ratios.
         field: of no effect.
-        leaves: of the boxes, with level and ratio.
+        leaves: of the boxes, with level.
         boxes: to be tested.
     """
-    if len(family.shares):
-        near = np.stack([boxes.nearest2(family.points_m[j]) for j in family.numerator_point])
-        clear = np.maximum(near, Interval(family.keep_out_m).squared().low)
-        return np.asarray(log_most_mean(family, clear).high < log(Interval(leaves.level)).low)
-    k = leaves.point
-    point = family.numerator_point[k]
-    a2 = np.maximum(boxes.nearest2(family.points_m[point]), Interval(family.keep_out_m).squared().low)
-    weight = most_excess(family, point, a2) * Interval(family.numerator_weight[k])
-    below = Interval(leaves.level) * family.denominator_isotropic[family.denominator_of[k]]
-    lack = Interval(family.numerator_isotropic[k]) - below
-    return np.asarray((lack.high < 0.0) & ((lack * a2 + weight).high < 0.0))
-
-
-def log_most_mean(family: Family, square: FloatArray) -> Interval:
-    """Bound the logarithm of a mean beyond squared distances from the nodes, (ratios, ...), of any shape."""
-    total, below = Interval(0.0), family.denominator_isotropic[0]
-    for k, share in enumerate(family.shares):
-        point = np.full(square[k].shape, family.numerator_point[k])
-        heard = most_excess(family, point, square[k]) * Interval(family.numerator_weight[k]) / square[k]
-        total = total + log((heard + family.numerator_isotropic[k]) / below + family.offset) * share
-    return total
+    near = np.stack([boxes.nearest2(family.points_m[j]) for j in family.numerator_point], axis=-1)
+    return out_of_reach(family, leaves.level, np.maximum(near, Interval(family.keep_out_m).squared().low))
 
 
 def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
@@ -83,17 +84,12 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
         upper_bound: t.
     """
     points = family.points_m[family.numerator_point]
-    below = family.denominator_isotropic[family.denominator_of]
-    lack = Interval(upper_bound) * below - family.numerator_isotropic
     gaps = np.maximum((family.low_m - Interval(points)).low, (Interval(points) - family.high_m).low)
     gap2 = Interval(np.maximum(gaps, 0.0)).squared()  # from all of the domain, along each axis
     for face_m, end_m, inwards in zip(root_m, (family.low_m, family.high_m), (1.0, -1.0), strict=True):
         beyond = Interval(np.maximum(((Interval(points) - face_m) * inwards).low, 0.0)).squared()
-        square = Interval((beyond + gap2[:, [1, 2, 0]] + gap2[:, [2, 0, 1]]).low.T)
-        weight = most_excess(family, family.numerator_point, square.low) * Interval(family.numerator_weight)
-        out = np.any((square.low > 0.0) & ((square * lack - weight).low >= 0.0), axis=1)
-        if len(family.shares):
-            out = log_most_mean(family, square.low.T).high <= log(Interval(upper_bound)).low
+        square = (beyond + gap2[:, [1, 2, 0]] + gap2[:, [2, 0, 1]]).low.T
+        out = out_of_reach(family, upper_bound, square)
         fine = (face_m * inwards <= end_m * inwards) | out
         if not np.all(fine):
             i = int(np.argmin(fine))
