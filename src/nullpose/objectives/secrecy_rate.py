@@ -58,5 +58,5 @@ SECRECY_RATE = ObjectiveRecord(
     interferers="eavesdroppers",
     transmits=True,
     needs=("transmitter", "eavesdroppers"),
-    unused=("destination", "nodes.weight"),
+    unused=("destination", "nodes.weight", "nodes.min_sinr_db"),
 )

@@ -62,7 +62,7 @@ def test_it_agrees_with_the_interior_point(start: str, random_scene: Callable) -
         level = float(np.max(forms[:, :3]))
         row = np.zeros(COLUMNS)
         if start == "equal":
-            keep_largest(np.full(ratios, 1.0 / ratios), ratios, row)
+            keep_largest(np.full(ratios, 1.0 / ratios), ratios, row, False)
         row[CENTRE:HALF], row[LEVEL], row[FACE] = position_m, level, -1.0
         weights, v = np.empty(ratios + 4), np.empty(3)
         found, followed = ascended(family.arrays, row, mean, back, weights, v)
@@ -91,7 +91,7 @@ def test_where_there_is_a_duality_gap_it_says_so(scene: Callable) -> None:
     position_m = np.array([0.0, 0.0, 0.0])
     forms, mean, back = whitened(family, position_m)
     row = np.zeros(COLUMNS)
-    keep_largest(np.full(4, 0.25), 4, row)
+    keep_largest(np.full(4, 0.25), 4, row, False)
     row[CENTRE:HALF], row[LEVEL], row[FACE] = position_m, float(np.min(forms[:, :3].sum(axis=1))) / 3.0, -1.0
     weights, v = np.empty(8), np.empty(3)
     found, followed = ascended(family.arrays, row, mean, back, weights, v)
