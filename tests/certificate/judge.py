@@ -186,10 +186,8 @@ class Judge:
         )
         depths = np.stack([zone(p) for zone in problem.zones], -1) if problem.zones else np.zeros_like(around)
         allowed = np.all(square >= (keep * (1 + 1e-9)) ** 2, axis=-1)
-        ratio = np.where(test == 3, point, 0)
-        node = problem.node[ratio]
-        received = problem.above[ratio][:, None] * gains[rows, :, node] / square[rows, :, node]
-        best = problem.isotropic + received
+        received = problem.above * gains[..., problem.node] / square[..., problem.node]
+        best = problem.isotropic + received.min(axis=-1)
         if np.any(allowed & (best > level[:, None] * (1.0 + 1e-9)) & (test == 3)[:, None]):
             return "distance"
         in_ball = around[rows, :, np.clip(point, 0, max(balls - 1, 0))] < keep**2 * (1.0 + 1e-9)
