@@ -78,6 +78,16 @@ def test_one_node_has_the_rate_of_its_best_sinr() -> None:
     assert mean.value == pytest.approx(least.value, rel=2e-6)
 
 
+def test_nodes_that_are_alike_by_symmetry_have_one_value() -> None:
+    """Where the best pose gives all nodes one SINR, the mean is the smallest and the sum so many rates."""
+    nodes = [{"position_m": [east, 0.0, 0.0], "power_w": 1.0} for east in (-2.0, 2.0)]
+    least, rate, mean = (
+        solve(paper(objective, nodes=nodes, jammers=[])).objective.value for objective in ("min-sinr", *MEANS)
+    )
+    assert mean == pytest.approx(least, rel=2e-6)
+    assert rate == pytest.approx(2.0 * np.log2(1.0 + least), rel=2e-6)
+
+
 @pytest.mark.parametrize("factor", [1e-6, 0.2, 1e6])
 @pytest.mark.parametrize("objective", MEANS)
 def test_weights_count_by_their_shares(objective: str, factor: float) -> None:
