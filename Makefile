@@ -16,11 +16,14 @@ demo: .venv/.with-core ## the paper's problem solved and its Figure 2 redrawn, i
 	$(BIN)/nullpose compare examples/paper.toml
 	$(BIN)/nullpose reproduce --out out
 
-test: .venv/.with-test ## the tests, on two processes
-	$(BIN)/pytest -n 2
+# with bytecode on disk, programs that tests start begin sooner
+test test-random: export PYTHONDONTWRITEBYTECODE =
 
-test-random: .venv/.with-test ## the property tests on new random examples; a failure prints how to repeat it
-	$(BIN)/pytest -n 2 --hypothesis-profile random -m hypothesis
+test: .venv/.with-test ## the tests, on two processes
+	$(BIN)/pytest -n 2 --dist worksteal -m "not slow"
+
+test-random: .venv/.with-test ## property tests on new examples, which a failure prints, and the large sizes
+	$(BIN)/pytest -n 2 --dist worksteal --hypothesis-profile random -m "hypothesis or slow"
 
 test-studio: .venv/.with-studiotest ## the studio's page, in Chromium, and who is let in, on two processes
 	@command -v chromium > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null && apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium > /dev/null; } || { echo "Chromium is not on the path. Debian has it: apt install chromium"; exit 1; }

@@ -16,6 +16,7 @@ from nullpose.channel.free_space import constant_channel
 from nullpose.channel.power_law import power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.solver import SolveOptions
+from nullpose.solver.compiling import precompile
 
 if TYPE_CHECKING:
     from nullpose.paper.reproduce import Reproduction
@@ -23,14 +24,21 @@ if TYPE_CHECKING:
 os.environ["MPLBACKEND"] = "Agg"
 
 # Compiling a kernel inside an example would break any deadline.
-settings.register_profile("house", derandomize=True, deadline=None)
-settings.register_profile("random", derandomize=False, deadline=None, print_blob=True)
+settings.register_profile("house", derandomize=True, deadline=None, max_examples=40)
+settings.register_profile("random", derandomize=False, deadline=None, max_examples=100, print_blob=True)
 settings.load_profile("house")
 
 # No proof ends earlier because the machine is busy.
 SolveOptions.__init__.__kwdefaults__["time_limit_s"] = 600.0
 
 LONG_FILE_LINES = 350
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the kernels, unless they are kept, before there are processes that would all do so."""
+    if getattr(session.config.option, "numprocesses", None) and not session.config.option.collectonly:
+        precompile()
+
 
 Place = tuple[float, float, float]
 

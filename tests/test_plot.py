@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from functools import cache, partial
 
 import pytest
 from matplotlib import pyplot
@@ -12,14 +13,17 @@ from nullpose import plot
 SCENE = nullpose.Scenario.from_arrays(
     [[0, 0, 0], [0, 50, 0]], [[17, 15, 4]], noise_w=1e-3, altitude_m=(8, 30), name="scene"
 )
-RESULT = nullpose.solve(SCENE, certify=False)
-TABLE = nullpose.sweep(SCENE, "jammers.M1.power_w", [0.5, 1.0, 2.0], certify=False)
+result, cases, vehicles = (
+    cache(partial(made, SCENE, certify=False))
+    for made in (nullpose.solve, nullpose.compare, nullpose.compare_airframes)
+)
+table = cache(partial(nullpose.sweep, SCENE, "jammers.M1.power_w", [0.5, 1.0, 2.0], certify=False))
 DRAWN = {
-    "plan": lambda ax: plot.plan(RESULT, ax=ax),
-    "heat map": lambda ax: plot.heat_map(RESULT, ax=ax),
-    "sweep": lambda ax: plot.sweep(TABLE, ax=ax, log=True),
-    "cases": lambda ax: plot.comparison(nullpose.compare(SCENE, certify=False), ax=ax),
-    "vehicles": lambda ax: plot.comparison(nullpose.compare_airframes(SCENE, certify=False), ax=ax),
+    "plan": lambda ax: plot.plan(result(), ax=ax),
+    "heat map": lambda ax: plot.heat_map(result(), ax=ax),
+    "sweep": lambda ax: plot.sweep(table(), ax=ax, log=True),
+    "cases": lambda ax: plot.comparison(cases(), ax=ax),
+    "vehicles": lambda ax: plot.comparison(vehicles(), ax=ax),
 }
 
 
@@ -38,16 +42,16 @@ def test_axes_come_back(name: str) -> None:
 
 def test_a_pose_in_three_dimensions() -> None:
     """Wants axes in 3-D, and has a line towards every point."""
-    axes = plot.pose(RESULT)
+    axes = plot.pose(result())
     assert sorted(line.get_label() for line in axes.lines if line.get_label() in ("node", "jammer")) == [
         "jammer",
         "node",
         "node",
     ]
     given = pyplot.figure().add_subplot(projection="3d")
-    assert plot.pose(RESULT, ax=given) is given
+    assert plot.pose(result(), ax=given) is given
     with pytest.raises(nullpose.NullposeError, match="projection='3d'"):
-        plot.pose(RESULT, ax=pyplot.figure().add_subplot())
+        plot.pose(result(), ax=pyplot.figure().add_subplot())
     pyplot.close("all")
 
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given, settings, strategies as st
 from tests.certificate.plain import (
     boxes_at,
     dense_ratios,
@@ -33,6 +33,7 @@ FIELDS = [
     AxisField.broadside(POINTS[0], POINTS[1]),
     AxisField.broadside(POINTS[1], POINTS[3]),
 ]
+FIELD = st.sampled_from(FIELDS[:3])
 
 
 def exact_link(
@@ -54,10 +55,8 @@ def times(x: Interval, factor: Fraction) -> tuple[Fraction, Fraction]:
     return min(low, high), max(low, high)
 
 
-@pytest.mark.parametrize("dipole", DIPOLES)
-@pytest.mark.parametrize("leak", [0.0, 0.01])
 @pytest.mark.parametrize("field", FIELDS)
-@given(seed=seeds)
+@given(leak=st.sampled_from([0.0, 0.01]), dipole=st.sampled_from(DIPOLES), seed=seeds)
 def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.ndarray, seed: int) -> None:
     """The exact link at any position of a box lies within value, slopes and second derivatives."""
     rng = np.random.default_rng(seed)
@@ -78,10 +77,8 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.
         assert ends(ranged)[0] <= there <= ends(ranged)[1]
 
 
-@pytest.mark.parametrize("is_above", [True, False])
-@pytest.mark.parametrize("field", FIELDS[:3])
-@settings(max_examples=25)
-@given(seed=seeds)
+@settings(max_examples=30)
+@given(field=FIELD, is_above=st.booleans(), seed=seeds)
 def test_expansions_bound_the_links_of_channels(
     field: AxisField, is_above: bool, channel: LinkChannel | None, seed: int
 ) -> None:
@@ -140,10 +137,8 @@ def test_negative_quadratics_are_negative() -> None:
     assert missed < passed
 
 
-@pytest.mark.parametrize("groups", [1, 3])
-@pytest.mark.parametrize("field", FIELDS[:3])
-@settings(max_examples=3)
-@given(seed=seeds)
+@settings(max_examples=8)
+@given(field=FIELD, groups=st.sampled_from([1, 3]), seed=seeds)
 def test_no_position_of_an_excluded_box_reaches_the_level(
     field: AxisField, groups: int, channel: LinkChannel | None, seed: int
 ) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, settings, strategies as st
 from tests.certificate.plain import (
     carried,
     excess_over,
@@ -30,10 +30,8 @@ def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator
     return frames_of(family, leaves, boxes)
 
 
-@pytest.mark.parametrize("is_above", [True, False])
-@pytest.mark.parametrize("turning", [False, True])
-@settings(max_examples=25)
-@given(seed=seeds)
+@settings(max_examples=30)
+@given(turning=st.booleans(), is_above=st.booleans(), seed=seeds)
 def test_expansions_enclose_the_forms(
     turning: bool, is_above: bool, channel: LinkChannel | None, seed: int
 ) -> None:

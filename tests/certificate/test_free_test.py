@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given, settings, strategies as st
 from tests.certificate.plain import (
     boxes_at,
     carried,
@@ -147,8 +147,8 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
 def test_the_remainder_near_a_null_is_a_bound(turning: bool, channel: LinkChannel | None) -> None:
     """Along any axis a link is at least what the smaller remainder leaves of its expansion."""
     rng = np.random.default_rng(7)
-    used = 0
-    for _ in range(150):
+    used, cases = 0, 50
+    for _ in range(cases):
         family, boxes = random_family(rng, 2, 2, channel=channel), one_box(rng)
         centre, half = boxes.centre[0], boxes.half[0]
         point, anchor = rng.permutation(len(family.points_m))[:2]
@@ -173,7 +173,7 @@ def test_the_remainder_near_a_null_is_a_bound(turning: bool, channel: LinkChanne
             exact = exact * excess_over(family, centre + x)[point]
             excess = np.linalg.eigvalsh(exact - (1.0 - share[0]) * bound)[0] + rest.high[0]
             assert excess >= -1e-12 * np.trace(exact)
-    assert 10 < used < 150
+    assert 0.1 * cases < used < cases
 
 
 def mixes_of(rng: np.random.Generator, ratios: int, count: int) -> tuple[dict[int, float], ...]:
@@ -182,10 +182,8 @@ def mixes_of(rng: np.random.Generator, ratios: int, count: int) -> tuple[dict[in
     return tuple({int(k): float(w) for k, w in enumerate(row) if w > 1e-3} for row in drawn)
 
 
-@pytest.mark.parametrize("groups", [1, 3])
-@pytest.mark.parametrize("keep_out_m", [1.0, 20.0])
-@settings(max_examples=2)
-@given(seed=seeds)
+@settings(max_examples=5)
+@given(groups=st.sampled_from([1, 3]), keep_out_m=st.sampled_from([1.0, 20.0]), seed=seeds)
 def test_no_pose_of_an_excluded_box_reaches_the_level(
     groups: int, keep_out_m: float, channel: LinkChannel | None, seed: int
 ) -> None:

@@ -30,14 +30,15 @@ def with_whips(scenario: Scenario, rows: list[list[float]], kinds: tuple[str, ..
     return Scenario.from_dict(data)
 
 
+@pytest.mark.parametrize("gap", [1e-2, pytest.param(1e-3, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kinds", [("nodes",), ("jammers",), ("nodes", "jammers")], ids=" and ".join)
 @pytest.mark.parametrize("name", EVERYTHING)
-def test_whips_are_proved(name: str, kinds: tuple[str, ...], paper: Callable) -> None:
+def test_whips_are_proved(name: str, kinds: tuple[str, ...], gap: float, paper: Callable) -> None:
     """On nodes and on the jammer, with coarse steps and fine ones, and read again from its text."""
     scenario = Scenario.from_dict(paper().to_dict() | EVERYTHING[name])
     scenario = with_whips(scenario, whip_rows(1.0 if "nodes" in kinds else 10.0), kinds)
-    certificate = certified(scenario)
-    assert certificate.upper_bound <= certificate.value * 1.0011
+    certificate = certified(scenario, gap=gap)
+    assert certificate.upper_bound <= certificate.value * (1.0 + 1.1 * gap)
     accepted(certificate)
     again = parse_certificate(certificate_text(certificate))
     assert again.scenario == certificate.scenario

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from typer.testing import CliRunner
 
 from nullpose import certificate_of, load, solve
@@ -80,7 +80,6 @@ def run(folder: Path, name: str, verb: str, content: bytes) -> tuple[int, str]:
     return result.exit_code, result.output
 
 
-@settings(max_examples=100)
 @given(number=st.integers(0, 10**9), place=st.integers(0, 10**3))
 def test_damaged_files_are_read_or_refused_in_words(number: int, place: int, sound_files: dict) -> None:
     """Exit code 0 or 2, 1 for a certificate that is rejected; a message of sensible length."""

@@ -1,5 +1,7 @@
 """Figures for print: as wide as a column or a page, with embedded letters that do not touch."""
 
+from collections.abc import Callable
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -8,7 +10,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from matplotlib.figure import Figure
 
-from nullpose import Pose, Scenario, compare_airframes, load, solve, sweep
+from nullpose import Pose, Result, Scenario, compare_airframes, load, solve, sweep
 from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan, draw_value_map
@@ -22,19 +24,31 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 WIDTHS = pytest.mark.parametrize("width", list(WIDTHS_MM))
 
 
-@WIDTHS
-def test_every_figure_has_the_width(paper: Scenario, width: str) -> None:
-    """To the hundredth of a millimetre, and none is higher than a page."""
-    result = solve(paper, certify=False)
-    table = sweep(paper, "jammers.M.power_w", [0.5, 2.0], certify=False)
-    figures = [
-        draw_result(result, width),
-        draw_sweep(table, width=width),
-        draw_value_map(result, value_map(result, cells=15), width),
-        draw_comparison(compare_schemes(paper, certify=False), width),
-        draw_comparison(compare_airframes(paper, certify=False), width),
+@cache
+def solved(name: str) -> Result:
+    """Return the best pose found in an example."""
+    return solve(load(EXAMPLES / f"{name}.toml"), robust=name == "robust", certify=False)
+
+
+@pytest.fixture(scope="module")
+def drawings(paper: Scenario) -> list[Callable[[str], Figure]]:
+    """Return what draws each kind of figure in a width."""
+    result, table = solved("paper"), sweep(paper, "jammers.M.power_w", [0.5, 2.0], certify=False)
+    values = value_map(result, cells=15)
+    tables = compare_schemes(paper, certify=False), compare_airframes(paper, certify=False)
+    return [
+        lambda width: draw_result(result, width),
+        lambda width: draw_sweep(table, width=width),
+        lambda width: draw_value_map(result, values, width),
+        *(lambda width, table=table: draw_comparison(table, width) for table in tables),
     ]
-    for figure in figures:
+
+
+@WIDTHS
+def test_every_figure_has_the_width(drawings: list[Callable[[str], Figure]], width: str) -> None:
+    """To the hundredth of a millimetre, and none is higher than a page."""
+    for draw in drawings:
+        figure = draw(width)
         wide, high = figure.get_size_inches() * 25.4
         assert wide == pytest.approx(WIDTHS_MM[width], abs=0.01)
         assert high < 235.0
@@ -45,8 +59,7 @@ def test_every_figure_has_the_width(paper: Scenario, width: str) -> None:
 @pytest.mark.parametrize("name", ["paper", "no-fly", "field", "array", "robust"])
 def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
     """Names of points, names of axes and the legend are on the paper; names of points do not run together."""
-    solved = solve(load(EXAMPLES / f"{name}.toml"), robust=name == "robust", certify=False)
-    figure = draw_result(solved, width)
+    figure = draw_result(solved(name), width)
     figure.draw_without_rendering()
     legend = figure.legends[0].get_window_extent()
     assert legend.x0 >= 0.0
@@ -62,9 +75,9 @@ def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
         assert touching == []
 
 
-def test_the_plan_is_to_scale_and_has_every_name(paper: Scenario) -> None:
+def test_the_plan_is_to_scale_and_has_every_name() -> None:
     """A metre is as long to the east as to the north; the antenna beside it in 3-D has no letters."""
-    plan, solid = draw_result(solve(paper, certify=False)).axes
+    plan, solid = draw_result(solved("paper")).axes
     assert (solid.name, plan.name) == ("3d", "rectilinear")
     assert {text.get_text() for text in plan.texts} == {"S1 0.98 dB", "S2 0.98 dB", "M", "drone 8 m up"}
     assert not solid.texts
@@ -73,11 +86,10 @@ def test_the_plan_is_to_scale_and_has_every_name(paper: Scenario) -> None:
 
 
 @pytest.mark.parametrize("kind", ["pdf", "svg", "png"])
-def test_the_same_figure_gives_the_same_file(paper: Scenario, tmp_path: Path, kind: str) -> None:
+def test_the_same_figure_gives_the_same_file(tmp_path: Path, kind: str) -> None:
     """To the byte; the fonts of a PDF are in it, as TrueType."""
-    result = solve(paper, certify=False)
     first, again = (
-        write_figure(draw_result(result, "column"), tmp_path / f"{name}.{kind}")[0].read_bytes()
+        write_figure(draw_result(solved("paper"), "column"), tmp_path / f"{name}.{kind}")[0].read_bytes()
         for name in "ab"
     )
     assert first == again
@@ -87,7 +99,7 @@ def test_the_same_figure_gives_the_same_file(paper: Scenario, tmp_path: Path, ki
 @pytest.mark.parametrize("name", ["paper", "town", "whips", "requirements"])
 def test_a_name_stands_nearest_its_own_point(name: str) -> None:
     """In a column, where names are close to each other, none stands at the mark of another point."""
-    figure = draw_result(solve(load(EXAMPLES / f"{name}.toml"), certify=False), "column")
+    figure = draw_result(solved(name), "column")
     figure.draw_without_rendering()
     plan = figure.axes[0]
     names = [text for text in plan.texts if text.get_fontstyle() != "italic"]

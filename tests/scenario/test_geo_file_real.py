@@ -38,9 +38,10 @@ from nullpose.scenario.loading import files_of
 from scenes import require_fault
 
 
+@pytest.mark.parametrize("count", [40, pytest.param(150, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("ending", [".geojson", ".kml", ".gpkg"])
-def test_damaged_files_are_read_right_or_refused(ending: str, tmp_path: Path) -> None:
-    """150 files with a piece cut out, doubled or overwritten: no traceback, and no zone is lost in silence.
+def test_damaged_files_are_read_right_or_refused(ending: str, count: int, tmp_path: Path) -> None:
+    """Files with a piece cut out, doubled or overwritten: no traceback, and no zone is lost in silence.
 
     Of a file that is accepted, a zone whose coordinates are as they were keeps out all that it did.
     """
@@ -57,7 +58,7 @@ def test_damaged_files_are_read_right_or_refused(ending: str, tmp_path: Path) ->
     coordinates = [written(shape) for shape, _ in features]
     assert all(each in content for each in coordinates)
     refused = compared = 0
-    for _ in range(150):
+    for _ in range(count):
         at, size = rng.randrange(len(content)), rng.choice([1, 1, 2, 5, 20, 200])
         piece = bytes(rng.randrange(32, 127) for _ in range(size))
         middle = rng.choice([b"", content[at : at + size] * 2, piece])
@@ -74,8 +75,8 @@ def test_damaged_files_are_read_right_or_refused(ending: str, tmp_path: Path) ->
                 area = in_metres(filled(shape))
                 assert (area - kept_out(scenario)).area <= 1e-6 * area.area
                 compared += 1
-    assert refused > 15
-    assert compared > 50
+    assert refused > 0.1 * count
+    assert compared > 0.3 * count
 
 
 def test_a_country_loads_quickly(tmp_path: Path) -> None:

@@ -42,11 +42,11 @@ def urban(distance_m: FloatArray, elevation_rad: FloatArray, azimuth_rad: FloatA
 @pytest.mark.parametrize("scheme", ["optimum", "vertical"])
 def test_a_power_law_as_a_function_has_the_value_of_the_model(more: dict[str, Any], scheme: str) -> None:
     """Under two schemes, with and without an airframe."""
-    law = nullpose.solve(scene(power_law(3.0), **more), scheme, gap=1e-2)
+    law = nullpose.solve(scene(power_law(3.0), **more), scheme, gap=5e-2)
     model = nullpose.solve(scene({"model": "power-law", "exponent": 3.0}, **more), scheme, gap=1e-4)
     assert (law.status, law.rigour) == ("certified", "floating-point")
     assert law.objective.value == pytest.approx(model.objective.value, rel=1e-4)
-    assert model.objective.value <= law.objective.upper_bound <= 1.0101 * law.objective.value
+    assert model.objective.value <= law.objective.upper_bound <= 1.0501 * law.objective.value
 
 
 def test_sight_by_elevation_as_a_function_has_the_value_and_a_bound_above_it() -> None:
@@ -54,7 +54,7 @@ def test_sight_by_elevation_as_a_function_has_the_value_and_a_bound_above_it() -
     channel = Custom(gain=urban, exponents=(2.0, 2.0), db_per_deg=0.6)
     model = {"model": "elevation", "environment": "urban", "average": "power"}
     best = nullpose.solve(scene(model), gap=1e-4).objective
-    found = nullpose.solve(scene(channel), gap=0.2).objective
+    found = nullpose.solve(scene(channel), gap=0.5).objective
     assert found.value == pytest.approx(best.value, rel=1e-4)
     assert best.value <= found.upper_bound
 
@@ -73,7 +73,7 @@ def test_an_interrupt_leaves_the_bound_that_was_reached() -> None:
 
     def interrupt(gap: float, boxes: int) -> None:
         calls.append(gap)
-        if len(calls) == 200:
+        if len(calls) == 50:
             raise KeyboardInterrupt
 
     channel = Custom(gain=urban, exponents=(2.0, 2.0), db_per_deg=0.6)
@@ -106,7 +106,7 @@ def test_the_rate_of_a_drone_that_transmits_is_solved_too() -> None:
     eavesdroppers = [{"position_m": [40, 20, 0]}]
     more = {"objective": "secrecy-rate", "eavesdroppers": eavesdroppers, "transmitter": {"power_w": 1.0}}
     field = FIELD | {"jammers_m": []}
-    found = nullpose.solve(Scenario.from_arrays(**field, channel=power_law(3.0), **more), gap=0.05)
+    found = nullpose.solve(Scenario.from_arrays(**field, channel=power_law(3.0), **more), gap=0.2)
     model = {"model": "power-law", "exponent": 3.0}
     best = nullpose.solve(Scenario.from_arrays(**field, channel=model, **more), gap=1e-3)
     assert found.objective.value == pytest.approx(best.objective.value, rel=1e-3)

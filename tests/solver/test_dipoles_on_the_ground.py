@@ -60,12 +60,15 @@ def test_every_case_is_certified(
 
 @pytest.mark.parametrize("scheme", ["optimum", "vertical", "zero-interference", "maximum-gain"])
 @pytest.mark.parametrize("null_depth_db", [None, 25.0])
-def test_whips_that_leak_are_certified(scheme: str, null_depth_db: float | None, paper: Callable) -> None:
+@pytest.mark.parametrize("gap", [3e-2, pytest.param(1e-3, marks=pytest.mark.slow)])
+def test_whips_that_leak_are_certified(
+    scheme: str, null_depth_db: float | None, gap: float, paper: Callable
+) -> None:
     """With the null of the drone perfect and not, at nodes and jammers; the verifier finds the same."""
     data = with_antennas(paper(100.0), antenna="dipole", null_depth_db=20.0).to_dict()
     if null_depth_db is not None:
         data["antenna"] = {"null_depth_db": null_depth_db}
-    solution = solve(Scenario.from_dict(data), scheme, gap=1e-3)
+    solution = solve(Scenario.from_dict(data), scheme, gap=gap)
     assert solution.status == "certified"
     assert verify(certificate_of(solution)).proved
 
@@ -131,7 +134,7 @@ def test_no_pose_exceeds_the_bound(seed: int, random_scene: Callable) -> None:
     if rng.random() < 0.5:
         data["antenna"] = {"null_depth_db": float(rng.uniform(15.0, 40.0))}
     scenario = Scenario.from_dict(data)
-    solution = solve(scenario, gap=1e-2, time_limit_s=5.0)
+    solution = solve(scenario, gap=1e-2, node_limit=100_000)
     bound = solution.objective.upper_bound
     assert bound is not None
     assert solution.objective.value <= bound
@@ -143,8 +146,7 @@ def test_no_pose_exceeds_the_bound(seed: int, random_scene: Callable) -> None:
     axes = rng.normal(size=(4000, 3))
     axes[:1000] = solution.pose.antenna_axis + 0.1 * axes[:1000]
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
-    values = [objective_value(scenario, p, u) for p, u in zip(places, axes, strict=True)]
-    assert max(map(float, values)) <= bound
+    assert objective_value(scenario, places, axes).max() <= bound
     assert verify(certificate_of(solution)).proved
 
 

@@ -69,7 +69,7 @@ def test_one_node_without_jammers(scheme, altitude_m, scene):
 )
 def test_landmarks_without_a_value_are_not_the_end(nodes, jammers, airspace, scheme, at_least, scene):
     """Where every landmark has a node in the null, or cannot be pushed out of a ball, the search goes on."""
-    assert solve(scene(nodes, jammers, **airspace), scheme).objective.value > at_least
+    assert solve(scene(nodes, jammers, **airspace), scheme, certify=False).objective.value > at_least
 
 
 @pytest.mark.parametrize(

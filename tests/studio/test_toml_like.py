@@ -4,6 +4,7 @@ import json
 import re
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +19,8 @@ from nullpose.studio.edits import entries_of, with_added, with_typed
 from nullpose.studio.state import State
 from nullpose.studio.toml_like import toml_like
 
-EXAMPLES = {
-    path.stem: (path.read_text(), load(path))
-    for path in sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
-    if not path.stem.startswith("study")
-}
+FOLDER = Path(__file__).parents[2] / "examples"
+EXAMPLES = sorted(path.stem for path in FOLDER.glob("*.toml") if not path.stem.startswith("study"))
 ALONE = [name for name in EXAMPLES if name not in ("geodetic", "frame")]  # those that name no other file
 
 METRES = st.floats(-300.0, 300.0).map(lambda value: round(value, 3))
@@ -30,6 +28,13 @@ NAMES = st.text(min_size=1, max_size=12).filter(lambda name: name.isprintable() 
 POWERS_W = st.one_of(st.sampled_from([0.1, 1.0, 2.0]), st.floats(1e-6, 1e3))
 
 Edit = Callable[[Scenario], Scenario]
+
+
+@cache
+def example(name: str) -> tuple[str, Scenario]:
+    """Return the text of an example and its scenario."""
+    path = FOLDER / f"{name}.toml"
+    return path.read_text(), load(path)
 
 
 def _listed(kind: str, place: int, update: dict[str, object] | None) -> Edit:
@@ -91,7 +96,7 @@ EDITS = st.one_of(
 @given(edits=st.lists(EDITS, min_size=1, max_size=6))
 def test_what_is_saved_loads_as_it_was_and_keeps_its_comments(name: str, edits: list[Edit]) -> None:
     """After any edits, by themselves; its heading stays."""
-    text, scenario = EXAMPLES[name]
+    text, scenario = example(name)
     for edit in edits:
         with suppress(ScenarioError):
             scenario = edit(scenario)
@@ -108,7 +113,7 @@ def test_what_is_saved_loads_as_it_was_and_keeps_its_comments(name: str, edits: 
 @pytest.mark.parametrize("ends", ["\n", "\r\n", ""])
 def test_what_is_not_changed_is_the_same_text(name: str, ends: str) -> None:
     """To the byte, whatever ends its lines."""
-    text, scenario = EXAMPLES[name]
+    text, scenario = example(name)
     text = text.replace("\n", ends) if ends else text.rstrip("\n")
     assert toml_like(text, scenario) == text
 
@@ -116,7 +121,7 @@ def test_what_is_not_changed_is_the_same_text(name: str, ends: str) -> None:
 def test_what_another_file_held_is_in_the_saved_one() -> None:
     """Nodes and the harmonics of a pattern, so that the file loads anywhere."""
     for name, lost in (("geodetic", "nodes_from = "), ("frame", None)):
-        text, scenario = EXAMPLES[name]
+        text, scenario = example(name)
         saved = toml_like(text, scenario)
         assert scenario_from_text(saved.encode(), "saved.toml") == scenario
         kept = [line for line in text.splitlines() if not (lost and line.startswith(lost))]
@@ -211,7 +216,7 @@ def test_a_new_point_stands_behind_the_others_of_its_kind() -> None:
 
 def test_a_town_stays_with_its_channel(tmp_path: Path) -> None:
     """Of a scene that is edited; what a file of buildings held is in the saved text, its comment too."""
-    text, scenario = EXAMPLES["town"]
+    text, scenario = example("town")
     state = State(scenario=scenario, text=text)
     state = with_added(state.moved(("nodes", 0), (-71.0, -3.0, 2.0)), "jammer", (1.0, -50.0), 100.0)
     saved = state.written.text
@@ -237,7 +242,7 @@ def test_a_town_stays_with_its_channel(tmp_path: Path) -> None:
 
 def test_powers_in_dbm_stay_in_dbm() -> None:
     """Those that are typed, those that the slider sets, and that of a point that is added."""
-    text, scenario = EXAMPLES["field"]
+    text, scenario = example("field")
     view = State(scenario=scenario, text=text)
     (power,) = (entry for entry in entries_of(view, ("nodes", 0)) if entry.path == "nodes[0].power_dbm")
     typed = with_typed(view, power, "17.5")

@@ -90,7 +90,7 @@ def test_no_pose_of_a_grid_reaches_the_target_with_too_little_tilt(seed: int) ->
             assert objective_value(scenario, positions_m, axes).max() <= mount.upper_bound
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(seed=st.integers(0, 10_000), whips=st.booleans())
 def test_more_is_asked_for_more_and_the_best_mount_asks_for_least(seed: int, whips: bool) -> None:
     """A larger share never needs less tilt; no stated mount needs less than the best one."""
@@ -106,9 +106,10 @@ def test_more_is_asked_for_more_and_the_best_mount_asks_for_least(seed: int, whi
         assert all(found.best.suffices_deg <= (mount.suffices_deg or 0.0) for mount in found.mounts)
 
 
-def test_nearly_all_of_the_value_takes_the_tilt_of_the_best_pose_in_fifty_scenes() -> None:
+@pytest.mark.parametrize("seeds", [range(12), pytest.param(range(12, 50), marks=pytest.mark.slow)])
+def test_nearly_all_of_the_value_takes_the_tilt_of_the_best_pose(seeds: range) -> None:
     """Both sides agree with solve; less is asked for less; no stated mount needs less than the best one."""
-    for seed in range(50):
+    for seed in seeds:
         rng = np.random.default_rng(seed)
         points_m = np.column_stack([rng.uniform(0.0, 60.0, (3, 2)), np.ones(3)])
         scenario = Scenario.from_arrays(points_m[:2], points_m[2:], noise_w=1e-3, altitude_m=(8, 40))

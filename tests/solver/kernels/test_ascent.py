@@ -5,12 +5,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from tests.reference.plain_kernels import plain
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.bounds.ascent import POOL, Pool, ascend
 from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
-from nullpose.solver.kernels.compiler.jit import heap_kernel
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
 from nullpose.solver.kernels.linear_algebra.symmetric import top_eigenvector
@@ -18,15 +18,16 @@ from nullpose.solver.kernels.linear_algebra.symmetric import top_eigenvector
 TOLERANCE = 1e-6
 
 
-@heap_kernel
 def ascended(family, row, mean, back, weights, v):
-    """Returns what the kernel does, which has no Python name, for a free axis in the world's frame."""
+    """Returns what the kernel does for a free axis in the world's frame."""
     whitening, every = (mean.reshape((1, 6)), mean, back), np.empty(family.numerator_isotropic.shape[0])
     pool = Pool(
         np.empty((POOL, 6)), np.empty(POOL, np.int64), np.empty(POOL), np.empty(POOL), np.empty((POOL, 2)),
         np.empty(3), np.empty(3, np.int64),
     )  # fmt: skip
-    top, followed, _ = ascend(family, False, np.eye(3), row, whitening, pool, 0, TOLERANCE, every, weights, v)
+    top, followed, _ = plain(ascend)(
+        family, False, np.eye(3), row, whitening, pool, 0, TOLERANCE, every, weights, v
+    )
     return top, followed
 
 

@@ -4,40 +4,25 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from tests.certificate.plain import boxes_at, make_leaves
+from tests.reference.plain_kernels import plain
 
 from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import matrices
 from nullpose.certificate.shear import shear_of
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
-from nullpose.solver.kernels.bounds.branch import workspace_of
-from nullpose.solver.kernels.bounds.exclusion import add_dipole_sum
-from nullpose.solver.kernels.bounds.expansion import frame_at
+from nullpose.solver.kernels.bounds import branch, exclusion, expansion
 from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, COUNT, FACE, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
-from nullpose.solver.kernels.compiler.jit import heap_kernel, kernel
-from nullpose.solver.kernels.linear_algebra.links import add_form, link_form
+from nullpose.solver.kernels.linear_algebra import links
 
-SEEDS = st.integers(0, 2**32 - 1)
-
-
-@heap_kernel
-def space_for(family):
-    """Return what the sum is made in: the kernel itself has no Python name."""
-    return workspace_of(family)
+SEEDS, LEAKS = st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.01])
 
 
-@kernel
-def summed(family, axis_field, kind, anchor, row, basis, workspace, matrix):
-    """Fill the frame and the sum of a row."""
-    frame = frame_at(family, kind, anchor, row[CENTRE:HALF], row[HALF:LEVEL], basis)
-    add_dipole_sum(family, axis_field, frame, row, workspace, matrix)
-
-
-@kernel
-def link_and_slopes(family, j, p, u, gradient, hessian):
-    """Fill the derivatives of a link; return it twice, by both functions that know it."""
-    return link_form(family, j, p, u), add_form(family, j, 1.0, p, u, gradient, hessian, True)
+add_dipole_sum, add_form, frame_at, link_form, workspace_of = map(
+    plain,
+    (exclusion.add_dipole_sum, links.add_form, expansion.frame_at, links.link_form, branch.workspace_of),
+)
 
 
 def family_of(rng: np.random.Generator, leak: float) -> Family:
@@ -116,16 +101,16 @@ def difference(bound: np.ndarray, exact: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("kind", [WORLD, TOWARDS_POINT])
-@pytest.mark.parametrize("leak", [0.0, 0.01])
-@given(seed=SEEDS)
+@given(leak=LEAKS, seed=SEEDS)
 def test_the_solvers_sum_is_above_the_exact_one(kind: int, leak: float, seed: int) -> None:
     """Anywhere in the box, in the coordinates of the frame, turning or not."""
     rng, family, weights, level, anchor, centre, half = case_of(seed, leak)
     row = np.zeros(COLUMNS)
     row[CENTRE:HALF], row[HALF:LEVEL], row[LEVEL], row[FACE] = centre, half, level, -1.0
     row[COUNT], row[INDEX : INDEX + 2], row[WEIGHT : WEIGHT + 2] = 2.0, [0.0, 1.0], weights
-    basis, matrix, space = np.empty((3, 3)), np.empty(6), space_for(family.arrays)
-    summed(family.arrays, AxisField.free().arrays, kind, anchor, row, basis, space, matrix)
+    basis, matrix, space = np.empty((3, 3)), np.empty(6), workspace_of(family.arrays)
+    frame = frame_at(family.arrays, kind, anchor, centre, half, basis)
+    add_dipole_sum(family.arrays, AxisField.free().arrays, frame, row, space, matrix)
     for _ in range(8):
         x = rng.uniform(-1.0, 1.0, 3) * half
         exact = exact_form(family, weights, level, centre + x)
@@ -137,8 +122,7 @@ def test_the_solvers_sum_is_above_the_exact_one(kind: int, leak: float, seed: in
 
 
 @pytest.mark.parametrize("kind", [WORLD, TOWARDS_POINT])
-@pytest.mark.parametrize("leak", [0.0, 0.01])
-@given(seed=SEEDS)
+@given(leak=LEAKS, seed=SEEDS)
 def test_the_verifiers_sum_is_above_the_exact_one(kind: int, leak: float, seed: int) -> None:
     """Likewise, with the coordinates that it names itself."""
     rng, family, weights, level, anchor, centre, half = case_of(seed, leak)
@@ -156,8 +140,7 @@ def test_the_verifiers_sum_is_above_the_exact_one(kind: int, leak: float, seed: 
         assert difference(bound, basis.T @ way.T @ exact @ way @ basis) <= 1e-12
 
 
-@pytest.mark.parametrize("leak", [0.0, 0.01])
-@given(seed=SEEDS)
+@given(leak=LEAKS, seed=SEEDS)
 def test_links_have_their_derivatives(leak: float, seed: int) -> None:
     """Gradient and Hessian by position and axis are those of central differences."""
     rng, family, _, _, anchor, p, _ = case_of(seed, leak)
@@ -166,12 +149,13 @@ def test_links_have_their_derivatives(leak: float, seed: int) -> None:
 
     def at(here: np.ndarray) -> tuple[float, np.ndarray]:
         gradient, hessian = np.zeros(6), np.zeros((6, 6))
-        link, same = link_and_slopes(family.arrays, anchor, here[:3], here[3:], gradient, hessian)
+        link = link_form(family.arrays, anchor, here[:3], here[3:])
+        same = add_form(family.arrays, anchor, 1.0, here[:3], here[3:], gradient, hessian, True)
         assert link == pytest.approx(same, rel=1e-9, abs=1e-18)
         return link, gradient
 
     gradient, hessian = none
-    link_and_slopes(family.arrays, anchor, pose[:3], pose[3:], gradient, hessian)
+    add_form(family.arrays, anchor, 1.0, pose[:3], pose[3:], gradient, hessian, True)
     for i, e in enumerate(step * np.eye(6)):
         (up, more), (down, less) = at(pose + e), at(pose - e)
         assert gradient[i] == pytest.approx((up - down) / (2 * step), rel=1e-4, abs=1e-9)

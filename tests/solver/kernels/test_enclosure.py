@@ -64,7 +64,7 @@ def test_a_jet_encloses_the_link(
         return float(free * excess_gain(PointChannels.of([channel]), POINT - p)[0] / channel.strength)
 
     ratios = ratios_over(POINT, leak, dipole, through, channel)
-    for centre, half in boxes(3, 16):
+    for centre, half in boxes(3, 7):
         link_jet(ratios, 0, True, field.arrays, centre, half, jet)
         if channel is not None and jet[0] > at(centre) * (1.0 + 1e-9):  # the end of its range, in a large box
             assert np.max(half) > 0.3

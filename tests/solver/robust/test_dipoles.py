@@ -110,7 +110,7 @@ def test_the_pose_without_errors_is_what_solve_certifies(paper: Callable) -> Non
     assert solution.details.robust.guaranteed > solution.details.nominal.guaranteed
 
 
-@pytest.mark.parametrize("ratio", [0.1, 1.0])
+@pytest.mark.parametrize("ratio", [0.1, pytest.param(1.0, marks=pytest.mark.slow)])
 def test_a_robust_pose_is_close_to_its_bound(ratio: float, paper: Callable) -> None:
     """The guarantee of the best pose is within some percent of a bound, with whips on all points."""
     solution = solve(erring(paper(ratio), None), robust=True)

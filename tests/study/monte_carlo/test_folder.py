@@ -155,7 +155,7 @@ def test_a_full_disk_ends_the_program_with_a_message(small_disk: Path, spec_file
     client = farm.start(
         "nullpose", "study", "run", spec, "--out", small_disk / "out", "--workers", 2, "--chunk", 10
     )
-    said, _ = client.communicate(timeout=60)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 2
     assert "No space left on device" in said
     assert "Traceback" not in said
@@ -228,7 +228,7 @@ def test_a_second_run_is_refused(farm: Any, spec_file: Any, tmp_path: Path) -> N
     name = f"process {first.pid} on {socket.gethostname()}"
     assert study_status(out).running == name
     second = farm.start(*command)
-    said, _ = second.communicate(timeout=60)
+    said, _ = second.communicate(timeout=farm.LONGEST_S)
     assert second.returncode == 2
     assert f"{name} writes this study now" in said
     assert first.poll() is None

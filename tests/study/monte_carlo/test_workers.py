@@ -108,7 +108,7 @@ def test_an_address_where_nobody_listens(farm: Any, spec_file: SpecFile, tmp_pat
     """The command ends with what to try, and no folder is left that looks like a study."""
     farm.address = "tcp://127.0.0.1:1"
     client = farm.client(spec_file(tmp_path), tmp_path / "out")
-    said, _ = client.communicate(timeout=30)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 2
     assert "dask worker tcp://127.0.0.1:1 --nthreads 1" in said
     assert "Traceback" not in said
@@ -116,8 +116,9 @@ def test_an_address_where_nobody_listens(farm: Any, spec_file: SpecFile, tmp_pat
 
 
 @pytest.mark.parametrize("where", ["cluster", "pool"])
-def test_a_client_killed_five_times(
-    farm: Any, spec_file: SpecFile, tmp_path: Path, whole: pd.DataFrame, rows: Rows, where: str
+@pytest.mark.parametrize("times", [2, pytest.param(5, marks=pytest.mark.slow)])
+def test_a_client_killed_several_times(
+    farm: Any, spec_file: SpecFile, tmp_path: Path, whole: pd.DataFrame, rows: Rows, where: str, times: int
 ) -> None:
     """Killed with -9 at random moments and run again, the rows are those of one run, and each once.
 
@@ -131,7 +132,7 @@ def test_a_client_killed_five_times(
     spec, out = spec_file(tmp_path, scenes=SCENES), tmp_path / "out"
     command = ("nullpose", "study", "run", spec, "--out", out, *options)
     chance, seen = random.Random(7), []
-    for _ in range(5):
+    for _ in range(times):
         before = len(_parts(out))
         client = farm.start(*command, "--chunk", 10)
         farm.until(
@@ -146,7 +147,7 @@ def test_a_client_killed_five_times(
     assert seen == sorted(seen)
     assert 0 < seen[0] < seen[-1] < SCENES, seen
     last = farm.start(*command)
-    said, _ = last.communicate(timeout=60)
+    said, _ = last.communicate(timeout=farm.LONGEST_S)
     assert last.returncode == 0, said
     assert study_status(out).complete
     pd.testing.assert_frame_equal(rows(out), whole)
@@ -162,7 +163,7 @@ def test_a_worker_of_a_cluster_killed(
     client = farm.client(spec_file(tmp_path, scenes=SCENES), out, "--chunk", 100)
     farm.until(lambda: len(_parts(out)) >= 4)
     os.killpg(workers[0].pid, signal.SIGKILL)
-    said, _ = client.communicate(timeout=60)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 0, said
     assert "1 worker\n" in said
     pd.testing.assert_frame_equal(rows(out), whole)
@@ -178,7 +179,7 @@ def test_a_process_of_the_pool_killed(
     farm.until(lambda: len(_parts(out)) >= 4)
     children = psutil.Process(client.pid).children()
     next(child for child in children if "spawn_main" in " ".join(child.cmdline())).kill()
-    said, _ = client.communicate(timeout=60)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 0, said
     pd.testing.assert_frame_equal(rows(out), whole)
 
@@ -200,7 +201,7 @@ def test_a_scene_that_no_worker_survives(
         deadly.write_text(DEADLY + DEADLY_SCRIPT, encoding="utf-8")
         farm.environment["PYTHONPATH"] = f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"
         client = farm.start("deadly", "study", "run", spec, "--out", out, "--workers", 2, "--chunk", 5)
-    said, _ = client.communicate(timeout=90)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 0, said
     assert "workers died at scenes 5 to 9" in said
     found = rows(out)
@@ -220,7 +221,7 @@ def test_a_scheduler_that_goes_away(
     client = farm.client(spec, out, "--chunk", 10)
     farm.until(lambda: len(_parts(out)) >= 4)
     os.killpg(scheduler.pid, signal.SIGKILL)
-    said, _ = client.communicate(timeout=60)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 2
     assert re.search(
         r"^error: scheduler: the one at tcp://\S+ went away; the parts so far are kept", said, re.M
@@ -242,7 +243,7 @@ def test_workers_with_another_nullpose(farm: Any, spec_file: SpecFile, tmp_path:
     farm.scheduler()
     farm.worker("--preload", other)
     client = farm.client(spec_file(tmp_path), tmp_path / "out")
-    said, _ = client.communicate(timeout=60)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 2
     assert "has nullpose 0.0.9+else, and here it is" in said
     assert "Traceback" not in said
@@ -259,7 +260,7 @@ def test_a_script_without_a_guard(farm: Any, spec_file: SpecFile, tmp_path: Path
     )
     farm.environment["PYTHONPATH"] = f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"
     client = farm.start("unguarded")
-    said, _ = client.communicate(timeout=60)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 1
     assert "no process can be started on this machine; in a script call run_study under" in said
 
@@ -282,7 +283,7 @@ def test_an_interrupt_leaves_nothing(
     if moment == "twice":
         time.sleep(0.1)
         interrupt(client.pid, signal.SIGINT)
-    said, _ = client.communicate(timeout=30)
+    said, _ = client.communicate(timeout=farm.LONGEST_S)
     assert client.returncode == 130, said
     assert "the parts so far are kept, and the same command goes on from there" in said
     for word in ("Traceback", "leaked", "Warning", "semaphore"):
