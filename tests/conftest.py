@@ -1,6 +1,8 @@
 """What every test runs under: figures without a screen, the same hypothesis examples on every run, scenes."""
 
 import os
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +19,7 @@ from nullpose.channel.power_law import power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.solver import SolveOptions
 from nullpose.solver.compiling import precompile
+from nullpose.solver.kernels.bounds.pattern_branch import branch_pattern
 
 if TYPE_CHECKING:
     from nullpose.paper.reproduce import Reproduction
@@ -33,14 +36,26 @@ SolveOptions.__init__.__kwdefaults__["time_limit_s"] = 600.0
 
 LONG_FILE_LINES = 350
 
+Place = tuple[float, float, float]
+
+COMPILE = """
+import sys
+from nullpose import load, solve
+for scene in sys.argv[1:]:
+    name, *overrides = scene.split()
+    solve(load(f"examples/{name}.toml", overrides=overrides), gap=1.0, robust=name == "robust")
+"""
+
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Compile the kernels, unless they are kept, before there are processes that would all do so."""
-    if getattr(session.config.option, "numprocesses", None) and not session.config.option.collectonly:
+    option = session.config.option
+    has_workers = getattr(option, "numprocesses", None) and not option.collectonly
+    if has_workers and not list(Path(branch_pattern.stats.cache_path).glob("pattern_branch.*.nbc")):
         precompile()
-
-
-Place = tuple[float, float, float]
+        scenes = ["array"], ["paper antenna.kind=half-wave", "robust"]
+        at_work = [subprocess.Popen([sys.executable, "-c", COMPILE, *each]) for each in scenes]
+        assert [each.wait() for each in at_work] == [0, 0]
 
 
 @pytest.fixture(scope="session")

@@ -49,5 +49,5 @@ def process() -> Process:
         text=True,
         env=environment,
         check=False,
-        timeout=120,
+        timeout=600,
     )

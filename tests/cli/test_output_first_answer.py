@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,8 @@ Start = Callable[..., subprocess.Popen[str]]
 
 
 def with_folder(folder: Path) -> list[int]:
-    """Returns the processes that keep their kernels in a folder."""
-    mark = f"NUMBA_CACHE_DIR={folder}".encode()
+    """Returns the processes that a test has started, and those that they have, by its folder of kernels."""
+    mark = f"NULLPOSE_TEST_KERNELS={folder}".encode()
     found = []
     for process in Path("/proc").glob("[0-9]*"):
         try:
@@ -42,13 +43,17 @@ def until(met: Callable[[], bool]) -> None:
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Start]:
-    """Starts the program in a process group of its own, with kernels in an empty folder; ends it at last."""
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kernels"), "COLUMNS": "200"}
+    """Starts the program in a process group of its own, with kernels in an empty folder; ends it at last.
 
-    def begin(*arguments: object) -> subprocess.Popen[str]:
+    A warm one has the folder that all tests share, in which there are kernels.
+    """
+    folder = str(tmp_path / "kernels")
+    marked = os.environ | {"NULLPOSE_TEST_KERNELS": folder, "COLUMNS": "200"}
+
+    def begin(*arguments: object, is_warm: bool = False) -> subprocess.Popen[str]:
         return subprocess.Popen(
             [sys.executable, "-m", "nullpose", *map(str, arguments)],
-            env=environment,
+            env=marked if is_warm else marked | {"NUMBA_CACHE_DIR": folder},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -69,6 +74,15 @@ def answered(program: subprocess.Popen[str]) -> tuple[dict[str, Any], str]:
     return found, err
 
 
+def most_at_once(program: subprocess.Popen[str], folder: Path) -> int:
+    """Returns how many processes there are at most until a program ends."""
+    most = 0
+    while program.poll() is None:
+        most = max(most, len(with_folder(folder)))
+        time.sleep(0.02)
+    return most
+
+
 def flat(value: Any, path: str = "") -> dict[str, Any]:
     """Returns what JSON holds, by path."""
     if not isinstance(value, dict | list):
@@ -78,23 +92,21 @@ def flat(value: Any, path: str = "") -> dict[str, Any]:
 
 
 def test_the_first_answer_waits_for_no_compiler(start: Start, tmp_path: Path) -> None:
-    """It is that of machine code, with its proof, long before the kernels are compiled; these are kept."""
-    began = time.monotonic()
+    """It is that of machine code, with its proof, before the kernels are compiled, which goes on after it."""
     first, err = answered(
         start("solve", PAPER, "--json", "--verify", "--certificate", tmp_path / "paper.cert.json")
     )
-    answered_s = time.monotonic() - began
-    until(lambda: not with_folder(tmp_path / "kernels"))
-    compiled_s = time.monotonic() - began
-    assert answered_s < 0.6 * compiled_s
+    assert with_folder(tmp_path / "kernels")
     assert first["rigour"] == "verified"
     assert err.count("Compiling kernels") == err.count("\n") <= 1  # a busy machine takes seconds
 
-    kept = {path: path.read_bytes() for path in (tmp_path / "kernels").rglob("*.nbc")}
-    assert {path.name.split("-")[0] for path in kept} >= {"branch.branch", "search.search_and_climb"}
-    second, _ = answered(start("solve", PAPER, "--json", "--verify"))
-    assert kept == {path: path.read_bytes() for path in (tmp_path / "kernels").rglob("*.nbc")}
-    assert not with_folder(tmp_path / "kernels")
+    until(lambda: list((tmp_path / "kernels").rglob("search.search_and_climb*.nbc")))
+    for each in with_folder(tmp_path / "kernels"):
+        os.kill(each, signal.SIGKILL)
+    until(lambda: not with_folder(tmp_path / "kernels"))
+    program = start("solve", PAPER, "--json", "--verify", is_warm=True)
+    assert most_at_once(program, tmp_path / "kernels") == 1
+    second, _ = answered(program)
     del first["files"]
     one, other = flat(first), flat(second)
     assert one.keys() == other.keys()
@@ -106,10 +118,20 @@ def test_the_first_answer_waits_for_no_compiler(start: Start, tmp_path: Path) ->
 def test_the_terminal_that_closes_ends_no_compilation(start: Start, tmp_path: Path) -> None:
     """What hangs up the program and all of its group leaves the kernels to be compiled."""
     program = start("solve", FRAME, "--json")
-    until(lambda: any(os.getsid(each) == each for each in with_folder(tmp_path / "kernels")))
+    kernels, compilers = tmp_path / "kernels", set[int]()
+
+    def is_compiling() -> bool:
+        with suppress(ProcessLookupError):
+            compilers.update(each for each in with_folder(kernels) if os.getsid(each) == each)
+        return bool(compilers) or program.poll() is not None
+
+    until(is_compiling)
+    assert program.poll() is None
     os.killpg(program.pid, signal.SIGHUP)
     program.communicate(timeout=MOST_S)
-    until(lambda: with_folder(tmp_path / "kernels"))  # a process that only begins has no environment yet
+    # a process that only begins has no environment yet
+    until(lambda: with_folder(kernels) or not any(Path(f"/proc/{each}").exists() for each in compilers))
+    assert with_folder(kernels) or list(kernels.rglob("*.nbc"))
 
 
 def test_ctrl_c_ends_the_compilation_too(start: Start, tmp_path: Path) -> None:
@@ -135,11 +157,7 @@ def test_a_second_command_starts_no_second_compilation(start: Start, tmp_path: P
         until(lambda: not with_folder(tmp_path / "kernels"))
         fcntl.flock(held, fcntl.LOCK_EX)
         program = start("solve", PAPER, "--json")
-        most = 0
-        while program.poll() is None:
-            most = max(most, len(with_folder(tmp_path / "kernels")))
-            time.sleep(0.02)
-        assert most == 1
+        assert most_at_once(program, tmp_path / "kernels") == 1
         found, _ = answered(program)
         assert found["status"] == "certified"
         ended, _ = answered(start("solve", PAPER, "--json", "--time-limit", "0.01"))

@@ -44,7 +44,7 @@ def test_an_encoding_that_lacks_letters(
     """Every verb ends as it does elsewhere, without a traceback, and what it prints is in the encoding."""
     environment = os.environ | {"PYTHONIOENCODING": encoding}
     command = [sys.executable, "-m", "nullpose", *arguments]
-    done = subprocess.run(command, capture_output=True, env=environment, cwd=folder, check=False, timeout=120)
+    done = subprocess.run(command, capture_output=True, env=environment, cwd=folder, check=False, timeout=600)
     assert done.returncode == code
     assert b"Traceback" not in done.stderr
     shown, _ = done.stdout.decode(encoding), done.stderr.decode(encoding)

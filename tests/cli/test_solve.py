@@ -144,7 +144,7 @@ def test_an_interrupt_of_the_real_program_keeps_the_result(paper: str) -> None:
     while "proving:" not in (line := program.stderr.readline()):
         assert line or program.poll() is None
     program.send_signal(signal.SIGINT)
-    stdout, stderr = program.communicate(timeout=100)
+    stdout, stderr = program.communicate(timeout=600)
     assert program.returncode == INTERRUPTED
     assert "smallest SINR 1.58" in stdout
     assert "not reached: an interrupt" in stdout

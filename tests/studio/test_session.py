@@ -23,7 +23,7 @@ from nullpose.studio.case import CASES, OPTIMUM, case_named
 from nullpose.studio.session import History, Session
 from nullpose.studio.state import Key, State
 
-_PATIENCE_S = 120.0
+_PATIENCE_S = 600.0
 EXAMPLES = Path(__file__).parents[2] / "examples"
 JAMMER: Key = ("jammers", 0)
 

@@ -3,13 +3,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from tests.certificate.plain import carried, link_matrix
+from tests.reference.plain_kernels import plain
 
 from nullpose.certificate.forms import matrices
 from nullpose.channel import LinkChannel, PointChannels, excess_gain
 from nullpose.objectives import Ratios
-from nullpose.solver.kernels.bounds.expansion import expand_point, frame_at
+from nullpose.solver.kernels.bounds import expansion
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
 
+expand_point, frame_at = plain(expansion.expand_point), plain(expansion.frame_at)
 POINTS = np.array([[0.0, 0.0, 0.0], [40.0, 10.0, 2.0], [17.0, 15.0, 4.0], [-20.0, 30.0, 1.0]])
 FIRST = np.zeros(1, dtype=np.int64)
 FRAMES = [(WORLD, -1), (TOWARDS_POINT, 2)]

@@ -4,16 +4,18 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
+from tests.reference.plain_kernels import plain
 
 from nullpose.antenna import QuadraticAntenna
 from nullpose.channel.model import WIDTH
 from nullpose.physics.gain import dipole_gain
+from nullpose.solver.kernels.search import worst_case_links
 from nullpose.solver.kernels.search.set_links import Sets
-from nullpose.solver.kernels.search.worst_case_links import clearance, strongest_link
 
+clearance, strongest_link = plain(worst_case_links.clearance), plain(worst_case_links.strongest_link)
 SEEDS = st.integers(0, 2**32 - 1)
 LOOSE, ROUNDING = 1e-3, 1e-12
 
@@ -90,7 +92,7 @@ def test_a_ball_around_the_drone_has_no_bound() -> None:
 def test_the_two_values_of_nearly_every_ellipsoid_are_as_near_as_asked_for() -> None:
     """Of flat ones that the antenna points at, six in a thousand keep a looser bound."""
     near = []
-    for seed in range(500):
+    for seed in range(200):
         rng = np.random.default_rng(seed)
         axes, semi, q = an_ellipsoid(rng)
         y = unit(rng) if seed % 2 else q / np.linalg.norm(q)
@@ -99,7 +101,6 @@ def test_the_two_values_of_nearly_every_ellipsoid_are_as_near_as_asked_for() -> 
     assert np.mean(near) > 0.98
 
 
-@settings(max_examples=60)
 @given(seed=SEEDS, tolerance=st.sampled_from([1e-2, 1e-3, 1e-5]))
 def test_ellipsoid_between_its_two_values(seed: int, tolerance: float) -> None:
     """The place named is inside and as loud as told; no point of the ellipsoid is above the upper bound."""
@@ -132,7 +133,6 @@ def test_clearance_is_a_lower_bound(seed: int) -> None:
     assert clearance(ball(radius), 0, tuple(q)) == pytest.approx(radius, rel=1e-14)
 
 
-@settings(max_examples=100)
 @given(seed=SEEDS, leak=st.sampled_from([0.0, 1e-4, 0.01, 0.3]), has_dipole=st.booleans())
 def test_antennas_that_leak_and_dipoles(seed: int, leak: float, has_dipole: bool) -> None:
     """No place in an ellipsoid is above the bound, which is close where the set is not huge."""

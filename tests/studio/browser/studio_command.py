@@ -46,7 +46,7 @@ class Command:
     def ended(self, by: int = signal.SIGINT) -> tuple[str, str]:
         """End it by a signal, and return what it says after its address, and its complaints."""
         os.killpg(self.process.pid, by)
-        assert self.process.wait(30.0) == 0
+        assert self.process.wait(300.0) == 0
         assert self.process.stdout is not None
         assert self.process.stderr is not None
         with self.process.stdout, self.process.stderr:
@@ -70,7 +70,7 @@ def start() -> Iterator[Start]:
 
 
 def _html(address: str) -> bytes:
-    return bytes(urllib.request.urlopen(address, timeout=5.0).read(200)).lower()
+    return bytes(urllib.request.urlopen(address, timeout=120.0).read(200)).lower()
 
 
 def test_interrupt_ends_it_without_a_trace(start: Start) -> None:
@@ -118,7 +118,7 @@ def test_a_port_in_use_ends_with_a_message(start: Start) -> None:
     first = start()
     address = first.address()
     second = start(port=first.port)
-    _, err = second.process.communicate(timeout=60.0)
+    _, err = second.process.communicate(timeout=300.0)
     assert second.process.returncode == 2
     assert f"--port: {first.port} is in use" in err
     assert err.count("\n") == 1

@@ -88,11 +88,14 @@ def test_a_touch_phone_shows_the_scene_first(browser: Browser, alone: Studio) ->
         readout, title = hand.page.locator("[data-np=readout]"), hand.page.get_by_text("nullpose studio")
         readout.wait_for(state="hidden")
         hand.until(lambda: (hand.camera.image_width, hand.camera.image_height) == (390, 844))
-        hand.page.wait_for_timeout(1500)
         pose = hand.session.state.answer(hand.session.state.case).result.pose
-        points = [point.position_m for point in (*PAPER.nodes, *PAPER.jammers)]
-        seen = pixels(hand.camera, [*points, pose.position_m])[:, :2]
-        assert np.all((seen > [0.0, PHONE_CARD_PX[1]]) & (seen < [390.0, 616.0]))
+        points = [*(point.position_m for point in (*PAPER.nodes, *PAPER.jammers)), pose.position_m]
+
+        def are_in_sight() -> bool:
+            seen = pixels(hand.camera, points)[:, :2]
+            return bool(np.all((seen > [0.0, PHONE_CARD_PX[1]]) & (seen < [390.0, 616.0])))
+
+        hand.until(are_in_sight)
         card = hand.page.locator("#np-overlay").bounding_box()
         assert card is not None
         assert card["x"] >= 0.0

@@ -44,7 +44,7 @@ class Asked:
     def get(self, path: str, host: str, origin: str | None = None) -> tuple[int, Any]:
         """Return the status and the headers of what is at a path."""
         headers = {"Host": host} | ({} if origin is None else {"Origin": origin})
-        connection = http.client.HTTPConnection(LOOPBACK, self.port, timeout=10.0)
+        connection = http.client.HTTPConnection(LOOPBACK, self.port, timeout=120.0)
         connection.request("GET", path, headers=headers)
         answer = connection.getresponse()
         answer.read()
@@ -197,7 +197,7 @@ def test_the_ninth_page_is_told_and_gets_no_thread(browser: Browser, paper: Scen
         pages = [stack.enter_context(_page(running.address)) for _ in range(MOST_PAGES)]
         _until(lambda: len(running.pages) == MOST_PAGES)
         ninth = context.new_page()
-        ninth.set_default_timeout(60_000)
+        ninth.set_default_timeout(300_000)
         ninth.goto(running.address)
         ninth.get_by_text(f"{MOST_PAGES} pages are open").wait_for()
         assert len(running.pages) == _threads() - before == MOST_PAGES
@@ -229,7 +229,7 @@ def _packed(message: Any) -> bytes:
 
 
 def _until(met: Callable[[], object]) -> None:
-    until = time.monotonic() + 60.0
+    until = time.monotonic() + 300.0
     while not met():
         assert time.monotonic() < until, "it did not happen in time"
         time.sleep(0.02)
