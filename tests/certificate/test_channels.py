@@ -17,7 +17,7 @@ from nullpose.channel.model import BY_ELEVATION
 from nullpose.channel.power_law import power_law
 from nullpose.problem.family import Family
 
-BOXES, SAMPLES = 600, 500  # 300,000 samples for each channel and side
+BOXES, SAMPLES = 300, 200  # 60,000 samples for each channel and side
 SLACK = 1e-12  # of the models, in double precision
 
 

@@ -36,7 +36,7 @@ def certificate(name: str, antenna: dict[str, object], *changes: str, gap: float
 @pytest.fixture(scope="module")
 def half_wave() -> Certificate:
     """Return the certificate of the paper's scene with a half-wave dipole."""
-    return certificate("paper", HALF_WAVE, gap=0.3)
+    return certificate("paper", HALF_WAVE, gap=0.1)
 
 
 @pytest.mark.parametrize("power_w", [0.01, 100.0])

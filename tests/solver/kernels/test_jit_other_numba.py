@@ -7,16 +7,29 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import nullpose
+from nullpose.problem.build import build_family
 from nullpose.solver.kernels.compiler.jit import LINKED_BEFORE, LINKED_FROM
 from nullpose.solver.kernels.compiler.notices import OTHER_NUMBA
+from nullpose.solver.kernels.linear_algebra.axis import best_axis
 
 ROOT = Path(__file__).parents[3]
 SCENES = ("paper", "eavesdropper", "no-fly")
 
 OTHER = "import numba; numba.__version__ = '0.99.0'\n"
+
+BEST_AXIS = """
+import sys
+import numpy as np
+from nullpose import load
+from nullpose.problem.build import build_family
+from nullpose.solver.kernels.linear_algebra.axis import best_axis
+family = build_family(load(sys.argv[1]))
+print(float(best_axis(family.arrays, np.array([1.0, 20.0, 9.0]), np.empty(3))))
+"""
 
 SOLVE = """
 import gc
@@ -29,23 +42,34 @@ for path in sys.argv[1:]:
 """
 
 
-def test_three_scenes_are_solved_with_another_numba(tmp_path: Path) -> None:
-    """Same values and statuses; standard error says once that compiling takes longer.
-
-    Without a proof, whose kernels take numba another 45 s.
-    """
-    (tmp_path / "sitecustomize.py").write_text(OTHER, encoding="utf-8")
-    paths = [str(ROOT / "examples" / f"{name}.toml") for name in SCENES]
+def lines_of(program: str, folder: Path, *arguments: str) -> list[str]:
+    """Returns what a program prints; standard error says once that compiling takes longer."""
+    (folder / "sitecustomize.py").write_text(OTHER, encoding="utf-8")
     environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path]),
-        "NUMBA_CACHE_DIR": str(tmp_path / "kernels"),
+        "PYTHONPATH": os.pathsep.join([str(folder), *sys.path]),
+        "NUMBA_CACHE_DIR": str(folder / "kernels"),
         "NUMBA_OPT": "1",  # with 0 the code has addresses, which numba warns of
     }
     done = subprocess.run(
-        [sys.executable, "-c", SOLVE, *paths], env=environment, capture_output=True, text=True
+        [sys.executable, "-c", program, *arguments], env=environment, capture_output=True, text=True
     )
     assert done.stderr == OTHER_NUMBA.format("0.99.0") + "\n"
-    for path, line in zip(paths, done.stdout.splitlines(), strict=True):
+    return done.stdout.splitlines()
+
+
+def test_kernels_are_compiled_with_another_numba(tmp_path: Path) -> None:
+    """Same value of the best axis at a place."""
+    family = build_family(nullpose.load(ROOT / "examples" / "paper.toml"))
+    expected = best_axis(family.arrays, np.array([1.0, 20.0, 9.0]), np.empty(3))
+    (line,) = lines_of(BEST_AXIS, tmp_path, str(ROOT / "examples" / "paper.toml"))
+    assert float(line) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_three_scenes_are_solved_with_another_numba(tmp_path: Path) -> None:
+    """Same values and statuses, without a proof, whose kernels take numba another 45 s."""
+    paths = [str(ROOT / "examples" / f"{name}.toml") for name in SCENES]
+    for path, line in zip(paths, lines_of(SOLVE, tmp_path, *paths), strict=True):
         value, status = line.split()
         expected = nullpose.solve(nullpose.load(path), certify=False)
         assert float(value) == pytest.approx(expected.objective.value, rel=1e-9)

@@ -23,7 +23,7 @@ Rows = Callable[[Path], pd.DataFrame]
 SpecFile = Callable[..., Path]
 Spec = Callable[..., StudySpec]
 
-SCENES = 1200
+SCENES = 800
 CASES = [{"name": "free"}, {"name": "level", "airframe": "tilt-10-horizontal"}]
 SWEEP = {"jammers.M.power_w": [0.1, 10.0]}
 
@@ -160,7 +160,7 @@ def test_a_worker_of_a_cluster_killed(
     farm.scheduler()
     workers = [farm.worker(), farm.worker()]
     out = tmp_path / "out"
-    client = farm.client(spec_file(tmp_path, scenes=SCENES), out, "--chunk", 100)
+    client = farm.client(spec_file(tmp_path, scenes=SCENES), out, "--chunk", 50)
     farm.until(lambda: len(_parts(out)) >= 4)
     os.killpg(workers[0].pid, signal.SIGKILL)
     said, _ = client.communicate(timeout=farm.LONGEST_S)
@@ -175,7 +175,7 @@ def test_a_process_of_the_pool_killed(
     """The run goes on with new ones; the rows are the same, none of them a failure."""
     out = tmp_path / "out"
     spec = spec_file(tmp_path, scenes=SCENES)
-    client = farm.start("nullpose", "study", "run", spec, "--out", out, "--workers", 2, "--chunk", 100)
+    client = farm.start("nullpose", "study", "run", spec, "--out", out, "--workers", 2, "--chunk", 50)
     farm.until(lambda: len(_parts(out)) >= 4)
     children = psutil.Process(client.pid).children()
     next(child for child in children if "spawn_main" in " ".join(child.cmdline())).kill()
