@@ -67,6 +67,7 @@ def test_smallest_or_mean_ratio_is_the_value_of_the_physics(name: str, seed: int
     above = ratios.numerator_isotropic + ratios.numerator_weight * link[ratios.numerator_point]
     each = above / below[ratios.denominator_of]
     offset = RECORDS[name].mean_offset
+    assert offset in (None, 0.0, 1.0), "the kernels know no other"
     ratio = float(np.min(each) if offset is None else np.prod((offset + each) ** scenario.node_shares))
     quantity = Quantity.of(scenario)
     value = float(objective_value(scenario, pose.position_m, pose.antenna_axis))

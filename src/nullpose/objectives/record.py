@@ -127,7 +127,8 @@ class ObjectiveRecord:
             links get its decibels as well.
         ratios_at: from what is received at poses: the values of ``ratios`` there, ``(..., n_nodes, m)``, a
             row for each node; the quantity itself if left out, ``m`` being 1.
-        mean_offset: a, where ``prod_k (a + SINR_k)^share_k`` is maximised in place of the smallest ratio.
+        mean_offset: a, 0 or 1, where ``prod_k (a + ratio_k)^share_k`` is maximised in place of the smallest
+            ratio. The quantity is then the number of a node, ``a + ratio_k`` or, of a rate, its ``log2``.
         transmits: whether the drone transmits: links are then measured at the nodes.
         interferers: the table of a scenario whose points stand in the denominators.
         needs: what a scenario must state for it: headings of tables; ``nodes.power`` for a key of the nodes,
@@ -151,11 +152,14 @@ class ObjectiveRecord:
     def value(self, scenario: Scenario, values: Mapping[str, FloatArray]) -> FloatArray:
         """Evaluate the objective, (...), from the numbers of every node by name, each ``(..., n_nodes)``.
 
-        The smallest of the maximised quantity; or from the mean of the ``a + SINR_k``, by their shares.
+        The smallest of the maximised quantity; or the mean of it by the nodes' shares, that of its logarithm
+        if it is no rate.
         """
         quantity = self.quantity(scenario)
+        numbers = np.asarray(values[quantity.field])
         if self.mean_offset is None:
-            return np.asarray(np.min(values[quantity.field], axis=-1))
+            return np.asarray(np.min(numbers, axis=-1))
+        if quantity.is_rate:
+            return np.asarray(quantity.scale * (numbers @ scenario.node_shares))
         with np.errstate(divide="ignore"):
-            log = np.log(self.mean_offset + np.asarray(values["sinr"])) @ scenario.node_shares
-        return np.asarray(quantity.scale * log / math.log(2.0) if quantity.is_rate else np.exp(log))
+            return np.asarray(np.exp(np.log(numbers) @ scenario.node_shares))
