@@ -11,6 +11,7 @@ from .errors import (
     UsageError as UsageError,
     WrongTypeError as WrongTypeError,
 )
+from .objectives import objective as objective
 from .physics import (
     Link as Link,
     Pose as Pose,

@@ -6,6 +6,8 @@ in the line ``RECORDS`` below.
 
 from __future__ import annotations
 
+from nullpose.objectives import custom as objective
+from nullpose.objectives.custom import Custom
 from nullpose.objectives.downlink import DOWNLINK
 from nullpose.objectives.min_sinr import MIN_SINR
 from nullpose.objectives.proportional_fair import PROPORTIONAL_FAIR
@@ -19,11 +21,13 @@ __all__ = [
     "LEAST_RATE_BPS_HZ",
     "RECORDS",
     "USUAL",
+    "Custom",
     "FloatArray",
     "IntArray",
     "ObjectiveRecord",
     "Quantity",
     "Ratios",
+    "objective",
 ]
 
 _ALL = (MIN_SINR, SUM_RATE, PROPORTIONAL_FAIR, SECRECY_RATE, DOWNLINK, RELAY)

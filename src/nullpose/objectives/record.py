@@ -66,6 +66,11 @@ class Quantity:
         return self.unit != "dB"
 
     @property
+    def ending(self) -> str:
+        """The unit at the end of a name, as in ``db``."""
+        return {"dB": "db", "bits/s/Hz": "bps_hz"}.get(self.unit, self.unit)
+
+    @property
     def smallest(self) -> str:
         """The objective in words, as in "smallest SINR"."""
         return self.whole or f"smallest {self.noun}"
@@ -129,6 +134,7 @@ class ObjectiveRecord:
             row for each node; the quantity itself if left out, ``m`` being 1.
         mean_offset: a, 0 or 1, where ``prod_k (a + ratio_k)^share_k`` is maximised in place of the smallest
             ratio. The quantity is then the number of a node, ``a + ratio_k`` or, of a rate, its ``log2``.
+        of_nodes: of an objective that is a function in Python: its values, (...), from every node's SINR.
         transmits: whether the drone transmits: links are then measured at the nodes.
         interferers: the table of a scenario whose points stand in the denominators.
         needs: what a scenario must state for it: headings of tables; ``nodes.power`` for a key of the nodes,
@@ -144,6 +150,7 @@ class ObjectiveRecord:
     evaluate: Callable[[Reception], Mapping[str, FloatArray]]
     ratios_at: Callable[[Reception], FloatArray] | None = None
     mean_offset: float | None = None
+    of_nodes: Callable[[FloatArray], FloatArray] | None = None
     transmits: bool = False
     interferers: str
     needs: tuple[str, ...] = ()
@@ -157,6 +164,8 @@ class ObjectiveRecord:
         """
         quantity = self.quantity(scenario)
         numbers = np.asarray(values[quantity.field])
+        if self.of_nodes is not None:
+            return self.of_nodes(numbers)
         if self.mean_offset is None:
             return np.asarray(np.min(numbers, axis=-1))
         if quantity.is_rate:

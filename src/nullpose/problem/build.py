@@ -60,6 +60,11 @@ def build_family(
         f'objective: given "{record.name}"; allowed here: those of the smallest ratio, such as "{USUAL}". '
         "solve, compare, sweep, map, vehicle and evaluate know it for a dipole, in channels a file can state",
     )
+    require_usage(
+        record.of_nodes is None,
+        f"objective: given {record.name}, a function in Python; allowed here: the objectives that a file can "
+        "state. solve, compare and evaluate know functions, for a dipole",
+    )
     ratios = record.ratios(scenario)
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     if record.mean_offset is not None:

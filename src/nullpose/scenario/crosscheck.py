@@ -9,7 +9,7 @@ import numpy as np
 
 from nullpose.antenna import SHORT_DIPOLE
 from nullpose.files import PlainTable
-from nullpose.objectives import RECORDS
+from nullpose.objectives import RECORDS, Custom
 from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.channel import Channel, CustomChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of
@@ -186,8 +186,11 @@ def _channel_faults(
 
 def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
     """Yield what the objective needs and is not given, and what is given and has no meaning under it."""
-    if (record := RECORDS.get(scenario.objective)) is None:
+    if scenario.objective is None:
         return
+    record, nodes = scenario.objective_record, len(scenario.nodes or ())
+    if isinstance(scenario.objective, Custom) and nodes and (fault := scenario.objective.fault(nodes)):
+        yield ("objective",), fault
     for need in record.needs:
         for place, keys, present in _places_of(need, scenario, points):
             if not present:

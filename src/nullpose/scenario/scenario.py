@@ -5,17 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from numpy.typing import ArrayLike
-from pydantic import Field
+from pydantic import Field, PlainSerializer
 
 from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna
 from nullpose.antenna.from_file import ESTIMATE
 from nullpose.channel.buildings import Prisms, prisms_of
 from nullpose.errors import WrongTypeError
 from nullpose.files import PlainTable
-from nullpose.objectives import RECORDS, USUAL, ObjectiveRecord
+from nullpose.objectives import RECORDS, USUAL, Custom, ObjectiveRecord
 from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
@@ -35,6 +35,14 @@ from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described
 
 
+class _Objective(Choice):
+    """One of the objectives by name, or a function in Python, which no file can hold."""
+
+    def read(self, value: object) -> Any:
+        """Return either, or raise the fault that names the words."""
+        return value if isinstance(value, Custom) else super().read(value)
+
+
 class Scenario(Section, PointArrays):
     """Nodes, jammers, a receiver and an airspace, in one world frame: east, north, up (ENU), in metres.
 
@@ -51,7 +59,7 @@ class Scenario(Section, PointArrays):
         description="Title of the scenario, for tables and figures.",
         examples=["Harbour, north quay"],
     )
-    objective: Annotated[str, Choice("an objective", RECORDS)] = Field(
+    objective: Annotated[Any, _Objective("an objective", RECORDS), PlainSerializer(str)] = Field(
         default=USUAL,
         description="The objective to maximise: "
         + ", or ".join(f"{record.name}, {record.summary}" for record in RECORDS.values())
@@ -215,7 +223,7 @@ class Scenario(Section, PointArrays):
     @property
     def objective_record(self) -> ObjectiveRecord:
         """What the objective states of itself."""
-        return RECORDS[self.objective]
+        return self.objective.record if isinstance(self.objective, Custom) else RECORDS[self.objective]
 
     @property
     def antenna_record(self) -> AnyAntenna:

@@ -119,6 +119,11 @@ def solve_scheme(
     """
     if null_jammer is not None and null_jammer not in (names := scenario.jammer_names):
         raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
+    if scenario.objective_record.of_nodes is not None:
+        from nullpose.solver.custom_objective import solve_by_function  # and SciPy with it
+
+        named = record.fields(scenario, null_jammer) or {}
+        return solve_by_function(scenario, list(named.values()), options), named
     family = family_of(scenario)
     if not scenario.antenna_record.is_quadratic:
         from nullpose.solver.pattern import solve_pattern  # and SciPy with it

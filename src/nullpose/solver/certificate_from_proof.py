@@ -156,9 +156,11 @@ def require_certificate(scenario: Scenario, scheme: str, null_jammer: str | None
         UsageError: the scheme has no certificate for this scenario.
     """
     require_usage(
-        scenario.prisms is None and not scenario.has_custom_channels,
-        "certificate: buildings and channels that are a function in Python have none: they are proved in "
-        "floating point; leave out --certificate and --verify",
+        scenario.prisms is None
+        and not scenario.has_custom_channels
+        and scenario.objective_record.of_nodes is None,
+        "certificate: buildings, and channels and objectives that are a function in Python, have none: they "
+        "are proved in floating point or not at all; leave out --certificate and --verify",
     )
     antenna = scenario.antenna_record
     require_usage(

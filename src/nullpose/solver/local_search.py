@@ -41,7 +41,7 @@ class LocalSearch(ABC):
     def __init__(self, family: Family, peak: float, seed: int) -> None:
         self.family, self.rng = family, np.random.default_rng(seed)
         self.loudest = family.changed(numerator_weight=family.numerator_weight * peak)
-        self.best, self.state = -math.inf, np.empty(0)
+        self.best, self.state, self.last = -math.inf, np.empty(0), np.empty(0)
         self.starts = self.evaluations = 0
 
     @abstractmethod
@@ -105,6 +105,7 @@ class LocalSearch(ABC):
         """Bring a state into the domain, and keep it if it is the best so far; return its value."""
         inside = state.copy()
         inside[:3] = self._repair(state[:3])
+        self.last = inside
         if (value := float(self.judge(inside[None])[0])) > self.best:
             self.best, self.state = value, inside
         return value
@@ -132,6 +133,7 @@ class EpigraphSearch(LocalSearch):
     """
 
     angles: int  # of a step
+    steps = _STEPS  # of a climb at most
 
     @abstractmethod
     def move(self, state: FloatArray, step: FloatArray) -> FloatArray:
@@ -178,7 +180,7 @@ class EpigraphSearch(LocalSearch):
                 "fun": lambda x: constraints(x.tobytes())[0],
                 "jac": lambda x: constraints(x.tobytes())[1],
             },
-            options={"maxiter": _STEPS, "ftol": _PRECISION},
+            options={"maxiter": self.steps, "ftol": _PRECISION},
         )
         self.starts += 1
         if np.all(np.isfinite(found.x)):

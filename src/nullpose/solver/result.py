@@ -159,7 +159,9 @@ class Result:
     @property
     def sensitivity(self) -> Sensitivity | None:
         """The smallest values found when attitude, position or jammers are off, in milliseconds."""
-        return None if self.error_sizes is None else sensitivity(self.scenario, self.pose, self.error_sizes)
+        if self.error_sizes is None or self.scenario.objective_record.of_nodes is not None:
+            return None
+        return sensitivity(self.scenario, self.pose, self.error_sizes)
 
     @property
     def interrupted(self) -> bool:
@@ -176,12 +178,11 @@ class Result:
     def row(self) -> dict[str, object]:
         """Write the result as a row of a table: numbers by name and unit, angles in degrees."""
         quantity, bound = self.objective.quantity, self.objective.upper_bound
-        unit = "bps_hz" if quantity.is_rate else "db"
         angles = {name: getattr(self.pose, f"{name}_rad") for name in ("roll", "pitch", "yaw")}
         return {
             "case": self.label,
-            f"{quantity.name}_{unit}": quantity.in_unit(self.objective.value),
-            f"upper_bound_{unit}": None if bound is None else quantity.in_unit(bound),
+            f"{quantity.name}_{quantity.ending}": quantity.in_unit(self.objective.value),
+            f"upper_bound_{quantity.ending}": None if bound is None else quantity.in_unit(bound),
             "status": self.status.value,
             **dict(zip(("x_m", "y_m", "z_m"), self.pose.position_m.tolist(), strict=True)),
             **{f"{name}_deg": math.degrees(angle_rad) for name, angle_rad in angles.items()},

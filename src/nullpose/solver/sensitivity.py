@@ -135,6 +135,10 @@ def sensitivity(scenario: Scenario, pose: Pose, sizes: ErrorSizes | None = None)
         >>> round(found.loss_db("attitude"), 2), round(found.loss_db("all"), 2)
         (0.04, 4.13)
     """
+    require_usage(
+        scenario.objective_record.of_nodes is None,
+        "sensitivity: given an objective that is a function in Python; allowed: one that a file can state",
+    )
     sizes, quantity = sizes or ErrorSizes(), Quantity.of(scenario)
     worst = [quantity.of_ratio(float(ratio)) for ratio in _Search(scenario, pose, sizes).worst()]
     return Sensitivity(quantity=quantity, sizes=sizes, **dict(zip(("nominal", *_KINDS), worst, strict=True)))

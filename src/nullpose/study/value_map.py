@@ -100,7 +100,7 @@ def value_map(
         values=values if quantity.is_rate else in_decibels(values),
         unit=quantity.unit,
         title=f"{'value in this attitude' if is_pattern else 'best value'} at each place, {up:.1f} m up",
-        name=f"{quantity.name}_{'bps_hz' if quantity.is_rate else 'db'}",
+        name=f"{quantity.name}_{quantity.ending}",
     )
 
 

@@ -39,5 +39,10 @@ MAXIMUM_GAIN = SchemeRecord(
     sentence=lambda scenario, null_jammer: "with an antenna broadside to both nodes",
     fields=_fields,
     note=_note,
+    reason_against=lambda scenario: (
+        None
+        if scenario.objective_record.of_nodes is None or len(scenario.nodes) == 2
+        else "with an objective that is a function in Python it is for two nodes"
+    ),
     unproved="no proof of its own for other than two nodes: the bound is that of the optimum",
 )

@@ -83,7 +83,7 @@ class Summary:
 
     def table(self) -> pd.DataFrame:
         """Put units into the names of the columns, for a file."""
-        unit = "bps_hz" if self.quantity.is_rate else "db"
+        unit = self.quantity.ending
         heads = ("median", "worst_tenth", "best_tenth", "gain_", "shift_", "difference_")
         return self.frame.rename(columns=lambda name: f"{name}_{unit}" if name.startswith(heads) else name)
 
