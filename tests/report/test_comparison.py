@@ -37,6 +37,10 @@ def test_rates_have_a_column_in_mbit(paper: Scenario) -> None:
         file = io.StringIO()
         Console(width=100, file=file).print(comparison_view(found))
         assert file.getvalue().count("Mbit/s") == count
+        rows = found.to_dict()["rows"]
+        assert all(
+            ("value_mbps" in row, "upper_bound_mbps" in row) == (count == 1, count == 1) for row in rows
+        )
         if count:
             assert f"{20.0 * found.rows[0].objective.value:.4f}" in file.getvalue()
 

@@ -52,16 +52,21 @@ class Objective:
         factor, bound = self.quantity.mbps, self.upper_bound
         return None if factor is None or bound is None else factor * bound
 
+    @property
+    def rates(self) -> PlainTable:
+        """Both in Mbit/s as plain data; nothing where there are none."""
+        names = () if self.value_mbps is None else ("value_mbps", "upper_bound_mbps")
+        return {name: getattr(self, name) for name in names}
+
     def to_dict(self) -> PlainTable:
         """Write value and bound as plain data for JSON; None for a number that JSON cannot hold."""
-        rate = {"value_mbps": self.value_mbps, "upper_bound_mbps": self.upper_bound_mbps}
         return {
             "name": self.name,
             "value": self.value,
             "value_db": _finite(self.value_db),
             "upper_bound": self.upper_bound,
             "relative_gap": _finite(self.relative_gap),
-            **({} if self.value_mbps is None else rate),
+            **self.rates,
         }
 
 

@@ -157,6 +157,7 @@ class ResultRow(Result):
             "upper_bound": objective.upper_bound,
             "upper_bound_db": self.upper_bound_db,
             "relative_gap": objective.relative_gap,
+            **objective.rates,
             "pose": self.pose.to_dict(),
             "links": [link.to_dict() for link in self.links],
             "binding_node": self.binding_node,
