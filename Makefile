@@ -60,6 +60,8 @@ figures: .venv/.with-core ## the pictures and the claims that README and pages s
 	$(BIN)/python docs/figures/cards.py
 	$(BIN)/python docs/figures/airframes_data.py
 	$(BIN)/python docs/figures/airframes.py
+	$(BIN)/python docs/figures/objectives_data.py
+	$(BIN)/python docs/figures/objectives.py
 	$(BIN)/python docs/figures/channels.py
 	$(BIN)/python docs/figures/least_tilt.py
 
