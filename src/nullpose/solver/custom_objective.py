@@ -23,7 +23,7 @@ from nullpose.solver.solve_and_prove import Outcome
 
 _UNBOUNDED = "an objective that is a function in Python is searched, and nothing is proved of it"
 _DRAWN, _CLIMBED = 2000, 6  # states of a search, each time
-_LOWERED = (0.3, 1e-2, 0.0)  # by which share single SINRs are lowered, climb after climb
+_LOWERED = (0.3, 1e-2, 0.0)  # shares by which single SINRs are lowered, the last from the best state
 _STEP = 1e-6  # of differences
 _SHARE = 1e-2  # by which all SINRs are lowered to see how the function falls
 
@@ -118,8 +118,9 @@ class ObjectiveSearch(EpigraphSearch):
 
     def climb(self, state: FloatArray) -> float:
         """Climb to a local optimum, and keep it if it is the best so far; return its value."""
+        shares = _LOWERED if state is self.state else _LOWERED[:-1]
         value = self.take(state)
-        for self.lowered in _LOWERED:
+        for self.lowered in shares:
             if (reached := super().climb(state)) > value:
                 value, state = reached, self.last
         return value
