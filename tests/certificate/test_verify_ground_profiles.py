@@ -30,7 +30,7 @@ def with_whips(scenario: Scenario, rows: list[list[float]], kinds: tuple[str, ..
     return Scenario.from_dict(data)
 
 
-@pytest.mark.parametrize("gap", [0.1, pytest.param(1e-3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("gap", [0.3, pytest.param(1e-3, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kinds", [("nodes",), ("jammers",), ("nodes", "jammers")], ids=" and ".join)
 @pytest.mark.parametrize("name", EVERYTHING)
 def test_whips_are_proved(name: str, kinds: tuple[str, ...], gap: float, paper: Callable) -> None:
