@@ -110,6 +110,10 @@ class SolveError(NullposeError, RuntimeError):
     """A solve that ended without a pose that can be reported."""
 
 
+class RequirementError(SolveError):
+    """No pose was found that gives every node what it requires."""
+
+
 def checked(called: _Called) -> _Called:
     """Have a function, or the making of a class, refuse arguments that it cannot use.
 

@@ -149,3 +149,14 @@ def test_an_interrupt_of_the_real_program_keeps_the_result(paper: str) -> None:
     assert "smallest SINR 1.58" in stdout
     assert "not reached: an interrupt" in stdout
     assert "Traceback" not in stderr
+
+
+def test_a_requirement_that_no_pose_meets_is_bad_input(run: Run, paper: str) -> None:
+    """It is said by its path with the best that can be met, and the exit code is 2."""
+    sets = [
+        f"--set={change}" for change in ("objective=sum-rate", *(f"nodes.S{i}.min_sinr_db=5" for i in (1, 2)))
+    ]
+    result = run("solve", paper, *sets)
+    assert result.exit_code == 2
+    assert "error: nodes.min_sinr_db: no pose was found" in result.stderr
+    assert "proved: every pose misses one by 4.01" in result.stderr

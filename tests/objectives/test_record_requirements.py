@@ -9,11 +9,13 @@ from benchmarks.soundness.check import check_scene
 from benchmarks.soundness.features import make_feature_scene
 
 from nullpose.certificate import verify
-from nullpose.errors import ScenarioError, SolveError
+from nullpose.errors import RequirementError, ScenarioError, SolveError
 from nullpose.physics import allowed_value, objective_value
+from nullpose.problem.schemes import RECORDS
 from nullpose.scenario import Scenario, apply_overrides, load
-from nullpose.solver import solve
+from nullpose.solver import compare, solve
 from nullpose.solver.certificate_from_proof import certificate_of
+from nullpose.study import compare_schemes
 
 MEANS = ("sum-rate", "proportional-fair")
 
@@ -97,6 +99,19 @@ def test_axes_that_a_position_gives_meet_requirements(objective: str, scheme: st
     for link, least_db in zip(solution.links, required_db, strict=True):
         assert least_db is None or link.sinr_db >= least_db - 1e-9
     assert verify(certificate_of(solution)).proved
+
+
+def test_a_comparison_leaves_out_schemes_that_miss_a_requirement() -> None:
+    """The schemes that meet it are compared, and of the others it is said by how much they miss it."""
+    scenario = demanding("sum-rate", 0.0, 0.0)
+    table, results = compare_schemes(scenario, gap=1e-3), compare(scenario, gap=1e-3)
+    assert {row.name for row in table.rows} | table.left_out.keys() == set(RECORDS)
+    assert [row.name for row in table.rows] == [result.scheme for result in results]
+    assert "optimum" in {row.name for row in table.rows}
+    assert "misses one by 0.69" in table.left_out["maximum-gain"]
+    for called in (compare, compare_schemes):
+        with pytest.raises(RequirementError):
+            called(demanding("sum-rate", 5.0, 5.0), gap=1e-3)
 
 
 @pytest.mark.parametrize("number", range(8))

@@ -20,7 +20,7 @@ import typer
 from typer.core import TyperGroup
 
 from nullpose.cli.printing import say
-from nullpose.errors import Fault, NullposeError, ScenarioError, SolveError, UsageError
+from nullpose.errors import Fault, NullposeError, RequirementError, ScenarioError, SolveError, UsageError
 
 INTERNAL = 1
 BAD_INPUT = 2
@@ -48,7 +48,8 @@ class FaultReportingGroup(TyperGroup):
                 result = super().invoke(ctx)
                 sys.stdout.flush()
             except NullposeError as error:
-                code = INTERNAL if isinstance(error, SolveError) else BAD_INPUT
+                is_ours = isinstance(error, SolveError) and not isinstance(error, RequirementError)
+                code = INTERNAL if is_ours else BAD_INPUT
                 say(_as_json(error, code) if as_json else f"error: {error}", err=True, broken=not as_json)
                 raise typer.Exit(code) from error
             except _WRONG_USAGE as error:

@@ -9,7 +9,7 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.errors import UsageError, checked, require_usage
+from nullpose.errors import RequirementError, UsageError, checked, require_usage
 from nullpose.physics import Pose
 from nullpose.physics.pose import as_position
 from nullpose.problem.axis_field import AxisField
@@ -115,8 +115,9 @@ def compare(
     on_progress: Callable[[int, int], None] | None = None,
     **options: Unpack[SolveKeywords],
 ) -> Results:
-    """Solve a scenario under several schemes with one dipole, those without meaning there left out.
+    """Solve a scenario under several schemes with one dipole.
 
+    Those without meaning there are left out, and those of which no pose meets what the nodes require.
     After an interrupt during a proof the remaining schemes are solved without one.
 
     Args:
@@ -144,9 +145,12 @@ def compare(
     applicable = [s for s in map(as_scheme, schemes) if s.not_applicable(scenario) is None]
     solutions = []
     for done, scheme in enumerate(applicable, start=1):
-        solution = solve(scenario, scheme, **options)
-        solutions.append(solution)
-        if solution.interrupted:
+        try:
+            solutions.append(solve(scenario, scheme, **options))
+        except RequirementError:
+            if scheme is Scheme.OPTIMUM:  # then none meets them
+                raise
+        if solutions and solutions[-1].interrupted:
             options["certify"] = False
         if on_progress is not None:
             on_progress(done, len(applicable))

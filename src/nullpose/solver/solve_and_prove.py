@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from nullpose.errors import SolveError
+from nullpose.errors import RequirementError
 from nullpose.physics.decibel import to_db
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -131,7 +131,7 @@ def _within_requirements(
     """Return the index of a field and a pose under it that meets the requirements of a mean's ratios.
 
     Raises:
-        SolveError: there is none, or none was found.
+        RequirementError: there is none, or none was found.
     """
     nearest = solve_and_prove(family.required_ratios, fields, replace(options, of_rate=False))
     found = nearest.incumbent
@@ -141,7 +141,7 @@ def _within_requirements(
     proved = ""
     if bound is not None and bound < 1.0:
         proved = f", and proved: every pose misses one by {-to_db(bound):.6g} dB or more"
-    raise SolveError(
+    raise RequirementError(
         "nodes.min_sinr_db: no pose was found that meets every requirement; the best misses one by "
         f"{missed_db:.6g} dB{proved}. Lower min_sinr_db by as much, or widen the airspace"
     )

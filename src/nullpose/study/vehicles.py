@@ -160,14 +160,14 @@ def _table(
     on_progress: OnProgress,
     left_out: dict[str, str],
 ) -> ResultTable:
-    """Solve a scenario in each case; leave out vehicles without a pose, but for the omnidirectional one."""
+    """Solve a scenario in each case; leave out those without a pose, but not the one that has any pose."""
     chosen = SolveOptions(**options).of(scenario)
     rows: list[ResultRow] = []
     for case in report_steps(cases, on_progress):
         try:
             result = solve_case(case, options)
         except SolveError as error:
-            if case.airframe is None or case.name == OMNIDIRECTIONAL:
+            if case.array is not None or case.name in (OMNIDIRECTIONAL, Scheme.OPTIMUM.value):
                 raise
             left_out[case.name] = str(error)
         else:

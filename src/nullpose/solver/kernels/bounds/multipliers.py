@@ -54,9 +54,10 @@ _FINEST = 1e-10  # and at one position
 _LOOSE = 0.03  # and in units of a box's size
 _INTERIOR = 0.01  # and of an interior point's, likewise
 _BARELY = 1e-9
+_NEARLY = 1e-2  # short of requirements beyond which these need no help from the mean to exclude a box
 _EASED = 0.2  # of a box's size: by how much requirements that no form meets are eased beyond what one meets
 _STRICTER = 1e-4  # than required, so that an axis near the form's is likely to meet what is required
-_MET = 1.1  # times a requirement, from where on a form leaves room enough inside it
+_MET = 1.001  # times a requirement, from where on a form leaves room enough inside it
 _GRID = 9  # of lines across a cell
 
 
@@ -227,15 +228,14 @@ def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarse
     """Fill the form at which a mean's tangent is best, and multipliers; return their value and if it is met.
 
     The value is minus infinity if no axis was met inside the row's cell and band. Where no form meets the
-    requirements, these are eased until one does; or, where that is more than what the box is wide, their
-    multipliers stand alone.
+    requirements, these are eased until one does; or their multipliers stand alone, where that bounds more.
     """
     ratios, start, matrix, turn = family.shares.shape[0], scratch(6), scratch(6), scratch(3, 3)
     row[COUNT], row[TOUCH:BALL] = 0.0, 0.0
     if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
         return -math.inf, False
     is_horizontal, accuracy = has_horizontal_axes(axis_field), multiplier_accuracy(coarseness)
-    required, share, is_met = np.flatnonzero(family.requirements), 1.0, True
+    required, share, is_met, alone = np.flatnonzero(family.requirements), 1.0, True, math.inf
     first = sides + required.shape[0]
     forms, multipliers, weights = np.empty((first + ratios, 6)), np.empty(first + ratios), np.zeros(ratios)
     for k in range(first + ratios):
@@ -252,10 +252,10 @@ def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarse
         met = dual_multipliers(
             forms, sides, first, 1.0, _MET, accuracy, start, multipliers, matrix, family.shares[:0], 0.0
         )
-        is_met = met > 1.0 + _BARELY
-        if met < 1.0 - coarseness:
-            keep_required(family, required, sides, multipliers, pool, weights, row)
-            return math.log(max(met, 1e-290) * row[LEVEL]), False
+        is_met, alone = met > 1.0 + _BARELY, math.log(max(met, 1e-290) * row[LEVEL])
+        keep_required(family, required, sides, multipliers, pool, weights, row)
+        if met < 1.0 - max(_NEARLY, coarseness):
+            return alone, False
         share = met * (1.0 - max(_STRICTER, _EASED * coarseness))
         if is_met:
             share = 1.0 + min(_STRICTER, 0.5 * (met - 1.0))
@@ -269,6 +269,8 @@ def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarse
     )  # fmt: skip
     for k in range(sides, first):  # the value at what is required, for which the multipliers hold as well
         found += multipliers[k] * (share - 1.0)
+    if not (is_met or found < alone):
+        return alone, False
     keep_required(family, required, sides, multipliers, pool, weights, row)
     top_eigenvector(matrix, v)
     for i in range(3):  # out of whitened coordinates, and out of the frame
@@ -281,6 +283,7 @@ def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarse
 @inner_kernel
 def keep_required(family, required, sides, multipliers, pool, weights, row):
     """Keep the multipliers of constraints: of the cell's sides, and of requirements, over these."""
+    weights[:] = 0.0
     copy_into(multipliers[:sides], pool.shares)
     for i in range(required.shape[0]):
         weights[required[i]] = multipliers[sides + i] / family.requirements[required[i]]
