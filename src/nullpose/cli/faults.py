@@ -48,8 +48,8 @@ class FaultReportingGroup(TyperGroup):
                 result = super().invoke(ctx)
                 sys.stdout.flush()
             except NullposeError as error:
-                is_ours = isinstance(error, SolveError) and not isinstance(error, RequirementError)
-                code = INTERNAL if is_ours else BAD_INPUT
+                is_internal = isinstance(error, SolveError) and not isinstance(error, RequirementError)
+                code = INTERNAL if is_internal else BAD_INPUT
                 say(_as_json(error, code) if as_json else f"error: {error}", err=True, broken=not as_json)
                 raise typer.Exit(code) from error
             except _WRONG_USAGE as error:

@@ -46,12 +46,12 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
     ratios, weights = rows[:, node.INDEX : node.WEIGHT].astype(np.int64), rows[:, node.WEIGHT : node.TOUCH]
     has_mix, count = np.isin(test, (WORLD, TOWARDS, AFFINE)), rows[:, node.COUNT].astype(np.int64)
     if len(family.shares):
-        tangents, required = np.empty((2, len(rows), len(family.shares)))
+        # the numbers of requirements follow those of the ratios
+        tangents, required = np.zeros((2, len(rows), len(family.shares)))
         fill_tangents(family.arrays, rows, tangents)
-        required[:] = 0.0  # their numbers follow those of the ratios
         used = np.arange(node.SUPPORT) < count[:, None]
         required[np.nonzero(used)[0], ratios[used]] = weights[used]
-        ratios, weights, count = _used(np.hstack([tangents, required]))
+        ratios, weights, count = _order_multipliers(np.hstack([tangents, required]))
     mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0))
     point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0
@@ -81,7 +81,7 @@ def _of_profile(proof: Proof) -> Leaves:
     widest = math.pi / 2.0 if proof.is_even else math.pi
     turns = rows[:, [3, 5]], rows[:, [HALF + 3, HALF + 5]]
     turned = _parts(np.array([0.0, -math.pi]), np.array([widest, math.pi]), *turns)
-    mix, mixes = _mixes(*_used(rows[:, WARM:]))
+    mix, mixes = _mixes(*_order_multipliers(rows[:, WARM:]))
     return Leaves(
         box=_parts(proof.root[0], proof.root[1], rows[:, :3], rows[:, HALF : HALF + 3]),
         cell=np.concatenate([rows[:, [CHART]].astype(np.int64), turned], axis=1),
@@ -97,7 +97,7 @@ def _of_profile(proof: Proof) -> Leaves:
     )
 
 
-def _used(weights: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
+def _order_multipliers(weights: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
     """Order multipliers, (l, n), so that those that count come first; return which they are and how many."""
     order = np.argsort(weights <= 0.0, axis=1, kind="stable")
     count = np.maximum(1, np.sum(weights > 0.0, axis=1))
