@@ -15,7 +15,7 @@ from tests.certificate.plain import (
     seeds,
 )
 
-from nullpose.certificate.affine_test import _quadratic_negative, affine_holds, link_jet
+from nullpose.certificate.affine_test import _quadratic_negative, affine_holds, link as link_over
 from nullpose.certificate.certificate import AFFINE
 from nullpose.certificate.channels import excess
 from nullpose.certificate.interval import Interval
@@ -61,7 +61,7 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.
     """The exact link at any position of a box lies within value, slopes and second derivatives."""
     rng = np.random.default_rng(seed)
     boxes, j = one_box(rng), int(rng.integers(4))
-    jet = link_jet(field, boxes, POINTS[j][None], leak, dipole)
+    jet = link_over(field, boxes, POINTS[j][None], leak, dipole)
     value, slopes, hessian, ranged = jet.value, jet.slopes, jet.bends, jet.over
     if not np.all(np.isfinite(hessian.low) & np.isfinite(hessian.high)):
         return
@@ -86,7 +86,7 @@ def test_expansions_bound_the_links_of_channels(
     rng = np.random.default_rng(seed)
     family, boxes, dipole = random_family(rng, 1, 1, channel=channel), one_box(rng), DIPOLES[seed % 3]
     gain = excess(family, boxes, np.zeros(1, dtype=np.int64), is_above)
-    jet = link_jet(field, boxes, family.points_m[:1], family.leak, dipole, gain)
+    jet = link_over(field, boxes, family.points_m[:1], family.leak, dipole, gain)
     assume(np.all(np.isfinite(jet.bends.low) & np.isfinite(jet.bends.high)))
     x = rng.uniform(-1.0, 1.0, (50, 3)) * boxes.half[0]
     there = [

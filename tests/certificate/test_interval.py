@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from nullpose.certificate.interval import Interval, dot
+from nullpose.certificate.interval import Interval, _down, _up, dot
 
 SPECIAL = [
     0.0,
@@ -152,3 +152,17 @@ def test_results_stay_tight() -> None:
         Interval(x).squared(),
     ):
         assert np.all(result.high - result.low <= 4e-15)
+
+
+@given(
+    x=st.one_of(numbers, st.floats(allow_nan=False)), step=st.integers(-2, 2), power=st.integers(-1074, 1023)
+)
+def test_rounding_goes_to_the_next_numbers_at_least(x: float, step: int, power: int) -> None:
+    """Beside powers of two and zero, too, where the distance of numbers changes; and by no more than two."""
+    edge = np.ldexp(1.0, power)
+    beside = edge * (1.0 + step * 2.0**-53)
+    with np.errstate(over="ignore", under="ignore"):
+        for number in np.array([x, beside, -beside]):
+            below, above = np.nextafter(number, -np.inf), np.nextafter(number, np.inf)
+            assert np.nextafter(below, -np.inf) <= _down(number) <= below
+            assert np.nextafter(above, np.inf) >= _up(number) >= above

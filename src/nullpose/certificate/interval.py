@@ -1,7 +1,7 @@
 """Interval arithmetic on arrays, rounded outward: what is computed contains what is meant.
 
-IEEE 754 has sums, products, quotients and square roots correctly rounded, so that one step to the next
-floating-point number on either side encloses the exact result. Nothing else is used.
+IEEE 754 has sums, products, quotients and square roots correctly rounded, so that the next
+floating-point numbers on either side enclose the exact result. Nothing else is used.
 """
 
 from __future__ import annotations
@@ -14,13 +14,21 @@ from numpy.typing import ArrayLike
 
 from nullpose.physics.types import FloatArray
 
+_MORE, _LEAST = 2.0**-53 * (1.0 + 2.0**-52), 5e-324
+_LARGEST = float(np.finfo(float).max)
+
 
 def _down(x: FloatArray) -> FloatArray:
-    return np.nextafter(x, -np.inf)
+    """Return numbers at or below those next to x.
+
+    The step is more than half of the way to either neighbour, so that its rounding leads there at least.
+    """
+    x = np.minimum(x, _LARGEST)  # what is too large for a number is no less than that
+    return x - (np.abs(x) * _MORE + _LEAST)
 
 
 def _up(x: FloatArray) -> FloatArray:
-    return np.nextafter(x, np.inf)
+    return -_down(-x)
 
 
 class Interval:
@@ -127,6 +135,11 @@ ANY = Interval(-np.inf, np.inf)
 def as_interval(value: Interval | ArrayLike) -> Interval:
     """Return exact numbers as an interval, and an interval as it is."""
     return value if isinstance(value, Interval) else Interval(value)
+
+
+def common(a: Interval, b: Interval) -> Interval:
+    """Return what two enclosures of the same numbers have in common; undefined ends do not count."""
+    return Interval(np.fmax(a.low, b.low), np.fmin(a.high, b.high))
 
 
 def dot(a: Interval, b: Interval | FloatArray) -> Interval:

@@ -1,0 +1,199 @@
+"""Taylor numbers: a formula over boxes, with its two derivatives, in interval arithmetic.
+
+A formula of coordinates is stated once, as in "The physics". Sums, products and functions of functions find
+its value and slopes at the centre of each box, and the ranges of both and of its second derivatives over it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from nullpose.certificate.elementary import exp, log
+from nullpose.certificate.interval import Interval, as_interval, common, where
+from nullpose.objectives.ratios import IntArray
+from nullpose.physics.types import FloatArray
+
+Rule: TypeAlias = tuple[Interval, Interval, Interval]
+"""A function of one number and its first two derivatives."""
+
+
+@lru_cache
+def pairs(n: int) -> tuple[IntArray, IntArray, IntArray]:
+    """Return both coordinates of each second derivative, squares first, and, (n, n), where each is."""
+    off = np.triu_indices(n, 1)
+    first, second = (np.append(np.arange(n), side) for side in off)
+    place = np.zeros((n, n), dtype=np.int64)
+    place[first, second] = place[second, first] = np.arange(len(first))
+    return first, second, place
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Taylor:
+    """Numbers, or vectors along a first axis, as functions of n coordinates over b boxes.
+
+    Args:
+        half: (n, b) bounds on the distance of each coordinate from its value at the centre.
+        value: (..., b) at the centres.
+        slopes: (..., n, b) first derivatives there.
+        over: (..., b) what they are all over the boxes.
+        steep: (..., n, b) first derivatives all over the boxes.
+        bends: (..., n (n + 1) / 2, b) second derivatives all over the boxes, by :func:`pairs`.
+    """
+
+    __array_ufunc__ = None  # numpy must leave mixed expressions to the operators below
+
+    half: FloatArray
+    value: Interval
+    slopes: Interval
+    over: Interval
+    steep: Interval
+    bends: Interval
+
+    @property
+    def _parts(self) -> tuple[Interval, ...]:
+        return self.value, self.slopes, self.over, self.steep, self.bends
+
+    def __getitem__(self, index: Any) -> Taylor:
+        return Taylor(self.half, *(part[index] for part in self._parts))
+
+    def __add__(self, other: Taylor | Interval | FloatArray | float) -> Taylor:
+        if not isinstance(other, Taylor):
+            return replace(self, value=self.value + other, over=self.over + other)
+        return Taylor(self.half, *(a + b for a, b in zip(self._parts, other._parts, strict=True))).tightened()
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Taylor:
+        return Taylor(self.half, *(-part for part in self._parts))
+
+    def __sub__(self, other: Taylor | Interval | FloatArray | float) -> Taylor:
+        return self + -other
+
+    def __rsub__(self, other: FloatArray | float) -> Taylor:
+        return -self + other
+
+    def __mul__(self, other: Taylor | Interval | FloatArray | float) -> Taylor:
+        if not isinstance(other, Taylor):
+            scale = as_interval(other)
+            scales = scale, _each(scale), scale, _each(scale), _each(scale)
+            return Taylor(self.half, *(part * by for part, by in zip(self._parts, scales, strict=True)))
+        (i, j, _), a, b = pairs(len(self.half)), self.steep, other.steep
+        mixed = a[..., i, :] * b[..., j, :] + a[..., j, :] * b[..., i, :]
+        return Taylor(
+            self.half,
+            self.value * other.value,
+            self.slopes * _each(other.value) + other.slopes * _each(self.value),
+            self.over * other.over,
+            a * _each(other.over) + b * _each(self.over),
+            self.bends * _each(other.over) + other.bends * _each(self.over) + mixed,
+        ).tightened()
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Taylor) -> Taylor:
+        return self * other.of(inverse)
+
+    def of(self, function: Callable[[Interval], Rule]) -> Taylor:
+        """Return a function of these numbers, given by its rule."""
+        return self.composed(function(self.value), function(self.over))
+
+    def composed(self, at: Rule, over: Rule) -> Taylor:
+        """Return a function of these numbers, from its rule at the centres and all over the boxes."""
+        i, j, _ = pairs(len(self.half))
+        square = self.steep[..., i, :] * self.steep[..., j, :]
+        square = Interval(np.where((i == j)[:, None], np.maximum(square.low, 0.0), square.low), square.high)
+        return Taylor(
+            self.half,
+            at[0],
+            self.slopes * _each(at[1]),
+            over[0],
+            self.steep * _each(over[1]),
+            self.bends * _each(over[1]) + square * _each(over[2]),
+        ).tightened()
+
+    def squared(self) -> Taylor:
+        """Return the squares."""
+        return self.of(lambda x: (x.squared(), x * 2.0, Interval(2.0)))
+
+    def total(self) -> Taylor:
+        """Return the sum over the first axis."""
+        return Taylor(self.half, *(part.total() for part in self._parts)).tightened()
+
+    def tightened(self) -> Taylor:
+        """Return the same functions, whose ranges are no wider than what the derivatives leave."""
+        swing = _reach(self.bends.magnitude()[..., pairs(len(self.half))[2], :], self.half)
+        steep = Interval(self.slopes.magnitude()) + Interval(swing) * 0.5
+        reach = _reach(steep.high, self.half)
+        return replace(
+            self,
+            over=common(self.over, self.value + Interval(-reach, reach)),
+            steep=common(self.steep, self.slopes + Interval(-swing, swing)),
+        )
+
+    def within(self, low: float, high: Interval) -> Taylor:
+        """Return the same functions, which are between a number and others."""
+        return replace(self, over=common(self.over, Interval(low, high.high)))
+
+    def alike(self, number: Interval | FloatArray | float) -> Taylor:
+        """Return constants over the same boxes."""
+        n = len(self.half)
+        zero, constant = Interval(np.zeros((n, 1))), as_interval(number)
+        return Taylor(self.half, constant, zero, constant, zero, Interval(np.zeros((n * (n + 1) // 2, 1))))
+
+
+def coordinates(value: Interval, over: Interval) -> Taylor:
+    """Return the coordinates themselves, (n, b), from what they are at the centres and over the boxes."""
+    n = len(value.low)
+    unit, zero = Interval(np.eye(n)[:, :, None]), Interval(np.zeros((n, n * (n + 1) // 2, 1)))
+    return Taylor((over - value).magnitude(), value, unit, over, unit, zero)
+
+
+def chosen(mask: np.ndarray, a: Taylor, b: Taylor) -> Taylor:
+    """Return a where the mask holds, else b."""
+    return Taylor(a.half, *(where(mask, x, y) for x, y in zip(a._parts, b._parts, strict=True)))
+
+
+def cross(x: Taylor, y: Taylor | Interval) -> Taylor:
+    """Return the cross products of vectors."""
+    return x[[1, 2, 0]] * y[[2, 0, 1]] - x[[2, 0, 1]] * y[[1, 2, 0]]
+
+
+def inverse(x: Interval) -> Rule:
+    """Return ``1 / x`` by its rule."""
+    value = 1.0 / x
+    square = value.squared()
+    return value, -square, square * value * 2.0
+
+
+def root(x: Interval) -> Rule:
+    """Return the square root of what is positive by its rule."""
+    value = x.sqrt()
+    slope = 0.5 / value
+    return value, slope, -(slope / x) * 0.5
+
+
+def logarithm(x: Interval) -> Rule:
+    """Return the logarithm of what is positive by its rule."""
+    slope = 1.0 / x
+    return log(x), slope, -slope.squared()
+
+
+def exponential(x: Interval) -> Rule:
+    """Return ``e^x`` by its rule."""
+    value = exp(x)
+    return value, value, value
+
+
+def _each(x: Interval) -> Interval:
+    """Return numbers for each of the derivatives, which lie along the axis before the last."""
+    return Interval(*(end[..., None, :] if end.ndim else end for end in x.ends))
+
+
+def _reach(steep: FloatArray, half: FloatArray) -> FloatArray:
+    """Return bounds on how far slopes, (..., n, b), lead within the boxes."""
+    return sum((Interval(steep[..., i, :]) * h for i, h in enumerate(half)), Interval(0.0)).high
