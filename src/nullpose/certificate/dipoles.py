@@ -20,9 +20,8 @@ from nullpose.certificate.forms import (
     top_vectors,
 )
 from nullpose.certificate.interval import Interval, dot, where
-from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import ROUNDING, VECTOR_BEND, VECTOR_SLOPE
-from nullpose.certificate.shear import Shear, link_vector, shear_of, sheared, size_of, smaller
+from nullpose.certificate.shear import Jet, Shear, link_vector, shear_of, sheared, size_of, smaller
 from nullpose.certificate.weighted_sum import Term, weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray

@@ -1,4 +1,4 @@
-"""Links of an antenna that is the same all round, over cells of positions and axes, with two derivatives."""
+"""Links of an antenna that is the same all round, over cells of positions and axes, as Taylor numbers."""
 
 from __future__ import annotations
 
@@ -7,60 +7,57 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.jets import PAIRS, Jet, flat
+from nullpose.certificate.interval import Interval, stack, where
+from nullpose.certificate.taylor import Taylor, coordinates, inverse_root
 from nullpose.physics.types import FloatArray
 
 PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
 _TERMS, _REST = 9, 3e-18  # of the series: (pi / 4)^18 / 18! is less
-_SQUARES = [n for n, (i, j) in enumerate(PAIRS) if i == j]
 
-Link: TypeAlias = tuple[Jet, Jet]
+Link: TypeAlias = tuple[Taylor, Taylor]
 """The cosine between the antenna's axis and the direction to a point, and one over the squared distance."""
 
 
 def links_of(
-    apart: Interval, anchor: int, offset: Interval, turns: list[tuple[Interval, Interval]]
+    apart: Interval, anchor: int, offset: Interval, turns: list[tuple[Interval, Interval]], half: FloatArray
 ) -> list[Link]:
     """Evaluate, for each point, the cosine to the antenna's axis, and one over the squared distance.
 
     Args:
         apart: (m, 3) from the anchor to each point, in the chart's order.
         anchor: which point that is.
-        offset: (3, b) from the positions to the anchor.
-        turns: sine and cosine of the angle, then of the spin.
+        offset: (3, b) from the positions to the anchor, at the centres.
+        turns: sine and cosine of the angle, then of the spin, at the centres.
+        half: (5, b) the cells' half sides.
     """
-    (su, cu), (ss, cs) = turns
-    angle = flat(su, {3: cu}, {_SQUARES[3]: -su})
-    along = flat(cu, {3: -su}, {_SQUARES[3]: -cu})
-    spin = flat(ss, {4: cs}, {_SQUARES[4]: -ss})
-    across = angle * flat(cs, {4: -ss}, {_SQUARES[4]: -cs})
-    upwards = angle * spin
-    level2 = _square(offset, (0, 2))
-    level, length = level2.inverse_root(), _square(offset, (0, 1, 2)).inverse_root()
-    both = level * length
+    centre = stack([*(-offset[i] for i in range(3)), *(Interval(np.zeros(half.shape[1])),) * 2])
+    cell = coordinates(centre, centre + Interval(-half, half))
+    (su, cu), (ss, cs) = (_sine_cosine_over(cell[i], turns[i - 3], half[i]) for i in (3, 4))
+    r = -cell[:3]
+    x, y, z = r[0], r[1], r[2]
+    f = x.squared() + z.squared()
+    level, length = f.of(inverse_root), r.squared().total().of(inverse_root)
+    across, upwards = su * cs, su * ss
     found = []
     for j, d in enumerate(apart[j] for j in range(len(apart.low))):
-        near = _square(offset + d[:, None], (0, 1, 2)).inverse_root()
-        if j == anchor:
-            found.append((along, near * near))
-            continue
-        level_offset = flat(offset[0] * d[0] + offset[2] * d[2], {0: -d[0], 2: -d[2]}, {})
-        whole = flat(offset[1] * d[1], {1: -d[1]}, {}) + level_offset + _square(offset, (0, 1, 2))
-        level_part = flat(offset[2] * d[0] - offset[0] * d[2], {2: -d[0], 0: d[2]}, {}) * level
-        height = flat(offset[1], {1: Interval(-1.0)}, {})
-        steep_part = (level2.times(d[1]) - height * level_offset) * both
-        cosine = (along * (whole * length) + upwards * steep_part - across * level_part) * near
-        found.append((cosine, near * near))
+        w = r + d[:, None]
+        near = w.squared().total().of(inverse_root)
+        cosine = cu
+        if j != anchor:
+            cosine = cu * ((r * w).total() * length)
+            cosine = cosine + upwards * ((f * d[1] - y * (x * d[0] + z * d[2])) * (level * length))
+            cosine = (cosine - across * ((z * d[0] - x * d[2]) * level)) * near
+        found.append((cosine, near.squared()))
     return found
 
 
-def _square(offset: Interval, sides: tuple[int, ...]) -> Jet:
-    """Sum the squares of some coordinates of an offset, (3, b), which positions shorten."""
-    return flat(
-        Interval(*(end[list(sides)] for end in offset.ends)).squared().total(),
-        {i: offset[i] * -2.0 for i in sides},
-        {_SQUARES[i]: Interval(2.0) for i in sides},
+def _sine_cosine_over(
+    angle: Taylor, turn: tuple[Interval, Interval], half: FloatArray
+) -> tuple[Taylor, Taylor]:
+    """Return sine and cosine of an angle over cells, from those at the centres."""
+    (s, c), (sines, cosines) = turn, _about(turn, half)
+    return angle.composed((s, c, -s), (sines, cosines, -sines)), angle.composed(
+        (c, -s, -c), (cosines, -sines, -cosines)
     )
 
 
@@ -84,7 +81,7 @@ def sine_cosine(x: FloatArray) -> tuple[Interval, Interval]:
     return where(swap, cosine, sine) * first, where(swap, sine, cosine) * second
 
 
-def about(turn: tuple[Interval, Interval], half: FloatArray) -> tuple[Interval, Interval]:
+def _about(turn: tuple[Interval, Interval], half: FloatArray) -> tuple[Interval, Interval]:
     """Enclose sine and cosine within so many radians of an angle, (b,)."""
     sine, cosine = turn
     shrunk = Interval(np.maximum((1.0 - Interval(half).squared() * 0.5).low, -1.0), np.ones(len(half)))

@@ -21,10 +21,10 @@ import numpy as np
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import DEEPEST, Leaves
 from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.jets import PAIRS, largest
 from nullpose.certificate.plain_tests import kept_out_holds
 from nullpose.certificate.profile import Profile, ProfileField
-from nullpose.certificate.profile_links import PI, Link, about, links_of, sine_cosine
+from nullpose.certificate.profile_links import PI, Link, links_of, sine_cosine
+from nullpose.certificate.taylor import pairs
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -137,9 +137,7 @@ def _negative(
         if np.any(left):
             missed[left], side[left] = _negative(family, field, leaves.chosen(left), cells.chosen(left))
         return missed, side
-    wide = offset + Interval(-half[:3], half[:3]), [about(t, h) for t, h in zip(turns, half[3:], strict=True)]
-    links = links_of(apart, anchor, offset, turns), links_of(apart, anchor, *wide)
-    bound, shares = _largest(family, field.profile, leaves, links, half)
+    bound, shares = _largest(family, field.profile, leaves, links_of(apart, anchor, offset, turns, half))
     # a gain that hardly changes needs no cuts across the turn: what adds most is halved
     length_m = np.linalg.norm(offset.middle(), axis=0)
     sizes = half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))])
@@ -150,7 +148,7 @@ def _negative(
 
 
 def _largest(
-    family: Family, profile: Profile, leaves: Leaves, links: tuple[list[Link], list[Link]], half: FloatArray
+    family: Family, profile: Profile, leaves: Leaves, links: list[Link]
 ) -> tuple[FloatArray, FloatArray]:
     """Return upper bounds of the sums over cells, (b,), and about what each coordinate adds to them, (5, b).
 
@@ -158,26 +156,20 @@ def _largest(
         family: the ratios.
         profile: the antenna's gain.
         leaves: with multipliers and level.
-        links: of each point, at the centres and all over the cells.
-        half: (5, b) the cells' half sides.
+        links: of each point.
     """
     identity, factors = _factors(family, leaves)
-    at_centre, over = identity, identity
-    slopes, bends = Interval(np.zeros((5, len(leaves)))), Interval(np.zeros((len(PAIRS), len(leaves))))
-    for (cosine, near), (wide, near_wide), weight in zip(*links, factors, strict=True):
-        reach = (wide.slopes * Interval(-half, half)).total() + cosine.value
-        c = Interval(np.fmax(wide.value.low, reach.low), np.fmin(wide.value.high, reach.high))
-        ranges = [profile.within(n, c) for n in range(3)]
-        link = cosine.of(*(profile.near(n, cosine.value) for n in range(3))) * near
-        at_centre = at_centre + link.value * weight
-        slopes = slopes + link.slopes * weight
-        link = wide.of(*ranges) * near_wide
-        over = over + link.value * weight
-        bends = bends + link.bends * weight
-    shares, bent = slopes.magnitude() * half, bends.magnitude()
-    for pair, (i, j) in enumerate(PAIRS):
-        shares[[i, j]] += bent[pair] * half[i] * half[j]
-    return np.asarray(np.fmin(largest(at_centre, slopes, bends, half).high, over.high)), shares
+    total = links[0][0].alike(identity)
+    for (cosine, near), weight in zip(links, factors, strict=True):
+        at, over = (
+            (f(0, c), f(1, c), f(2, c))
+            for f, c in ((profile.near, cosine.value), (profile.within, cosine.over))
+        )
+        total = total + cosine.composed(at, over) * near * weight
+    shares, bent = total.slopes.magnitude() * total.half, total.bends.magnitude()
+    for pair, (i, j) in enumerate(zip(*pairs(5)[:2], strict=True)):
+        shares[[i, j]] += bent[pair] * total.half[i] * total.half[j]
+    return np.asarray(np.fmin(total.largest().high, total.over.high)), shares
 
 
 def _out_of_reach(

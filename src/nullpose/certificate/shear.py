@@ -16,7 +16,6 @@ from nullpose.certificate.certificate import TOWARDS, Leaves
 from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITIES, ROW, gram, squares
 from nullpose.certificate.frames import UNIT, axes_across
 from nullpose.certificate.interval import Interval, dot, stack, swapped, where
-from nullpose.certificate.jets import Jet
 from nullpose.certificate.lemmas import DIRECTION_THIRD, ROUNDING, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -24,6 +23,23 @@ from nullpose.problem.family import Family
 
 _UPRIGHT = 0.4
 _SHARP = 1e-8  # how well an anchor's vector must be known, so that the basis is orthonormal but for ROUNDING
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Jet:
+    """Vectors over boxes, with their components along the first axis, and their derivatives.
+
+    Args:
+        value: (3, b) what they are at the centres.
+        slopes: (3, 3, b) first derivatives there, along the second axis.
+        bends: (3, 6, b) second derivatives there.
+        over: (b,) bounds on the third derivatives along any unit direction, all over the boxes.
+    """
+
+    value: Interval
+    slopes: Interval
+    bends: Interval
+    over: Interval
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -135,6 +135,24 @@ class Taylor:
             steep=common(self.steep, self.slopes + Interval(-swing, swing)),
         )
 
+    def largest(self) -> Interval:
+        """Return bounds above over the boxes, (b,), of numbers.
+
+        Of ``f(c) + G.x + x.H x / 2`` with ``|x_i| <= h_i``: mixed terms are split by
+        ``2 |x_i x_j| <= x_i^2 h_j / h_i + x_j^2 h_i / h_j``, which leaves a parabola for each coordinate.
+        """
+        place, sizes, total = pairs(len(self.half))[2], self.bends.magnitude(), self.value
+        for i, h in enumerate(self.half):
+            others = [Interval(sizes[place[i, j]]) * k for j, k in enumerate(self.half) if j != i]
+            # what x_i can add: (G + (mixed + own h / 2)) h at the end, or the parabola's top before it
+            steep = Interval(self.slopes[i].magnitude())
+            curve = sum(others, Interval(self.bends[i].high) * h)
+            end = steep * h + curve * h * 0.5
+            top = steep.squared() * h / (curve * -2.0)
+            before = (curve.high < 0.0) & ~(steep.low >= -curve.low)
+            total = total + where(before, top, end).most()
+        return total
+
     def within(self, low: float, high: Interval) -> Taylor:
         """Return the same functions, which are between a number and others."""
         return replace(self, over=common(self.over, Interval(low, high.high)))
@@ -175,6 +193,14 @@ def root(x: Interval) -> Rule:
     value = x.sqrt()
     slope = 0.5 / value
     return value, slope, -(slope / x) * 0.5
+
+
+def inverse_root(x: Interval) -> Rule:
+    """Return ``1 / sqrt(x)`` of what is positive by its rule."""
+    value = 1.0 / x.sqrt()
+    square = value.squared()
+    slope = value * square * -0.5
+    return value, slope, slope * square * -1.5
 
 
 def logarithm(x: Interval) -> Rule:
