@@ -28,6 +28,7 @@ def family(random_problem: Callable) -> Family:
         shadow_sides=np.array([[1.0, 0.0, 0.0, 3.0, 3.5]]),
         shares=np.array([0.2, 0.3, 0.5]),
         requirements=np.array([0.1, 0.0, 0.5]),
+        pairs=np.array([[0, 1], [2, 1]]),
         piece_start=np.array([0, 1]),
         piece_sides=np.array([[1.0, 3.0, 4.0, 0.0, 2.0]]),
         zone_kind=np.array([1]),

@@ -63,6 +63,28 @@ RELAY_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
     ({"eavesdroppers": [AT]}, {"eavesdroppers": "no meaning", "eavesdroppers[0].position_m": "different"}),
     ({"destination": THERE | {"antenna": "profile"}}, {"destination.antenna_profile": "missing"}),
 ]
+JAMMED = SECRECY | {
+    "objective": "friendly-jamming",
+    "sources": [{"position_m": [9.0, 9.0, 0.0], "power_w": 1}],
+}
+TWO = [{"position_m": [9.0, at, 0.0], "power_w": 1} for at in (8.0, 9.0)]
+JAMMED_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
+    ({"sources": None}, {"sources": "a source, in a table of its own headed [[sources]]; add it"}),
+    ({"transmitter": None}, {"transmitter": "a table headed [transmitter]; add it"}),
+    ({"eavesdroppers": None}, {"eavesdroppers": "headed [[eavesdroppers]]; add it"}),
+    ({"sources": TWO}, {"nodes[0].from": "missing, and there are 2 sources: A1, A2; add the name of one"}),
+    ({"sources": TWO, "nodes": [AT | {"from": "A2"}]}, {}),
+    ({"sources": TWO, "nodes": [AT | {"from": "A3"}]}, {"nodes[0].from": 'got "A3", an unknown source'}),
+    ({"sources": [TWO[0] | {"name": "A"}], "nodes": [AT | {"from": "B"}]}, {"nodes[0].from": "here are A"}),
+    ({"nodes": [AT | {"weight": 2}]}, {"nodes[0].weight": "has no meaning with"}),
+    ({"sources": [THERE | {"power_w": 1}]}, {"sources[0].position_m": "must be at different places"}),
+    ({"sources": [{"position_m": [9.0, 9.0, 0.0]}]}, {"sources[0]": "power_w"}),
+    ({"objective": "secrecy-rate"}, {"sources": 'remove it, or write objective = "friendly-jamming"'}),
+    (
+        {"objective": "secrecy-rate", "sources": None, "nodes": [AT | {"from": "A1"}]},
+        {"nodes[0].from": 'write objective = "friendly-jamming"'},
+    ),
+]
 
 
 @pytest.mark.parametrize(
@@ -71,6 +93,7 @@ RELAY_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
         *((DOWNLINK | changes, faults) for changes, faults in DOWNLINK_CASES),
         *((RELAY | changes, faults) for changes, faults in RELAY_CASES),
         *((SECRECY | changes, faults) for changes, faults in SECRECY_CASES),
+        *((JAMMED | changes, faults) for changes, faults in JAMMED_CASES),
         *((small(**changes), faults) for changes, faults in SINR_CASES),
     ],
 )

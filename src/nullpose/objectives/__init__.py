@@ -9,6 +9,7 @@ from __future__ import annotations
 from nullpose.objectives import custom as objective
 from nullpose.objectives.custom import Custom
 from nullpose.objectives.downlink import DOWNLINK
+from nullpose.objectives.friendly_jamming import FRIENDLY_JAMMING
 from nullpose.objectives.min_sinr import MIN_SINR
 from nullpose.objectives.proportional_fair import PROPORTIONAL_FAIR
 from nullpose.objectives.ratios import FloatArray, IntArray, Ratios
@@ -30,7 +31,7 @@ __all__ = [
     "objective",
 ]
 
-_ALL = (MIN_SINR, SUM_RATE, PROPORTIONAL_FAIR, SECRECY_RATE, DOWNLINK, RELAY)
+_ALL = (MIN_SINR, SUM_RATE, PROPORTIONAL_FAIR, SECRECY_RATE, DOWNLINK, RELAY, FRIENDLY_JAMMING)
 RECORDS = {record.name: record for record in _ALL}
 
 USUAL = MIN_SINR.name

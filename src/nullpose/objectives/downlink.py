@@ -8,7 +8,7 @@ import numpy as np
 
 from nullpose.objectives.min_sinr import with_margins
 from nullpose.objectives.ratios import Ratios, points_of, snr_weights
-from nullpose.objectives.record import ObjectiveRecord, Quantity
+from nullpose.objectives.record import OF_SOURCES, ObjectiveRecord, Quantity
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
@@ -43,5 +43,5 @@ DOWNLINK = ObjectiveRecord(
     interferers="eavesdroppers",  # of which it has none: only noise stands in the denominator
     transmits=True,
     needs=("transmitter",),
-    unused=("eavesdroppers", "destination"),
+    unused=("eavesdroppers", "destination", *OF_SOURCES),
 )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nullpose.objectives.ratios import FloatArray, Ratios, gains_of, points_of
-from nullpose.objectives.record import ObjectiveRecord, Quantity
+from nullpose.objectives.record import OF_SOURCES, ObjectiveRecord, Quantity
 
 if TYPE_CHECKING:
     from nullpose.scenario import Scenario
@@ -64,5 +64,5 @@ MIN_SINR = ObjectiveRecord(
     evaluate=lambda reception: with_margins(reception.scenario, reception.sinr),
     interferers="jammers",
     needs=("nodes.power",),
-    unused=("transmitter", "eavesdroppers", "destination", "nodes.noise", "nodes.jamming"),
+    unused=("transmitter", "eavesdroppers", "destination", "nodes.noise", "nodes.jamming", *OF_SOURCES),
 )

@@ -55,6 +55,8 @@ class Ratios(NamedTuple):
         offset: a, 0 or 1.
         requirements: (r,) the least that each ratio of a mean may be, 0 where any will do; or (0,), where
             none has to be anything.
+        pairs: (q, 2) two ratios each, where the smallest quotient of such is maximised: the first, of a
+            node, over the second, of an eavesdropper. Or (0, 2), where the smallest ratio is.
     """
 
     points_m: FloatArray
@@ -77,6 +79,7 @@ class Ratios(NamedTuple):
     shares: FloatArray = np.zeros(0)
     offset: float = 0.0
     requirements: FloatArray = np.zeros(0)
+    pairs: IntArray = np.zeros((0, 2), dtype=np.int64)
 
 
 def points_of(scenario: Scenario, *kinds: str, others: tuple[str, ...] = ()) -> dict[str, Any]:

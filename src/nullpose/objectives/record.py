@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 LEAST_RATE_BPS_HZ = 1e-3
 """The relative gap of a smaller rate is that of this one, bits/s/Hz; of a sum, times its weights."""
 
+OF_SOURCES = ("sources", "nodes.from")
+"""What only a drone has a use for that jams those who overhear transmitters on the ground."""
+
 _Numbers = TypeVar("_Numbers", float, FloatArray)
 
 

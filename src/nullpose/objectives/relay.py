@@ -8,7 +8,7 @@ import numpy as np
 
 from nullpose.objectives.min_sinr import ratios_at_drone, with_margins
 from nullpose.objectives.ratios import FloatArray, Ratios, snr_weights
-from nullpose.objectives.record import ObjectiveRecord, Quantity
+from nullpose.objectives.record import OF_SOURCES, ObjectiveRecord, Quantity
 
 if TYPE_CHECKING:
     from nullpose.physics import Reception
@@ -51,5 +51,5 @@ RELAY = ObjectiveRecord(
     evaluate=_evaluate,
     interferers="jammers",
     needs=("transmitter", "destination", "nodes.power"),
-    unused=("eavesdroppers", "nodes.noise", "nodes.jamming"),
+    unused=("eavesdroppers", "nodes.noise", "nodes.jamming", *OF_SOURCES),
 )

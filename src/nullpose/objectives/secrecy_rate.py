@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nullpose.objectives.ratios import FloatArray, Ratios, points_of, snr_weights
-from nullpose.objectives.record import ObjectiveRecord, Quantity
+from nullpose.objectives.record import OF_SOURCES, ObjectiveRecord, Quantity
 
 if TYPE_CHECKING:
     from nullpose.physics import Reception
@@ -58,5 +58,5 @@ SECRECY_RATE = ObjectiveRecord(
     interferers="eavesdroppers",
     transmits=True,
     needs=("transmitter", "eavesdroppers"),
-    unused=("destination", "nodes.weight", "nodes.min_sinr_db"),
+    unused=("destination", "nodes.weight", "nodes.min_sinr_db", *OF_SOURCES),
 )

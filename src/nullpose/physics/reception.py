@@ -9,7 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.physics.error_case import ErrorCase
-from nullpose.physics.secrecy import destination_snr, eavesdropper_snr, node_snr, secrecy_rate_of
+from nullpose.physics.secrecy import (
+    destination_snr,
+    eavesdropper_snr,
+    jammed_sinr,
+    node_snr,
+    overheard_sinr,
+    secrecy_rate_of,
+)
 from nullpose.physics.sinr import received_from_sources_w, sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
@@ -57,6 +64,17 @@ class Reception:
     def secrecy_rate(self) -> FloatArray:
         """Every node's secrecy rate, ``(..., n_nodes)``, bits/s/Hz."""
         return secrecy_rate_of(self.node_snr, self.eavesdropper_snr)
+
+    @cached_property
+    def jammed_sinr(self) -> FloatArray:
+        """Every node's SINR of its source, the drone's jamming counted as noise, ``(..., n_nodes)``."""
+        return jammed_sinr(self.scenario, self.node_snr)
+
+    @cached_property
+    def jammed_secrecy_rate(self) -> FloatArray:
+        """Every node's secrecy rate, where the drone jams eavesdroppers, ``(..., n_nodes)``, bits/s/Hz."""
+        overheard = overheard_sinr(self.scenario, self.eavesdropper_snr)
+        return secrecy_rate_of(self.jammed_sinr[..., None], overheard)[..., 0]
 
     @cached_property
     def received_w(self) -> FloatArray:

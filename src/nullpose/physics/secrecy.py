@@ -112,6 +112,38 @@ def secrecy_rate(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) -> 
     return secrecy_rate_of(node_snr(*pose), eavesdropper_snr(*pose))
 
 
+def jammed_sinr(scenario: Scenario, snr: FloatArray) -> FloatArray:
+    """Evaluate the SINR of every node that listens to a source on the ground while the drone jams.
+
+    ``SINR_k = S_k / (sigma_k^2 + J_k)``, with ``S_k`` what the node receives from its source, ``J_k`` what it
+    receives from the drone and ``sigma_k^2`` its noise, other jamming included.
+
+    Source: Bonilla Licea et al., arXiv:2408.09753 (GLOBECOM 2024), whose abstract states the problem.
+
+    Args:
+        scenario: nodes, sources, jammers and receiver.
+        snr: ``J_k / sigma_k^2``, as :func:`node_snr` evaluates it, ``(..., n_nodes)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes)``, power ratios.
+    """
+    return np.asarray(scenario.node_signal_w / scenario.node_noise_w / (1.0 + snr))
+
+
+def overheard_sinr(scenario: Scenario, snr: FloatArray) -> FloatArray:
+    """Evaluate the SINR at every eavesdropper of each node's source, as :func:`jammed_sinr` does at a node.
+
+    Args:
+        scenario: nodes, sources, eavesdroppers and receiver.
+        snr: of the drone's signal, as :func:`eavesdropper_snr` evaluates it, ``(..., n_eavesdroppers)``.
+
+    Returns:
+        Array of shape ``(..., n_nodes, n_eavesdroppers)``, power ratios.
+    """
+    heard = scenario.overheard_w / scenario.eavesdropper_noise_w[:, None]
+    return np.asarray(heard.T[scenario.node_senders] / (1.0 + snr[..., None, :]))
+
+
 def secrecy_rate_of(wanted: FloatArray, overheard: FloatArray) -> FloatArray:
     """Evaluate secrecy rates, bits/s/Hz, from the SNR of the nodes and of the eavesdroppers.
 

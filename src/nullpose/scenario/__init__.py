@@ -5,7 +5,15 @@ from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
 from nullpose.scenario.buildings import Building
 from nullpose.scenario.channel import Channel
-from nullpose.scenario.ground_points import Destination, Eavesdropper, GroundPoint, Jammer, Node, Terminal
+from nullpose.scenario.ground_points import (
+    Destination,
+    Eavesdropper,
+    GroundPoint,
+    Jammer,
+    Node,
+    Source,
+    Terminal,
+)
 from nullpose.scenario.json_schema import json_schema
 from nullpose.scenario.loading import load
 from nullpose.scenario.no_fly import NoFlyZone
@@ -32,6 +40,7 @@ __all__ = [
     "Override",
     "Receiver",
     "Scenario",
+    "Source",
     "Terminal",
     "Transmitter",
     "apply_overrides",

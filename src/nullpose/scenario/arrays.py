@@ -20,7 +20,15 @@ from nullpose.scenario.units import power_w, ratio_from_db
 
 if TYPE_CHECKING:
     from nullpose.objectives import ObjectiveRecord
-    from nullpose.scenario.ground_points import Destination, Eavesdropper, GroundPoint, Jammer, Node, Terminal
+    from nullpose.scenario.ground_points import (
+        Destination,
+        Eavesdropper,
+        GroundPoint,
+        Jammer,
+        Node,
+        Source,
+        Terminal,
+    )
     from nullpose.scenario.radio import Receiver
 
 
@@ -81,6 +89,7 @@ class PointArrays:
         nodes: tuple[Node, ...]
         jammers: tuple[Jammer, ...]
         eavesdroppers: tuple[Eavesdropper, ...]
+        sources: tuple[Source, ...]
         destination: Destination | None
         receiver: Receiver
         channel: Channel | None
@@ -148,6 +157,13 @@ class PointArrays:
     eavesdropper_channels = _channels("eavesdroppers")
     """The eavesdroppers' channels; None where all are in free space with line of sight."""
 
+    sender_positions_m = _stacked("sources", "position_m", 3)
+    """Positions of the transmitters on the ground [m], (n_senders, 3)."""
+    sender_powers_w = _stacked("sources", "transmit_power_w")
+    """Their transmit powers [W], (n_senders,)."""
+    sender_antennas = _antennas("sources")
+    """Their antennas; None where all are isotropic."""
+
     destination_positions_m = _stacked("destinations", "position_m", 3)
     """Position of the destination [m], (1, 3); (0, 3) without one."""
     destination_antennas = _antennas("destinations")
@@ -174,9 +190,9 @@ class PointArrays:
         return *self.nodes, *self.destinations
 
     @property
-    def points(self) -> tuple[Node | Jammer | Eavesdropper | Destination, ...]:
-        """All points: nodes, jammers, eavesdroppers, destination."""
-        return *self.nodes, *self.jammers, *self.eavesdroppers, *self.destinations
+    def points(self) -> tuple[Node | Jammer | Eavesdropper | Destination | Source, ...]:
+        """All points: nodes, jammers, eavesdroppers, destination, sources."""
+        return *self.nodes, *self.jammers, *self.eavesdroppers, *self.destinations, *self.sources
 
     @property
     def interferer(self) -> str:
@@ -259,6 +275,45 @@ class PointArrays:
     def destination_noise_w(self) -> Floats:
         """Noise and jamming at the destination's receiver [W], (1,), as of a node that receives."""
         return read_only([self._noise_w(end) + self._jamming_w(end) for end in self.destinations], (-1,))
+
+    @cached_property
+    def node_senders(self) -> NDArray[np.int64]:
+        """The source that each node listens to, by its place among them, (n_nodes,)."""
+        names = [source.name for source in self.sources]
+        return np.array([names.index(node.source_name or names[0]) for node in self.nodes], dtype=np.int64)
+
+    def ground_received_w(self, receivers: Sequence[GroundPoint]) -> Floats:
+        """Work out the power that points receive from each source on the ground [W], (m, n_senders).
+
+        ``g1 P_a G_a G_k / |s_k - q_a|^2``, with the path gain g1 at 1 m between isotropic antennas, times the
+        channel's gain over free space at that distance, 1 unless it is a power law. Antennas count alike in
+        all directions, with their largest gains G.
+
+        Args:
+            receivers: the points.
+        """
+        gains = np.zeros((len(receivers), len(self.sources)))
+        for a, source in enumerate(self.sources):
+            channel = source.channel or self.channel
+            is_law = channel is not None and not isinstance(channel, CustomChannel)
+            law = channel.make(False) if is_law and channel and channel.model == "power-law" else None
+            for k, point in enumerate(receivers):
+                distance_m = float(np.linalg.norm(np.subtract(point.position_m, source.position_m)))
+                gains[k, a] = ratio_from_db(point.peak_dbi + source.peak_dbi) / distance_m**2
+                if law is not None:
+                    gains[k, a] *= law.strength * float(law.excess(law.row, distance_m, 0.0, 0.0))
+        return np.asarray(self.receiver.reference_gain * self.sender_powers_w * gains)
+
+    @cached_property
+    def node_signal_w(self) -> Floats:
+        """Power that each node receives from its source [W], (n_nodes,)."""
+        received_w = self.ground_received_w(self.nodes)
+        return read_only(np.take_along_axis(received_w, self.node_senders[:, None], axis=1), (-1,))
+
+    @cached_property
+    def overheard_w(self) -> Floats:
+        """Power that each eavesdropper receives from each source [W], (n_eavesdroppers, n_senders)."""
+        return read_only(self.ground_received_w(self.eavesdroppers), (-1, len(self.sources)))
 
     @property
     def rate_bandwidth_hz(self) -> float | None:

@@ -20,6 +20,7 @@ from nullpose.scenario.plausibility import too_small
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import table_of
 from nullpose.scenario.units import HALF_DB, MOST_OVER_FED_DB
+from nullpose.scenario.wording import unknown
 
 if TYPE_CHECKING:
     from nullpose.scenario.airspace import Airspace
@@ -62,6 +63,7 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     ]
     yield from misplaced
     yield from _objective_faults(scenario, points)
+    yield from _source_faults(scenario, points)
     for named in (points, zones, buildings):
         yield from shared_names(named)
     yield from (
@@ -212,6 +214,25 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
                 place,
                 f'has no meaning with objective = "{record.name}"; remove it, or write objective = '
                 f"{' or '.join(others)}",
+            )
+
+
+def _source_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
+    """Yield the nodes that listen to no source, or do not say to which of several."""
+    sources = scenario.sources or ()
+    names = [each.name or f"{each.letter}{i}" for i, each in enumerate(sources, 1) if each is not None]
+    for place, node in points.items() if len(names) == len(sources) > 0 else ():
+        if not isinstance(node, Node):
+            continue
+        if node.source_name is None and len(names) > 1:
+            yield (
+                (*place, "from"),
+                f"missing, and there are {len(names)} sources: {', '.join(names)}; add the name of one",
+            )
+        elif node.source_name is not None and node.source_name not in names:
+            yield (
+                (*place, "from"),
+                f'got "{node.source_name}", an {unknown("source", node.source_name, names)}',
             )
 
 

@@ -1,13 +1,13 @@
-"""Who is on the ground: nodes, jammers, those who listen in, and the far end of a relay."""
+"""Who is on the ground: nodes, jammers, sources, those who listen in, and the far end of a relay."""
 
 from __future__ import annotations
 
 import math
 import operator
 from collections.abc import Iterable
-from typing import Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from nullpose.antenna import GROUND_ANTENNAS, short_dipole
 from nullpose.channel.profile import MOST_ROWS, mean_gain
@@ -91,8 +91,9 @@ class GroundPoint(Section):
 
     name: Label = Field(
         default="",
-        description="Name, unique among nodes, jammers and eavesdroppers. Left out: S1, S2, ... for nodes, "
-        "M1, M2, ... for jammers and E1, E2, ... for eavesdroppers, by their place in the file.",
+        description="Name, unique among all points on the ground. Left out: S1, S2, ... for nodes, M1, M2, "
+        "... for jammers, E1, E2, ... for eavesdroppers and A1, A2, ... for sources, by their place in the "
+        "file.",
     )
     position_m: Position = Field(
         description="Position in metres from the origin: [east, north, up]. Either this, or lat_deg, lon_deg "
@@ -290,12 +291,36 @@ class Terminal(Noisy):
         return 1.0 if self.weight is None else self.weight
 
 
-class Node(Terminal, Powered, GroundPoint):
+if TYPE_CHECKING:
+
+    class _Listener(Section):
+        """The key ``from`` of a node."""
+
+else:  # the key is a word of Python's own
+    _Listener = create_model(
+        "_Listener",
+        __base__=Section,
+        __module__=__name__,
+        **{
+            "from": (
+                Label | None,
+                optional(
+                    "Name of the source that the node listens to, where the drone jams eavesdroppers. Left "
+                    "out: the only source.",
+                    "A1",
+                ),
+            )
+        },
+    )
+
+
+class Node(Terminal, Powered, _Listener, GroundPoint):
     """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
 
     Args beside those of a ground point and of a terminal:
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm; both may be left out where the drone transmits.
+        from: name of the source that it listens to; None for the only one.
     """
 
     header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
@@ -308,6 +333,12 @@ class Node(Terminal, Powered, GroundPoint):
         NOISE,
         _JAMMING,
     )
+
+    @property
+    def source_name(self) -> str | None:
+        """Name of the source that it listens to, as stated."""
+        name: str | None = getattr(self, "from")
+        return name
 
 
 class Destination(Terminal, GroundPoint):
@@ -347,3 +378,18 @@ class Eavesdropper(Noisy, Uncertain, GroundPoint):
     header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
     letter: ClassVar[str] = "E"
     ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, NOISE)
+
+
+class Source(Powered, GroundPoint):
+    """A transmitter on the ground that a node listens to, while the drone jams those who listen in.
+
+    Args beside those of a ground point:
+        power_w: transmit power [W]; or else
+        power_dbm: the same in dBm.
+        channel: of its links with nodes and eavesdroppers, of which the distance alone counts.
+    """
+
+    header: ClassVar[str] = "a source, in a table of its own headed [[sources]]"
+    letter: ClassVar[str] = "A"
+    is_interferer: ClassVar[bool] = False
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, POWER)

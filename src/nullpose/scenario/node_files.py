@@ -96,7 +96,10 @@ def _header_faults(header: Sequence[str]) -> Iterator[str]:
 def _node_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> ListedNode:
     many = f"got {len(cells)} values, must be {len(header)}, as many as the header has"
     require(len(cells) == len(header), where, many)
-    row = {key: cell if key == "name" else _number(cell) for key, cell in zip(header, cells, strict=True)}
+    row = {
+        key: cell if key in ("name", "from") else _number(cell)
+        for key, cell in zip(header, cells, strict=True)
+    }
     places = {"": where, "position_m": where} | {key: f"{where}, column {key}" for key in row}
     places |= {f"position_m[{axis}]": f"{where}, column {key}" for axis, key in enumerate(_LOCAL)}
     # A place is never left out, so its empty cells stay, to be refused.

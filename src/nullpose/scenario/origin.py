@@ -35,8 +35,10 @@ from nullpose.scenario.ways import Ways
 FARTHEST_M = 1e5
 """What is farther from the origin than this is taken for a mistake [m]."""
 
-POINT_LISTS = ("nodes", "jammers", "eavesdroppers")
-"""The keys of a scenario's points."""
+DRAWN_LISTS = ("nodes", "jammers", "eavesdroppers")
+"""The keys of a scenario's points that a study may draw."""
+POINT_LISTS = (*DRAWN_LISTS, "sources")
+"""The keys of all its points in lists."""
 _PLACEHOLDERS: PlainTable = {  # of what cannot be told; such a scenario is refused for that
     "position_m": [0.0, 0.0, 0.0],
     "centre_m": [0.0, 0.0],

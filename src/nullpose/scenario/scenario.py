@@ -24,7 +24,7 @@ from nullpose.scenario.buildings import MOST_BUILDINGS, Building
 from nullpose.scenario.channel import SHADOW_MARGIN_M, NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
-from nullpose.scenario.ground_points import Destination, Eavesdropper, Jammer, Node
+from nullpose.scenario.ground_points import Destination, Eavesdropper, Jammer, Node, Source
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.rules import Choice, list_of_tables
@@ -51,7 +51,7 @@ class Scenario(Section, PointArrays):
     """
 
     header: ClassVar[str] = "a table with the keys of a scenario file"
-    unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers", "buildings"})
+    unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers", "sources", "buildings"})
     ways: ClassVar[tuple[Ways, ...]] = (Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),)
 
     name: Title = Field(
@@ -110,6 +110,11 @@ class Scenario(Section, PointArrays):
     )
     eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
         default=(), description="Tables headed [[eavesdroppers]], one for each; where the drone transmits."
+    )
+    sources: Annotated[tuple[Source, ...], list_of_tables("sources")] = Field(
+        default=(),
+        description="Tables headed [[sources]], one for each transmitter on the ground that nodes listen to; "
+        "where the drone jams eavesdroppers.",
     )
     buildings: Annotated[tuple[Building, ...], list_of_tables("buildings", most=MOST_BUILDINGS)] = Field(
         default=(),

@@ -17,7 +17,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.ground_points import GroundPoint
-from nullpose.scenario.origin import POINT_LISTS
+from nullpose.scenario.origin import DRAWN_LISTS, POINT_LISTS
 from nullpose.study.monte_carlo.blocks import Blocks, Town
 from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.drawn_channel import DrawnChannel
@@ -32,7 +32,7 @@ MOST_DRAWS = 100  # how often one kind is drawn before its scene is given up
 _TRIED = 5  # scenes that tell what is maximised: one that cannot be drawn tells nothing
 
 # The streams of chance. Their numbers are part of what a seed means: never change one.
-_KINDS = {kind: number for number, kind in enumerate((*POINT_LISTS, "channel", "buildings"))}
+_KINDS = {kind: number for number, kind in enumerate((*DRAWN_LISTS, "channel", "buildings"))}
 _STREAMS = {
     "count": 0,
     "parents": 1,

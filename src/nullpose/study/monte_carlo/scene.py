@@ -23,6 +23,7 @@ from nullpose.scenario import (
     Origin,
     Receiver,
     Scenario,
+    Source,
     Transmitter,
 )
 from nullpose.scenario.airframe import NamedAirframe
@@ -44,13 +45,13 @@ class SceneBase(Section):
         scenarios: what the files hold; read together with the spec.
         objective, origin, airspace, airframe, antenna, array, channel, receiver, transmitter, destination: as
             in a scenario file, like buildings.
-        nodes, jammers, eavesdroppers: points that are not drawn, as in a scenario file.
+        nodes, jammers, eavesdroppers, sources: points that are not drawn, as in a scenario file.
     """
 
     header: ClassVar[str] = "a table headed [scene]"
     ways: ClassVar[tuple[Ways, ...]] = (at_most_one("file", "files"),)
     unstated: ClassVar[frozenset[str]] = frozenset(
-        {"objective", "scenarios", "nodes", "jammers", "eavesdroppers", "buildings"}
+        {"objective", "scenarios", "nodes", "jammers", "eavesdroppers", "sources", "buildings"}
     )
 
     file: Label | None = optional(
@@ -87,6 +88,9 @@ class SceneBase(Section):
     )
     eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("scene.eavesdroppers")] = Field(
         default=(), description="Tables headed [[scene.eavesdroppers]], where they are not drawn."
+    )
+    sources: Annotated[tuple[Source, ...], list_of_tables("scene.sources")] = Field(
+        default=(), description="Tables headed [[scene.sources]]."
     )
     buildings: Annotated[tuple[Building, ...], list_of_tables("scene.buildings")] = Field(
         default=(), description="Tables headed [[scene.buildings]]."

@@ -16,7 +16,7 @@ from nullpose.files import PlainTable
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario.crosscheck import shared_names
 from nullpose.scenario.faults import Place
-from nullpose.scenario.origin import POINT_LISTS
+from nullpose.scenario.origin import DRAWN_LISTS
 from nullpose.scenario.rules import Count, list_of_tables
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Title
@@ -102,7 +102,7 @@ class StudySpec(Section):
             yield ("scenes",), "missing; it must be given: how many scenes"
         cases = [(("cases", index), case) for index, case in enumerate(self.cases or ()) if case is not None]
         yield from shared_names(dict(cases))
-        for key in ("x_m", "y_m") if self.buildings and not any(map(raw.get, POINT_LISTS)) else ():
+        for key in ("x_m", "y_m") if self.buildings and not any(map(raw.get, DRAWN_LISTS)) else ():
             if getattr(self.buildings, key) is None:
                 yield ("buildings", key), "missing; no points are drawn around which they could stand; add it"
         points_by_kind = [(kind, each) for kind, each in self.drawn.items() if isinstance(each, Points)]
@@ -149,7 +149,7 @@ class StudySpec(Section):
     @property
     def drawn(self) -> dict[str, Points | DrawnChannel | Blocks]:
         """What is drawn, by the key of a scenario, in the order in which it is drawn."""
-        tables = {kind: getattr(self, kind) for kind in POINT_LISTS}
+        tables = {kind: getattr(self, kind) for kind in DRAWN_LISTS}
         tables |= {"channel": self.scene and self.scene.channel, "buildings": self.buildings}
         return {
             kind: each for kind, each in tables.items() if isinstance(each, Points | DrawnChannel | Blocks)

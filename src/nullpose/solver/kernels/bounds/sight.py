@@ -297,4 +297,5 @@ def in_sight(family, domain, seen, row, workspace):
         family.denominator_point, workspace.denominator_weight, family.turn, family.leak,
         family.ground_axes, family.ground_leaks, family.channels, family.shadows_of_point,
         family.shadow_start, workspace.no_sides, family.shares, family.offset, family.requirements,
+        family.pairs,
     )  # fmt: skip

@@ -1,0 +1,67 @@
+"""The smallest secrecy rate of nodes that hear sources on the ground, as the drone jams who overhears."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nullpose.objectives.ratios import FloatArray, Ratios, points_of, snr_weights
+from nullpose.objectives.record import ObjectiveRecord, Quantity
+
+if TYPE_CHECKING:
+    from nullpose.physics import Reception
+    from nullpose.scenario import Scenario
+
+_RATE = Quantity(
+    "min_jammed_secrecy_rate", "secrecy rate", "a secrecy rate", "rate", "bits/s/Hz", "SINR",
+    "secrecy_rate_bps_hz",
+)  # fmt: skip
+
+
+def _ratios(scenario: Scenario) -> Ratios:
+    """Build a ratio for each node, and one for each eavesdropper and source that a node listens to.
+
+    ``1 + S / (sigma^2 + J x)``, each over its own noise: ``(1 + S / sigma^2) I + (g0 J / sigma^2) T(s - p)``
+    over ``I + (g0 J / sigma^2) T(s - p)``. A pair is a node's ratio and an eavesdropper's, of one source.
+    """
+    n_nodes, n_eavesdroppers = len(scenario.nodes), len(scenario.eavesdroppers)
+    used, of_node = np.unique(scenario.node_senders, return_inverse=True)
+    e, a = np.divmod(np.arange(n_eavesdroppers * len(used)), len(used))
+    overheard = scenario.overheard_w[e, used[a]] / scenario.eavesdropper_noise_w[e]
+    signals = np.concatenate([scenario.node_signal_w / scenario.node_noise_w, overheard])
+    jamming = np.concatenate([snr_weights(scenario, "node"), snr_weights(scenario, "eavesdropper")])
+    point = np.arange(n_nodes + n_eavesdroppers, dtype=np.int64)
+    of_ratio = np.concatenate([point[:n_nodes], n_nodes + e])
+    node, heard_by = np.divmod(np.arange(n_nodes * n_eavesdroppers), n_eavesdroppers)
+    return Ratios(
+        numerator_isotropic=1.0 + signals,
+        numerator_weight=jamming[of_ratio],
+        numerator_point=of_ratio,
+        denominator_of=of_ratio,
+        denominator_isotropic=np.ones(len(point)),
+        denominator_start=np.arange(len(point) + 1, dtype=np.int64),
+        denominator_point=point,
+        denominator_weight=jamming,
+        pairs=np.column_stack([node, n_nodes + heard_by * len(used) + of_node[node]]).astype(np.int64),
+        **points_of(scenario, "node", "eavesdropper", others=("jammer", "sender")),
+    )
+
+
+def _evaluate(reception: Reception) -> dict[str, FloatArray]:
+    """Evaluate every node's SINR, and its secrecy rate."""
+    return {"sinr": reception.jammed_sinr, "secrecy_rate_bps_hz": reception.jammed_secrecy_rate}
+
+
+FRIENDLY_JAMMING = ObjectiveRecord(
+    name="friendly-jamming",
+    summary="the smallest secrecy rate of nodes that hear a source on the ground, eavesdroppers being jammed",
+    quantities=(_RATE,),
+    quantity=lambda scenario: _RATE,
+    ratios=_ratios,
+    evaluate=_evaluate,
+    interferers="eavesdroppers",
+    transmits=True,
+    needs=("transmitter", "sources", "eavesdroppers"),
+    unused=("destination", "nodes.weight", "nodes.min_sinr_db"),
+)

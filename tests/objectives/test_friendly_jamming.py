@@ -1,0 +1,126 @@
+"""Friendly jamming: the drone jams eavesdroppers of what sources on the ground send to nodes."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from scipy.optimize import minimize
+
+from nullpose.physics import Pose, evaluate, objective_value
+from nullpose.scenario import Scenario
+
+KNOWN = [  # eavesdropper, power of the drone, best rate, position, rate without jamming
+    ((30.0, 25.0), 1.0, 0.642329774, (30.41253, 23.96867), -0.0270),
+    ((45.0, 8.0), 1.0, 0.640998464, (43.88501, 6.21602), 0.1361),
+    ((15.0, 10.0), 10.0, 0.671203854, (16.07122, 9.57151), -1.3270),
+]
+"""Found apart from nullpose: source at the origin, 1 W, a node 40 m east of it, noise 1 mW, 8 to 30 m."""
+
+
+def jammed(eavesdropper_m: tuple[float, float], jamming_w: float, **tables: Any) -> Scenario:
+    """Return the scene of the known answers, with other tables."""
+    data: dict[str, Any] = {
+        "objective": "friendly-jamming",
+        "airspace": {"altitude_m": [8.0, 30.0], "x_m": [-150.0, 150.0], "y_m": [-150.0, 150.0]},
+        "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0},
+        "transmitter": {"power_w": jamming_w},
+        "sources": [{"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}],
+        "nodes": [{"position_m": [40.0, 0.0, 0.0]}],
+        "eavesdroppers": [{"position_m": [*eavesdropper_m, 0.0]}],
+    }
+    return Scenario.from_dict(data | tables)
+
+
+def axis_at(angles: np.ndarray) -> np.ndarray:
+    """Return the axis of an azimuth and an angle off the zenith."""
+    level = np.sin(angles[1])
+    return np.array([level * np.cos(angles[0]), level * np.sin(angles[0]), np.cos(angles[1])])
+
+
+@pytest.mark.parametrize(("eavesdropper_m", "jamming_w", "rate", "position_m", "without"), KNOWN)
+def test_physics_has_the_known_answers(
+    eavesdropper_m: tuple[float, float],
+    jamming_w: float,
+    rate: float,
+    position_m: tuple[float, float],
+    without: float,
+) -> None:
+    """A search of the physics alone ends at the known rate, and no nearby pose of many is above it."""
+    scenario = jammed(eavesdropper_m, jamming_w)
+
+    def loss(x: np.ndarray) -> float:
+        return -float(objective_value(scenario, np.array([x[0], x[1], 8.0]), axis_at(x[2:])))
+
+    precise = {"xatol": 1e-9, "fatol": 1e-14, "maxiter": 4000, "maxfev": 4000}
+    starts = np.random.default_rng(0).uniform(-1.5, 1.5, (8, 2))
+    ends = [minimize(loss, [*position_m, *start], method="Nelder-Mead", options=precise) for start in starts]
+    best = min(ends, key=lambda end: float(end.fun))
+    assert -best.fun == pytest.approx(rate, abs=1e-9)
+    np.testing.assert_allclose(best.x[:2], position_m, atol=1e-4)
+    ground = 1.0 + 1e3 / 40.0**2, 1.0 + 1e3 / np.sum(np.square(eavesdropper_m))
+    assert np.log2(ground[0] / ground[1]) == pytest.approx(without, abs=1e-4)
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+def test_links_are_the_nodes(seed: int) -> None:
+    """Every node's SINR and rate are those of the equation, written out with each source and eavesdropper."""
+    rng = np.random.default_rng(seed)
+
+    def spots(count: int) -> list[list[float]]:
+        return [[*map(float, rng.uniform(-80.0, 80.0, 2)), 0.0] for _ in range(count)]
+
+    sources = [
+        {"position_m": at, "power_w": float(rng.uniform(0.5, 2.0)), "gain_dbi": 2.0} for at in spots(2)
+    ]
+    listens = rng.integers(2, size=3)
+    nodes = [{"position_m": at, "from": f"A{a + 1}"} for at, a in zip(spots(3), listens, strict=True)]
+    more = {"eavesdroppers": [{"position_m": at, "noise_w": 2e-3} for at in spots(2)]}
+    more |= {"channel": {"model": "power-law", "exponent": 2.5}}
+    scenario = jammed((0.0, 9.0), 3.0, sources=sources, nodes=nodes, **more)
+    pose = Pose(rng.uniform([-60.0, -60.0, 8.0], [60.0, 60.0, 30.0]), *rng.uniform(-1.0, 1.0, 3))
+
+    def jamming_w(at_m: list[float]) -> float:
+        away = np.array(at_m) - pose.position_m
+        square = away @ away
+        return float(3.0 * (square - (away @ pose.antenna_axis) ** 2) / square**2.25)
+
+    def signal_w(source: dict[str, Any], at_m: list[float]) -> float:
+        distance_m = np.linalg.norm(np.subtract(source["position_m"], at_m))
+        return float(source["power_w"] * 10.0**0.2 / distance_m**2.5)
+
+    for link, node, a in zip(evaluate(scenario, pose), nodes, listens, strict=True):
+        at_m = node["position_m"]
+        sinr = signal_w(sources[a], at_m) / (1e-3 + jamming_w(at_m))
+        heard = [
+            signal_w(sources[a], each["position_m"]) / (2e-3 + jamming_w(each["position_m"]))
+            for each in more["eavesdroppers"]
+        ]
+        assert link.sinr == pytest.approx(sinr, rel=1e-12)
+        rate = max(0.0, np.log2(1.0 + sinr) - np.log2(1.0 + max(heard)))
+        assert link.secrecy_rate_bps_hz == pytest.approx(rate, rel=1e-9, abs=1e-12)
+
+
+def test_buildings_and_sight_leave_ground_links_alone() -> None:
+    """Line of sight by elevation changes what the drone sends, not what a source sends along the ground."""
+    free, urban = (
+        jammed((30.0, 25.0), 1.0),
+        {"model": "elevation", "environment": "urban", "average": "power"},
+    )
+    seen = jammed((30.0, 25.0), 1.0, channel=urban)
+    np.testing.assert_array_equal(seen.node_signal_w, free.node_signal_w)
+    np.testing.assert_array_equal(seen.overheard_w, free.overheard_w)
+    loud = jammed((30.0, 25.0), 1.0, antenna={"kind": "dipole", "gain_dbi": 1.76})
+    np.testing.assert_array_equal(loud.overheard_w, free.overheard_w)
+
+
+def test_written_and_read() -> None:
+    """The source that a node listens to is the key ``from``, in files too."""
+    sources = [{"position_m": [0.0, y, 0.0], "power_w": 1.0} for y in (0.0, 5.0)]
+    scenario = jammed(
+        (9.0, 9.0), 1.0, sources=sources, nodes=[{"position_m": [40.0, 0.0, 0.0], "from": "A2"}]
+    )
+    assert scenario.to_dict()["nodes"][0]["from"] == "A2"
+    assert 'from = "A2"' in scenario.to_toml()
+    assert Scenario.from_dict(scenario.to_dict()) == scenario
+    assert scenario.node_senders.tolist() == [1]
