@@ -43,7 +43,8 @@ class Incumbent:
         position_m: (3,) metres.
         axis: (3,) antenna axis, of any length.
         log_value: the logarithm of the smallest ratio there, as the search saw it.
-        multipliers: (r,) multipliers of the ratios at the optimum, summing to one; equal where not known.
+        multipliers: (r,) multipliers of the ratios, or of pairs, at the optimum, summing to one; equal where
+            not known.
         starts: local searches run.
         evaluations: poses evaluated.
     """
@@ -107,7 +108,9 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     """
     ratios, floor_m, clear_m = family.arrays, family.domain.low_m[2], 1.02 * family.domain.keep_out_m
     nodes = ratios.points_m[ratios.numerator_point]
-    interferers = ratios.points_m[sorted(set(ratios.denominator_point.tolist()))[:most]]
+    of_pairs = ratios.numerator_point[ratios.pairs[:, 1]]
+    numbers = set((of_pairs if len(of_pairs) else ratios.denominator_point).tolist())
+    interferers = ratios.points_m[sorted(numbers)[:most]]
     centre = nodes.sum(axis=0, keepdims=True) / len(nodes)
     over = np.concatenate([centre, interferers, nodes[:most]])
     over[:, 2] = np.maximum(floor_m, over[:, 2] + clear_m)
@@ -214,7 +217,7 @@ def _run(
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
     ratios = family.arrays
-    multipliers = np.empty(len(ratios.numerator_point))
+    multipliers = np.empty(len(ratios.pairs) or len(ratios.numerator_point))
     log_value, starts, evaluations = entry_of(search_and_climb)(
         ratios,
         family.domain,

@@ -51,7 +51,7 @@ from nullpose.solver.kernels.compiler.jit import (
     small_kernel,
 )
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
-from nullpose.solver.kernels.linear_algebra.links import log_objective, most_heard
+from nullpose.solver.kernels.linear_algebra.links import log_objective, most_heard, pair_log
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import corner_of, fill_affine, norm, store
 from nullpose.solver.kernels.search.domain import contains
@@ -225,6 +225,17 @@ def misses_one(family, axis_field, row, workspace, axis):
 
 
 @rare_kernel
+def worst_pair(family, axis_field, row, workspace, axis):
+    """Fill the axis at a box's centre; its worst pair is the row's, by the tangent there."""
+    fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+    least = log_objective(family, row[CENTRE:HALF], axis, workspace.log_denominators, workspace.values)
+    for q in range(family.pairs.shape[0]):
+        if pair_log(family, q, workspace.values) <= least:
+            row[COUNT], row[INDEX], row[WEIGHT] = 1.0, q, 1.0
+    touch(row, axis)
+
+
+@rare_kernel
 def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half, family = row[HALF:LEVEL], in_sight(whole, domain, seen, row, workspace)
@@ -232,8 +243,11 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     workspace.expanded_side[:] = 0.0
     for j in family.denominator_point:
         fill_jet(family, j, False, axis_field, row, workspace)
-    row[KIND], is_mean = AFFINE, family.shares.shape[0] > 0
-    if is_mean:
+    row[KIND], is_mean, has_pairs = AFFINE, family.shares.shape[0] > 0, family.pairs.shape[0] > 0
+    if has_pairs:
+        is_mean = True  # multipliers of an axis that is there need no search
+        worst_pair(family, axis_field, row, workspace, axis)
+    elif is_mean:
         missed = misses_one(family, axis_field, row, workspace, axis)
         if missed and excludes_curved(family, domain, axis_field, row, workspace, total):
             return EXCLUDED, 0, 0
@@ -243,7 +257,9 @@ def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
         return EXCLUDED, 0, 0
     for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
         if attempt == 1:
-            if is_mean:  # whose multipliers are those of the axis
+            if has_pairs:
+                copy_into(goal.multipliers[COUNT:TOUCH], row[COUNT:TOUCH])
+            elif is_mean:  # whose multipliers are those of the axis
                 if row[COUNT] == 0.0:
                     continue
                 row[COUNT] = 0.0

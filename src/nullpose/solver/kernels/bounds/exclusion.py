@@ -40,7 +40,7 @@ from nullpose.solver.kernels.bounds.node import (
     cell_side,
 )
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
-from nullpose.solver.kernels.bounds.signed_sum import fill_sum, log_most_mean
+from nullpose.solver.kernels.bounds.signed_sum import fill_sum, log_most_mean, unreachable_pair
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.forms import bilinear, congruence, form_value
@@ -334,7 +334,12 @@ def out_of_reach(family, domain, row):
     if is_mean and log_most_mean(family, centre, half) < math.log(row[LEVEL]):
         row[ANCHOR] = 0.0
         return FAR
-    for k in range(0 if is_mean else family.numerator_weight.shape[0]):
+    has_pairs = family.pairs.shape[0] > 0
+    pair = unreachable_pair(family, row[LEVEL], centre, half) if has_pairs else -1
+    if pair >= 0:
+        row[ANCHOR] = pair
+        return FAR
+    for k in range(0 if is_mean or has_pairs else family.numerator_weight.shape[0]):
         least = row[LEVEL] * family.denominator_isotropic[family.denominator_of[k]]
         square = min_square(family.points_m, family.numerator_point[k], centre, half)
         if most_heard(family, k, square) < least:

@@ -35,10 +35,12 @@ from nullpose.solver.kernels.compiler.jit import inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers, positive_definite
 from nullpose.solver.kernels.linear_algebra.forms import congruence, smallest_form
-from nullpose.solver.kernels.linear_algebra.links import log_objective
+from nullpose.solver.kernels.linear_algebra.links import log_objective, log_quotient
+from nullpose.solver.kernels.linear_algebra.pair_dual import pair_multipliers
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_square,
     copy_into,
+    fill_identity,
     form_product,
     top_eigenvector,
 )
@@ -290,6 +292,43 @@ def keep_required(family, required, sides, multipliers, pool, weights, row):
     keep_largest(weights, weights.shape[0], row, True)
 
 
+@inner_heap_kernel
+def pair_form(family, axis_field, basis, row, whitening, pool, sides, places, coarseness, v):
+    """Fill the form at which pairs' tangents are best, and multipliers; return the smallest quotient there.
+
+    Over the level. It is infinite if no axis was met inside the row's cell and band.
+    """
+    pairs, groups, is_horizontal = family.pairs, whitening[0], has_horizontal_axes(axis_field)
+    start, matrix, turn = scratch(6), scratch(6), scratch(3, 3)
+    row[COUNT], row[TOUCH:BALL] = 0.0, 0.0
+    if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
+        return math.inf
+    count = pairs.shape[0]
+    jammed, heard, multipliers = np.empty((count, 6)), np.empty((count, 6)), np.empty(sides + count)
+    for q in range(count):
+        copy_into(groups[family.denominator_of[pairs[q, 1]]], jammed[q])
+        copy_into(groups[family.denominator_of[pairs[q, 0]]], heard[q])
+        if is_horizontal:  # no weight on the vertical
+            jammed[q, 2] = jammed[q, 4] = jammed[q, 5] = heard[q, 4] = heard[q, 5] = 0.0
+            heard[q, 2] = heard[q, 0] + heard[q, 1] + 2.0 * abs(heard[q, 3])
+    pair_multipliers(
+        family, row[LEVEL], pool.forms, sides, jammed, heard, multiplier_accuracy(coarseness), start,
+        multipliers, matrix,
+    )  # fmt: skip
+    fill_constraints(multipliers[:sides], sides, places, row)
+    keep_largest(multipliers[sides:], count, row, False)
+    top_eigenvector(matrix, v)
+    for i in range(3):  # out of the frame
+        for m in range(3):
+            turn[m, i] = basis[i, m]
+    congruence(matrix, turn, row[TOUCH:BALL])
+    least = math.inf
+    for q in range(count):
+        received = form_product(heard[q], matrix), form_product(jammed[q], matrix)
+        least = min(least, log_quotient(family, q, received[0], received[1]))
+    return math.exp(least) / row[LEVEL]
+
+
 @inner_kernel
 def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis):
     """Fill new multipliers for a free axis into the row; return (primal, rank-one value, whether known).
@@ -308,7 +347,21 @@ def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis
     mean, back, v, places = scratch(6), scratch(3, 3), scratch(3), scratch_int(4)
     whitening = (workspace.denominators, mean, back)
     whiten(family, basis, row, workspace.denominators, mean, back)
+    has_pairs = family.pairs.shape[0] > 0
+    if has_pairs:  # their sums are of unit axes
+        back[:, :] = 0.0
+        fill_identity(back)
     sides = constraint_forms(axis_field, basis, row, coarseness, back, pool.forms, places)
+    if has_pairs:
+        primal = pair_form(family, axis_field, basis, row, whitening, pool, sides, places, coarseness, v)
+        if primal == math.inf:
+            return math.inf, 0.0, False
+        axis_of(basis, back, v, axis)
+        if axis_field.kind >= BAND_AXIS:
+            clamp_axis(axis_field, axis)
+        logs = workspace.log_denominators, every
+        reached = log_objective(family, row[CENTRE:HALF], axis, logs[0], logs[1])
+        return primal, math.exp(reached) / level, True
     for c in range(sides):
         pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])
     tolerance = max(_FINE, _LOOSE * coarseness)

@@ -8,7 +8,7 @@ from nullpose.solver.kernels.bounds.node import CENTRE, FACE, HALF, keep_largest
 from nullpose.solver.kernels.bounds.signed_sum import touch
 from nullpose.solver.kernels.compiler.jit import kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.links import log_most_share, most_heard
+from nullpose.solver.kernels.linear_algebra.links import log_most_pair, log_most_share, most_heard
 from nullpose.solver.kernels.search.search import cut_box
 
 
@@ -31,7 +31,11 @@ def reach_by_distance(family, domain):
         ratio = most_heard(family, k, away) / family.denominator_isotropic[family.denominator_of[k]]
         if family.shares.shape[0] > 0:
             mean += log_most_share(family, k, away)
-        if ratio < best:
+        for q in range(family.pairs.shape[0]):
+            most = math.exp(log_most_pair(family, q, away)) if family.pairs[q, 1] == k else math.inf
+            if most < best:
+                best, farthest = most, q
+        if family.pairs.shape[0] == 0 and ratio < best:
             best, farthest = ratio, k
     if family.shares.shape[0] > 0:
         best, farthest = math.exp(mean), 0

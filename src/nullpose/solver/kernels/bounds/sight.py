@@ -134,7 +134,7 @@ def copy_side(side, sign, out):
 @inner_kernel
 def must_be_seen(family, row, k):
     """Check whether a ratio is too weak all over a box where its point's link is blocked."""
-    if family.shares.shape[0] > 0:  # of a mean no ratio must be anything
+    if family.shares.shape[0] > 0 or family.pairs.shape[0] > 0:  # of a mean no ratio must be anything
         return False
     j, least = family.numerator_point[k], family.denominator_isotropic[family.denominator_of[k]]
     square = min_square(family.points_m, j, row[CENTRE:HALF], row[HALF:LEVEL])
@@ -290,7 +290,11 @@ def in_sight(family, domain, seen, row, workspace):
     copy_into(family.denominator_weight, workspace.denominator_weight)
     nodes, others = family.numerator_point, family.denominator_point
     multiply_by_sight(family, domain, nodes, True, seen, row, workspace.numerator_weight)
-    multiply_by_sight(family, domain, others, False, seen, row, workspace.denominator_weight)
+    weights, split = workspace.denominator_weight, others.shape[0]
+    if family.pairs.shape[0] > 0:  # what jams an eavesdropper is wanted
+        split = family.denominator_start[family.denominator_of[family.pairs[:, 1].min()]]
+    multiply_by_sight(family, domain, others[:split], False, seen, row, weights[:split])
+    multiply_by_sight(family, domain, others[split:], True, seen, row, weights[split:])
     return Ratios(
         family.points_m, family.numerator_isotropic, workspace.numerator_weight, family.numerator_point,
         family.denominator_of, family.denominator_isotropic, family.denominator_start,

@@ -133,12 +133,67 @@ def log_most_share(family, k, square):
     return family.shares[k] * shifted_log(family.offset, log)
 
 
+@inner_kernel
+def row_count(family):
+    """Return how many numbers the smallest is taken of, or have multipliers: pairs, or ratios."""
+    pairs = family.pairs.shape[0]
+    return pairs if pairs > 0 else family.numerator_point.shape[0]
+
+
+@inner_kernel
+def pair_log(family, q, logs):
+    """Return the logarithm of a pair's quotient from those of the ratios."""
+    return logs[family.pairs[q, 0]] - logs[family.pairs[q, 1]]
+
+
+@inner_kernel
+def pair_tangent(family, q, level, e):
+    """Return constant and slope of the tangent at e that bounds a pair's node, and how ``phi`` bends there.
+
+    With ``b`` and ``e`` the denominators of node and eavesdropper and ``S_B``, ``S_E`` what their numerators
+    have beyond them, the quotient ``(1 + S_B / b) / (1 + S_E / e)`` is t or more exactly where
+    ``b <= phi(e) = S_B e / ((t - 1) e + t S_E)``, which is concave for t of 1 or more.
+    """
+    k, m = family.pairs[q, 0], family.pairs[q, 1]
+    wanted = family.numerator_isotropic[k] - family.denominator_isotropic[family.denominator_of[k]]
+    overheard = family.numerator_isotropic[m] - family.denominator_isotropic[family.denominator_of[m]]
+    below = (level - 1.0) * e + level * overheard
+    slope = wanted * level * overheard / (below * below)
+    return wanted * (level - 1.0) * (e / below) ** 2, slope, 2.0 * (level - 1.0) * slope / below
+
+
+@inner_kernel
+def log_quotient(family, q, b, e):
+    """Return the logarithm of a pair's quotient from the denominators of node and eavesdropper."""
+    k, m = family.pairs[q, 0], family.pairs[q, 1]
+    wanted = family.numerator_isotropic[k] - family.denominator_isotropic[family.denominator_of[k]]
+    overheard = family.numerator_isotropic[m] - family.denominator_isotropic[family.denominator_of[m]]
+    return math.log1p(wanted / b) - math.log1p(overheard / e)
+
+
+@inner_kernel
+def log_most_pair(family, q, square):
+    """Bound the logarithm of a pair's quotient where the eavesdropper is beyond a distance, squared.
+
+    No drone jams the node then, and one jams the eavesdropper as much as it can from there.
+    """
+    k, m = family.pairs[q, 0], family.pairs[q, 1]
+    overheard = family.numerator_isotropic[m] - family.denominator_isotropic[family.denominator_of[m]]
+    wanted = family.numerator_isotropic[k] / family.denominator_isotropic[family.denominator_of[k]]
+    return math.log(wanted) - math.log1p(overheard / (most_heard(family, m, square) - overheard))
+
+
 @small_kernel
 def objective_of(family, logs):
-    """Return the logarithm of what is maximised from those of the ratios: the smallest, or their mean's.
+    """Return the logarithm of what is maximised from those of the ratios.
 
-    Where a requirement is missed, it is below that of any mean.
+    The smallest, the smallest of pairs, or the mean's; where a requirement is missed, it is below any mean's.
     """
+    if family.pairs.shape[0] > 0:
+        least = math.inf
+        for q in range(family.pairs.shape[0]):
+            least = min(least, pair_log(family, q, logs))
+        return least
     if family.shares.shape[0] == 0:
         return smallest_of(logs)
     total = missing = 0.0
@@ -365,15 +420,15 @@ def derivatives(family, p, u, multipliers, f, grads, hess, work):
             multiplier += multipliers[k] if den[k] == g else 0.0
         for e in range(dstart[g], dstart[g + 1]):
             j, weight = family.denominator_point[e], family.denominator_weight[e]
-            value += add_form(family, j, weight, p, u, gradient, form, multiplier > 0.0)
+            value += add_form(family, j, weight, p, u, gradient, form, multiplier != 0.0)
         work[g, 0] = value
         for i in range(6):
             work[g, 1 + i] = gradient[i] / value
-        if multiplier > 0.0:
+        if multiplier != 0.0:
             add_log_bend(-multiplier, value, gradient, form, hess)
     for k in range(f.shape[0]):
         value, below = fill_isotropic(family.numerator_isotropic[k], u, gradient, form), work[den[k]]
-        j, weight, second = family.numerator_point[k], family.numerator_weight[k], multipliers[k] > 0.0
+        j, weight, second = family.numerator_point[k], family.numerator_weight[k], multipliers[k] != 0.0
         value += add_form(family, j, weight, p, u, gradient, form, second)
         f[k] = math.log(value) - math.log(below[0])
         for i in range(6):

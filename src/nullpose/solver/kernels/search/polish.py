@@ -25,7 +25,13 @@ from nullpose.solver.kernels.linear_algebra.barrier import (
     residual,
     update_duals,
 )
-from nullpose.solver.kernels.linear_algebra.links import derivatives, log_objective, shifted_log
+from nullpose.solver.kernels.linear_algebra.links import (
+    derivatives,
+    log_objective,
+    pair_log,
+    row_count,
+    shifted_log,
+)
 from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, copy_into, inner, smallest_of
 from nullpose.solver.kernels.search.local_coordinates import (
     add_slack_slopes,
@@ -57,8 +63,9 @@ class Problem(NamedTuple):
     """What is polished: the chosen sides of forbidden pieces, and which coordinates are free.
 
     Of a pose's values those from ``first`` to ``last`` are to be above the level: the log ratios, or the one
-    of a mean that stands behind them. After them come the slacks. A mean's ratios are to be above their
-    requirements, by which ``ease`` is taken off as long as the pose misses one: (1,), of the logarithms.
+    of a mean or those of pairs that stand behind them. After them come the slacks. A mean's ratios are to be
+    above their requirements, by which ``ease`` is taken off as long as the pose misses one: (1,), of the
+    logarithms.
     """
 
     family: Ratios
@@ -114,8 +121,10 @@ def fill_values(problem, pose, logs, values):
     p, u, last = pose[:3], pose[3:], problem.last
     ratios = values[: problem.family.numerator_point.shape[0]]
     value = log_objective(problem.family, p, u, logs, ratios)
-    if problem.first > 0:
+    if problem.family.shares.shape[0] > 0:
         values[problem.first] = value
+    for q in range(problem.family.pairs.shape[0]):
+        values[problem.first + q] = pair_log(problem.family, q, ratios)
     domain_slacks(p, u, problem.domain, problem.axis_field, problem.chosen, values[last:])
     for i in range(3):
         if not problem.free[i]:
@@ -197,12 +206,19 @@ def linearise(problem, point, grads, parts, n, model, h):
     """Fill the rates of all gaps in the n search variables and the level, and the Lagrangian's Hessian."""
     ratios, first, last = problem.family.numerator_point.shape[0], problem.first, problem.last
     pose, duals, hess, f = point.pose, model.duals, scratch(6, 6), point.values[:ratios]
+    is_mean, pairs = problem.family.shares.shape[0] > 0, problem.family.pairs
     for k in range(ratios):
-        of_mean = duals[first] * slope_of_mean(problem.family, k, f[k]) if first > 0 else 0.0
+        of_mean = duals[first] * slope_of_mean(problem.family, k, f[k]) if is_mean else 0.0
         model.weights[k] = duals[k] + of_mean
+    for q in range(pairs.shape[0]):
+        model.weights[pairs[q, 0]] += duals[first + q]
+        model.weights[pairs[q, 1]] -= duals[first + q]
     derivatives(problem.family, pose[:3], pose[3:], model.weights, f, grads[:ratios], hess, parts)
-    if first > 0:
+    if is_mean:
         mix_slopes(problem.family, f, duals[first], grads, hess)
+    for q in range(pairs.shape[0]):
+        copy_into(grads[pairs[q, 0]], grads[first + q])
+        add_scaled(-1.0, grads[pairs[q, 1]], grads[first + q])
     add_slack_slopes(
         problem.domain, problem.axis_field, problem.chosen, pose, duals[last:], grads[last:], hess
     )
@@ -291,12 +307,13 @@ def put_on_faces(problem, point, trial, model, logs, best, best_pose):
 
 @inner_kernel
 def fill_multipliers(problem, duals, multipliers):
-    """Fill the multipliers of ratios, scaled; those of a mean in place of their logarithms."""
+    """Fill the multipliers of ratios or pairs, scaled; those of a mean in place of their logarithms."""
     total, requirements = 0.0, problem.family.requirements
     for c in range(problem.first, problem.last):
         total += duals[c]
     for k in range(multipliers.shape[0]):
-        multipliers[k] = duals[k] / total if problem.first == 0 else 0.0
+        is_mean = problem.family.shares.shape[0] > 0
+        multipliers[k] = 0.0 if is_mean else duals[problem.first + k] / total
     for k in range(requirements.shape[0]):
         if requirements[k] > 0.0:
             multipliers[k] = duals[k] / (total * requirements[k])
@@ -316,8 +333,8 @@ def polish(family, domain, axis_field, p, u, mu_start, max_steps, multipliers):
         u: unit axis, (3,), updated; ignored on entry when the field is affine.
         mu_start: first barrier weight, in units of the log ratio.
         max_steps: limit on interior-point steps.
-        multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one; of a mean those
-            of ``ratio - requirement``, the multiplier of its logarithm being one.
+        multipliers: output, (ratios,): the ratios' multipliers at the end, which sum to one, or (pairs,) the
+            pairs'; of a mean those of ``ratio - requirement``, the multiplier of its logarithm being one.
     """
     sight = domain_in_sight(family, domain, p)
     return polish_within(family, sight, axis_field, p, u, mu_start, max_steps, multipliers)
@@ -328,8 +345,9 @@ def polish_within(family, domain, axis_field, p, u, mu_start, max_steps, multipl
     """Do what ``polish`` does in a domain."""
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     chosen = np.empty(domain.piece_start.shape[0] - 1, np.int64)
-    first = ratios if family.shares.shape[0] > 0 else 0
-    last = ratios + 1 if first > 0 else ratios
+    is_mean, pairs = family.shares.shape[0] > 0, family.pairs.shape[0]
+    first = ratios if is_mean or pairs > 0 else 0
+    last = first + (1 if is_mean else row_count(family))
     problem = Problem(family, domain, axis_field, chosen, np.empty(3, np.bool_), first, last, np.zeros(1))
     count = last + slack_count(domain)
     point = Point(np.empty(6), np.empty(count), np.empty(count))

@@ -23,10 +23,16 @@ from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import reach_of
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
-from nullpose.solver.kernels.linear_algebra.links import log_most_share, log_objective
+from nullpose.solver.kernels.linear_algebra.links import (
+    log_most_share,
+    log_objective,
+    pair_tangent,
+)
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_scaled,
+    add_square,
     copy_into,
+    form_product,
     normalise,
     top_eigenvector,
 )
@@ -41,6 +47,7 @@ _LEAST_GAIN = 1e-9
 _LEAST_CLIMB = 1e-12
 _ROUGH = 1e-2
 _FARTHEST_M, _BISECTIONS = 1e9, 30  # of the faces beyond which a mean is too small
+_TOUCHES = 4  # axes in turn at which sums of pairs touch
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -93,6 +100,8 @@ def cut_box(family, low, high, level, box_low, box_high):
     npt, den, d0 = family.numerator_point, family.denominator_of, family.denominator_isotropic
     copy_into(low, box_low)
     copy_into(high, box_high)
+    if family.pairs.shape[0] > 0:  # far away nobody is jammed, which may be best
+        return
     if family.shares.shape[0] > 0:
         cut_box_of_mean(family, low, high, level, box_low, box_high)
         return
@@ -109,6 +118,47 @@ def cut_box(family, low, high, level, box_low, box_high):
                 box_high[i] = min(box_high[i], point[i] + left)
 
 
+@inner_heap_kernel
+def likely_axis_of_pairs(family, p, axis):
+    """Do what ``likely_axis`` does for pairs: from sums that touch at an axis, then at the axis found."""
+    pairs, ratios, groups = (
+        family.pairs,
+        family.numerator_isotropic.shape[0],
+        family.denominator_isotropic.shape[0],
+    )
+    numerators, denominators = np.empty((ratios, 6)), np.empty((groups, 6))
+    forms, multipliers = np.empty((pairs.shape[0], 6)), np.empty(pairs.shape[0])
+    logs, f, start, matrix, trial = np.empty(groups), np.empty(ratios), zeroed(6), zeroed(6), scratch(3)
+    fill_forms(family, p, numerators, denominators)
+    start[:3] = 1.0 / 3.0
+    copy_into(start, matrix)
+    level, best = 1.0, -math.inf
+    for _ in range(_TOUCHES):
+        size = 0.0
+        for q in range(pairs.shape[0]):
+            jammed, heard = (
+                denominators[family.denominator_of[pairs[q, 1]]],
+                family.denominator_of[pairs[q, 0]],
+            )
+            constant, slope, _ = pair_tangent(family, q, level, form_product(jammed, matrix))
+            for m in range(6):
+                forms[q, m] = slope * jammed[m] - denominators[heard, m] + (constant if m < 3 else 0.0)
+            size = max(size, abs(form_product(forms[q], matrix)))
+        dual_multipliers(
+            forms, np.int64(0), pairs.shape[0], size, math.inf, _ROUGH, start, multipliers, matrix,
+            family.shares, 0.0,
+        )  # fmt: skip
+        top_eigenvector(matrix, trial)
+        value = log_objective(family, p, trial, logs, f)
+        if not value > best + 1e-3:
+            break
+        best, level = value, max(1.0, math.exp(value))
+        copy_into(trial, axis)
+        matrix[:] = 0.0
+        add_square(1.0, trial, matrix)
+    return best
+
+
 @heap_kernel
 def likely_axis(family, p, axis):
     """Fill the axis that the relaxation of the best axis suggests at a position; return its log value.
@@ -116,6 +166,8 @@ def likely_axis(family, p, axis):
     The top eigenvector of the dual's matrix: exact unless there is a duality gap, and then a good place to
     start. With several denominators, that of the ratios' excess over a level, taken three times more.
     """
+    if family.pairs.shape[0] > 0:
+        return likely_axis_of_pairs(family, p, axis)
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
     numerators, denominators, forms = np.empty((ratios, 6)), np.empty((groups, 6)), np.empty((ratios, 6))
     fill_forms(family, p, numerators, denominators)
@@ -215,10 +267,10 @@ def search(family, domain, axis_field, landmarks, shift, settings, best_p, best_
         settings: how hard to try, a ``SearchSettings``.
         best_p: output, (3,).
         best_u: output, (3,).
-        best_z: output, (ratios,): the ratios' multipliers at that pose.
+        best_z: output, (ratios,) or (pairs,): their multipliers at that pose.
     """
     f, logs = np.empty(family.numerator_isotropic.shape[0]), np.empty(family.denominator_isotropic.shape[0])
-    z, p, u, box_low, box_high = np.empty(f.shape[0]), scratch(3), scratch(3), scratch(3), scratch(3)
+    z, p, u, box_low, box_high = np.empty(best_z.shape[0]), scratch(3), scratch(3), scratch(3), scratch(3)
     size = max(settings.coarse, landmarks.shape[0])
     poses, values = np.empty((size, 6)), np.empty(size)
     best = -math.inf
@@ -282,7 +334,7 @@ def search_and_climb(
         most_steps: of each climb.
         best_p: (3,) in and out.
         best_u: (3,) in and out.
-        best_z: output, (ratios,): the ratios' multipliers at that pose.
+        best_z: output, (ratios,) or (pairs,): their multipliers at that pose.
     """
     value, starts, evaluations = search(
         family, domain, axis_field, landmarks, shift, settings, best_p, best_u, best_z
