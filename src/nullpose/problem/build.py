@@ -84,14 +84,16 @@ def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     channels = scenario.of_interferers("channels")
     if channels is None and not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():
         return  # wherever they are
-    distance_m = distances_m(family.points_m, family.low_m, family.high_m)[family.denominator_point]
+    hidden = family.denominator_point >= len(scenario.nodes)  # of pairs the nodes are among them, too
+    points = family.denominator_point[hidden]
+    distance_m = distances_m(family.points_m, family.low_m, family.high_m)[points]
     distance_m = np.maximum(distance_m, family.keep_out_m)
-    over_noise = family.denominator_weight / distance_m**2
+    over_noise = family.denominator_weight[hidden] / distance_m**2
     if channels is not None:
         over_noise *= largest_excess_gain(channels, distance_m) / channels.strengths
     if not (over_noise > LOUDEST).any():
         return
-    index = int(family.denominator_point[np.argmax(over_noise)]) - len(scenario.nodes)
+    index = int(points[np.argmax(over_noise)]) - len(scenario.nodes)
     record = scenario.objective_record
     path = f"{record.interferers}[{index}]"
     if not record.transmits:

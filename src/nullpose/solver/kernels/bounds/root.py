@@ -32,7 +32,7 @@ def reach_by_distance(family, domain):
         if family.shares.shape[0] > 0:
             mean += log_most_share(family, k, away)
         for q in range(family.pairs.shape[0]):
-            most = math.exp(log_most_pair(family, q, away)) if family.pairs[q, 1] == k else math.inf
+            most = math.exp(max(0.0, log_most_pair(family, q, away))) if family.pairs[q, 1] == k else math.inf
             if most < best:
                 best, farthest = most, q
         if family.pairs.shape[0] == 0 and ratio < best:
