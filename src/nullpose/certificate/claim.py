@@ -57,6 +57,9 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
         "antennas with a pattern have certificates in free space only": (
             len(family.channels) > 0 and not certificate.scenario.antenna_record.is_quadratic
         ),
+        "the objective friendly-jamming has certificates for a dipole only": (
+            len(family.pairs) > 0 and not certificate.scenario.antenna_record.is_quadratic
+        ),
         f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
         "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),
         "the bound is below the value": bound < value,

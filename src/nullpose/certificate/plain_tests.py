@@ -20,7 +20,7 @@ def out_of_reach(family: Family, level: FloatArray | float, square: FloatArray) 
     """Check where no axis reaches a level, from the distances of the nodes alone.
 
     ``N_k <= n_k + w_k g_k / a_k^2`` and ``D >= d``, g being the largest excess gain of the channel beyond the
-    distance a: one ratio is not above the level, or their mean is not.
+    distance a: one ratio is not above the level, or their mean is not, or one pair's quotient.
 
     Args:
         family: the ratios.
@@ -35,6 +35,12 @@ def out_of_reach(family: Family, level: FloatArray | float, square: FloatArray) 
         for k, share in enumerate(family.shares):
             total = total + log(ratios[..., k]) * share
         return np.asarray(total.high <= log(Interval(level)).low)
+    if len(family.pairs):  # the node not jammed, the eavesdropper jammed as much as can be
+        node, eavesdropper = family.pairs.T
+        most = Interval((heard / square + below).high[..., eavesdropper])
+        overheard = most + (Interval(family.numerator_isotropic) - below)[eavesdropper]
+        lack = Interval(level)[..., None] * overheard * below[node] - most * family.numerator_isotropic[node]
+        return np.asarray(np.any((square[..., eavesdropper] > 0.0) & (lack.low >= 0.0), axis=-1))
     lack = Interval(level)[..., None] * below - family.numerator_isotropic
     return np.asarray(np.any((square > 0.0) & ((square * lack - heard).low >= 0.0), axis=-1))
 

@@ -178,10 +178,12 @@ def ratios_at(
 
 
 def value_of(family: Family, ratios: Exact) -> Fraction:
-    """Return what is maximised from the ratios at a pose: the smallest, or a lower bound of their mean.
+    """Return what is maximised from the ratios at a pose: the smallest, of pairs too, or less than the mean.
 
     The bound is as near as logarithms are.
     """
+    if len(family.pairs):
+        return Fraction(min(ratios[node] / ratios[eavesdropper] for node, eavesdropper in family.pairs))
     if not len(family.shares):
         return Fraction(min(ratios))
     power = Interval(0.0)

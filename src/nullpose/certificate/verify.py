@@ -81,7 +81,7 @@ _TESTS = {
     WORLD: _Test("free axis", free_holds, has_mix=True),
     TOWARDS: _Test("free axis, turning frame", free_holds, has_mix=True, points=lambda f: len(f.points_m)),
     AFFINE: _Test("given axis", affine_holds, has_mix=True),
-    FAR: _Test("distance", far_holds, points=lambda f: len(f.numerator_point)),
+    FAR: _Test("distance", far_holds, points=lambda f: len(f.pairs) or len(f.numerator_point)),
     KEPT_OUT: _Test("keep-out", kept_out_holds, points=_borders),
     OFF_BAND: _Test("axes out of reach", off_band_holds),
     PROFILE: _Test("any axis of a profile", profile_holds, has_mix=True, points=lambda f: len(f.points_m)),
@@ -162,7 +162,8 @@ def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[
 
 def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: float) -> str:
     """Find the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
-    leaves, numbers = tree.leaves, len(family.numerator_point) + len(family.requirements)
+    leaves = tree.leaves
+    numbers = 2 * len(family.pairs) or len(family.numerator_point) + len(family.requirements)
     no_point, no_mix = np.zeros((2, len(leaves)), dtype=bool)
     for kind, test in _TESTS.items():
         if test.points is not None:

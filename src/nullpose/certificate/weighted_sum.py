@@ -1,7 +1,8 @@
 """The signed sum of links that a leaf's multipliers make, ``sum_k lambda_k (N_k - t D_g(k))``.
 
 Of a mean of R ratios the numbers from R on are requirements: with them ``sum_k nu_k (N_k - r_k D)`` comes on
-top, which is not negative where every ratio is its ``r_k`` or more.
+top, which is not negative where every ratio is its ``r_k`` or more. Of P pairs the numbers are those of the
+pairs, and from P on what each one's tangent touches at (:func:`pair_factors`).
 """
 
 from __future__ import annotations
@@ -72,6 +73,40 @@ def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: Float
     return where(stands, where(result.low >= 0.0, result, np.nan), 0.0)
 
 
+def pair_factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval]]:
+    """Return the identity's multiple in a sum of pairs, and by what each denominator is multiplied.
+
+    That of an eavesdropper is added, that of a node is subtracted.
+
+    With the denominators b of a pair's node and e of its eavesdropper, and ``S_B``, ``S_E`` what their
+    numerators have beyond them, the pair's quotient is t or more where
+    ``b <= phi(e) = S_B e / ((t - 1) e + t S_E)``. For t of 1 or more phi is concave, so that it is no more
+    than its tangent at any ``e0 >= 0``: ``S_B (t - 1) e0^2 / c^2 + (S_B t S_E / c^2) e`` with
+    ``c = (t - 1) e0 + t S_E``. Below 1 what is returned is not a number.
+
+    Args:
+        family: with its pairs.
+        leaves: with multipliers and level.
+    """
+    number, weight = mix_slots(leaves)
+    pairs, of, isotropic = family.pairs, family.denominator_of, family.denominator_isotropic
+    beyond = Interval(family.numerator_isotropic) - isotropic[of]
+    level = Interval(np.where(leaves.level >= 1.0, leaves.level, np.nan))
+    identity, nothing = Interval(np.zeros(len(leaves))), Interval(np.zeros(len(leaves)))
+    factors, used = [nothing] * len(isotropic), np.zeros((len(isotropic), len(leaves)), dtype=bool)
+    for q, (node, eavesdropper) in enumerate(pairs):
+        multiplier, e0 = (np.sum(np.where(number == n, weight, 0.0), axis=0) for n in (q, q + len(pairs)))
+        counts = multiplier > 0.0
+        heard, above = level * beyond[eavesdropper], (level - 1.0) * e0
+        share = beyond[node] / (above + heard).squared() * multiplier
+        identity = where(counts, identity + share * above * e0, identity)
+        for g, part, sign in ((of[node], Interval(multiplier), -1.0), (of[eavesdropper], share * heard, 1.0)):
+            identity = where(counts, identity + part * (sign * isotropic[g]), identity)
+            factors[g] = where(counts, factors[g] + part, factors[g])
+            used[g] |= counts
+    return identity, [where(mask, factor, 0.0) for mask, factor in zip(used, factors, strict=True)]
+
+
 def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Term]]:
     """Return a sum's multiple of the identity, and its terms.
 
@@ -99,11 +134,20 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
     ratio, is_required = number % ratios, number >= ratios
     identity = Interval(np.zeros(len(leaves)))
     terms: list[Term] = []
+    if len(family.pairs):
+        identity, factors = pair_factors(family, leaves)
+        ratio, weight = ratio[:0], weight[:0]
+        for g, factor in enumerate(factors):
+            sign = 1.0 if g in family.denominator_of[family.pairs[:, 1]] else -1.0
+            for e in range(*family.denominator_start[g : g + 2]):
+                point = np.full(len(leaves), family.denominator_point[e])
+                scale = where(factor.high > 0.0, factor * family.denominator_weight[e], 0.0)
+                terms += parts(point, scale, sign)
     for k, w in zip(ratio, weight, strict=True):
         identity = identity + Interval(w) * family.numerator_isotropic[k]
         scale = Interval(w) * family.numerator_weight[k]
         terms += parts(family.numerator_point[k], where(w > 0.0, scale, 0.0), 1.0)
-    for g, isotropic in enumerate(family.denominator_isotropic):
+    for g, isotropic in enumerate(family.denominator_isotropic if len(ratio) else ()):
         mine = np.where(family.denominator_of[ratio] == g, weight, 0.0)
         counts = np.any(mine > 0.0, axis=0)
         level = Interval(mine).total() * leaves.level

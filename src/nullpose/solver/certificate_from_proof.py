@@ -39,7 +39,7 @@ def leaves_of(proof: Proof, axis: str, family: Family) -> Leaves:
 
 def _of_dipole(proof: Proof, family: Family) -> Leaves:
     from nullpose.solver.kernels.bounds import node
-    from nullpose.solver.kernels.bounds.signed_sum import fill_tangents
+    from nullpose.solver.kernels.bounds.signed_sum import fill_tangents, fill_touched
 
     rows = proof.leaves
     test = rows[:, node.KIND].astype(np.int64)
@@ -52,6 +52,12 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
         used = np.arange(node.SUPPORT) < count[:, None]
         required[np.nonzero(used)[0], ratios[used]] = weights[used]
         ratios, weights, count = _order_multipliers(np.hstack([tangents, required]))
+    if len(family.pairs):
+        of_pairs, touched = np.zeros((2, len(rows), len(family.pairs)))
+        fill_touched(family.arrays, rows, touched)
+        used = np.arange(node.SUPPORT) < count[:, None]
+        of_pairs[np.nonzero(used)[0], ratios[used]] = weights[used]
+        ratios, weights, count = _order_multipliers(np.hstack([of_pairs, np.where(of_pairs > 0.0, touched, 0.0)]))
     mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0))
     point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0

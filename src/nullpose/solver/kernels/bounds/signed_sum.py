@@ -146,7 +146,8 @@ def fill_tangents(family, rows, tangents):
 def fill_touched(family, rows, tangents):
     """Fill what the eavesdroppers of pairs receive where the sums of leaves touch, (l, pairs)."""
     for i in range(rows.shape[0]):
-        for q in range(family.pairs.shape[0]):
+        has_form = rows[i, TOUCH] + rows[i, TOUCH + 1] + rows[i, TOUCH + 2] > 0.0
+        for q in range(family.pairs.shape[0] if has_form else 0):
             tangents[i, q] = touched(family, q, rows[i])
 
 
