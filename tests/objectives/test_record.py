@@ -41,6 +41,7 @@ def _scenario(name: str, rng: np.random.Generator) -> Scenario:
         more["sources"] = [{"position_m": spot(), "power_w": float(rng.uniform(0.5, 2.0))} for _ in range(3)]
         for node in data["nodes"]:
             node["from"] = f"A{rng.integers(1, 4)}"
+        data["airspace"] |= {"x_m": [-99.0, 99.0], "y_m": [-99.0, 99.0]}
     data |= {key: more[key] for key in record.needs if key in more}
     channels = [{"model": "power-law", "exponent": float(rng.uniform(1.6, 4.0))}]
     channels += [{"model": "elevation", "environment": "urban", "average": each} for each in AVERAGES]

@@ -63,15 +63,16 @@ RELAY_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
     ({"eavesdroppers": [AT]}, {"eavesdroppers": "no meaning", "eavesdroppers[0].position_m": "different"}),
     ({"destination": THERE | {"antenna": "profile"}}, {"destination.antenna_profile": "missing"}),
 ]
-JAMMED = SECRECY | {
-    "objective": "friendly-jamming",
-    "sources": [{"position_m": [9.0, 9.0, 0.0], "power_w": 1}],
-}
+ROOM = {"altitude_m": [8.0, 30.0], "x_m": [-99.0, 99.0], "y_m": [-99.0, 99.0]}
+SOURCE = {"position_m": [9.0, 9.0, 0.0], "power_w": 1}
+JAMMED = SECRECY | {"objective": "friendly-jamming", "sources": [SOURCE], "airspace": ROOM}
 TWO = [{"position_m": [9.0, at, 0.0], "power_w": 1} for at in (8.0, 9.0)]
 JAMMED_CASES: list[tuple[dict[str, Any], dict[str, str]]] = [
     ({"sources": None}, {"sources": "a source, in a table of its own headed [[sources]]; add it"}),
     ({"transmitter": None}, {"transmitter": "a table headed [transmitter]; add it"}),
     ({"eavesdroppers": None}, {"eavesdroppers": "headed [[eavesdroppers]]; add it"}),
+    ({"airspace": ROOM | {"x_m": None}}, {"airspace": "add x_m and y_m"}),
+    ({"airspace": {"altitude_m": [8, 30], "geofence_m": [[0, 0], [50, 0], [0, 50]]}}, {}),
     ({"sources": TWO}, {"nodes[0].from": "missing, and there are 2 sources: A1, A2; add the name of one"}),
     ({"sources": TWO, "nodes": [AT | {"from": "A2"}]}, {}),
     ({"sources": TWO, "nodes": [AT | {"from": "A3"}]}, {"nodes[0].from": 'got "A3", an unknown source'}),

@@ -53,6 +53,11 @@ def _evaluate(reception: Reception) -> dict[str, FloatArray]:
     return {"sinr": reception.jammed_sinr, "secrecy_rate_bps_hz": reception.jammed_secrecy_rate}
 
 
+def _ratios_at(reception: Reception) -> FloatArray:
+    """Evaluate ``(1 + SINR_k) / (1 + SINR_e)`` of every node and eavesdropper."""
+    return np.asarray((1.0 + reception.jammed_sinr[..., None]) / (1.0 + reception.overheard_sinr))
+
+
 FRIENDLY_JAMMING = ObjectiveRecord(
     name="friendly-jamming",
     summary="the smallest secrecy rate of nodes that hear a source on the ground, eavesdroppers being jammed",
@@ -60,6 +65,7 @@ FRIENDLY_JAMMING = ObjectiveRecord(
     quantity=lambda scenario: _RATE,
     ratios=_ratios,
     evaluate=_evaluate,
+    ratios_at=_ratios_at,
     interferers="eavesdroppers",
     transmits=True,
     needs=("transmitter", "sources", "eavesdroppers"),

@@ -57,8 +57,7 @@ class Reception:
     @cached_property
     def eavesdropper_snr(self) -> FloatArray:
         """Every eavesdropper's SNR of the drone's signal, ``(..., n_eavesdroppers)``, power ratios."""
-        moved_m = 0.0 if self.case is None else self.case.eavesdropper_offsets_m
-        return eavesdropper_snr(self.scenario, *self._pose, self.scenario.eavesdropper_positions_m + moved_m)
+        return eavesdropper_snr(self.scenario, *self._pose, self._eavesdroppers_m)
 
     @cached_property
     def secrecy_rate(self) -> FloatArray:
@@ -71,10 +70,14 @@ class Reception:
         return jammed_sinr(self.scenario, self.node_snr)
 
     @cached_property
+    def overheard_sinr(self) -> FloatArray:
+        """The SINR of each node's source at every eavesdropper, ``(..., n_nodes, n_eavesdroppers)``."""
+        return overheard_sinr(self.scenario, self.eavesdropper_snr, self._eavesdroppers_m)
+
+    @cached_property
     def jammed_secrecy_rate(self) -> FloatArray:
         """Every node's secrecy rate, where the drone jams eavesdroppers, ``(..., n_nodes)``, bits/s/Hz."""
-        overheard = overheard_sinr(self.scenario, self.eavesdropper_snr)
-        return secrecy_rate_of(self.jammed_sinr[..., None], overheard)[..., 0]
+        return secrecy_rate_of(self.jammed_sinr[..., None], self.overheard_sinr)[..., 0]
 
     @cached_property
     def received_w(self) -> FloatArray:
@@ -86,6 +89,12 @@ class Reception:
         if self.case is None:
             return self.position_m, self.axis
         return self.case.pose(self.scenario, self.position_m, self.axis)
+
+    @property
+    def _eavesdroppers_m(self) -> FloatArray | None:
+        if self.case is None:
+            return None
+        return np.asarray(self.scenario.eavesdropper_positions_m + self.case.eavesdropper_offsets_m)
 
     @property
     def _sources_m(self) -> FloatArray | None:

@@ -130,18 +130,25 @@ def jammed_sinr(scenario: Scenario, snr: FloatArray) -> FloatArray:
     return np.asarray(scenario.node_signal_w / scenario.node_noise_w / (1.0 + snr))
 
 
-def overheard_sinr(scenario: Scenario, snr: FloatArray) -> FloatArray:
+def overheard_sinr(scenario: Scenario, snr: FloatArray, points_m: FloatArray | None = None) -> FloatArray:
     """Evaluate the SINR at every eavesdropper of each node's source, as :func:`jammed_sinr` does at a node.
 
     Args:
         scenario: nodes, sources, eavesdroppers and receiver.
         snr: of the drone's signal, as :func:`eavesdropper_snr` evaluates it, ``(..., n_eavesdroppers)``.
+        points_m: where the eavesdroppers are, ``(..., n_eavesdroppers, 3)``, metres; as the scenario states,
+            if left out.
 
     Returns:
         Array of shape ``(..., n_nodes, n_eavesdroppers)``, power ratios.
     """
-    heard = scenario.overheard_w / scenario.eavesdropper_noise_w[:, None]
-    return np.asarray(heard.T[scenario.node_senders] / (1.0 + snr[..., None, :]))
+    heard_w = (
+        scenario.overheard_w
+        if points_m is None
+        else scenario.ground_received_w(scenario.eavesdroppers, points_m)
+    )
+    heard = np.swapaxes(heard_w / scenario.eavesdropper_noise_w[:, None], -1, -2)
+    return np.asarray(heard[..., scenario.node_senders, :] / (1.0 + snr[..., None, :]))
 
 
 def secrecy_rate_of(wanted: FloatArray, overheard: FloatArray) -> FloatArray:

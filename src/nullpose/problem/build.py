@@ -24,7 +24,7 @@ def build_family(
     any_function: bool = False,
     any_objective: bool = False,
 ) -> Family:
-    """Build the family whose smallest ratio, or mean of ratios, is what the scenario maximises.
+    """Build the family whose smallest ratio or pair, or mean of ratios, is what the scenario maximises.
 
     The objective's record says which ratios these are (:mod:`nullpose.objectives`).
 
@@ -33,7 +33,7 @@ def build_family(
         any_antenna: whether the caller brings the gain of an antenna that is no dipole.
         any_channel: whether the caller knows every channel model.
         any_function: whether the caller brings the gain of channels that are functions in Python.
-        any_objective: whether the caller knows means of ratios.
+        any_objective: whether the caller knows means of ratios, and pairs.
 
     Raises:
         UsageError: the antenna is no dipole, or a channel or the objective is not known to the caller.
@@ -56,16 +56,16 @@ def build_family(
     )
     record = scenario.objective_record
     require_usage(
-        any_objective or record.mean_offset is None,
-        f'objective: given "{record.name}"; allowed here: those of the smallest ratio, such as "{USUAL}". '
-        "solve, compare, sweep, map, vehicle and evaluate know it for a dipole, in channels a file can state",
-    )
-    require_usage(
         record.of_nodes is None,
         f"objective: given {record.name}, a function in Python; allowed here: the objectives that a file can "
         "state. solve, compare and evaluate know functions, for a dipole",
     )
     ratios = record.ratios(scenario)
+    require_usage(
+        any_objective or (record.mean_offset is None and not len(ratios.pairs)),
+        f'objective: given "{record.name}"; allowed here: those of the smallest ratio, such as "{USUAL}". '
+        "solve, compare, sweep, map, vehicle and evaluate know it for a dipole, in channels a file can state",
+    )
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     if record.mean_offset is not None:
         required = scenario.node_requirements

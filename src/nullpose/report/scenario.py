@@ -26,10 +26,11 @@ from nullpose.scenario import (
     NoFlyZone,
     Origin,
     Scenario,
+    Source,
 )
 
 _MOST_ROWS = 12  # of buildings; more are told of as one
-_Point = Node | Jammer | Eavesdropper | Destination
+_Point = Node | Jammer | Eavesdropper | Destination | Source
 _EARTHLY = {
     "latitude (deg)": ("lat_deg", 6),
     "longitude (deg)": ("lon_deg", 6),
@@ -47,12 +48,16 @@ def summarise(scenario: Scenario) -> PlainTable:
     """
     receiver, transmits = scenario.receiver, scenario.objective_record.transmits
     ends = _points(scenario, scenario.destinations, scenario.destination_noise_w)
+    sources = _points(scenario, scenario.sources, None)
+    for row in sources:  # the drone does not hear them
+        del row["nearest_m"], row["best_power_to_noise_db"]
     return {
         "scenario": scenario.to_dict(),
         "nodes": _points(scenario, scenario.nodes, scenario.node_noise_w if transmits else None),
         "jammers": _points(scenario, scenario.jammers, None),
         "eavesdroppers": _points(scenario, scenario.eavesdroppers, scenario.eavesdropper_noise_w),
         **({"destination": ends[0]} if ends else {}),
+        **({"sources": sources} if sources else {}),
         "noise_w": receiver.noise_power_w,
         "noise_dbm": _dbm(receiver.noise_power_w),
         "reference_gain_db": float(to_db(receiver.reference_gain)),
@@ -144,6 +149,7 @@ def scenario_view(scenario: Scenario) -> View:
             "jammer", scenario.jammers, numbers["jammers"], "" if transmits else "highest JNR (dB)"
         ),
         _points_table("eavesdropper", scenario.eavesdroppers, numbers["eavesdroppers"], "highest SNR (dB)"),
+        _points_table("source", scenario.sources, numbers.get("sources", []), ""),
         _points_table("destination", scenario.destinations, links[len(scenario.nodes) :], "highest SNR (dB)"),
         "\n".join([best, *notes]),
     )
@@ -260,6 +266,7 @@ def _points_table(
         "power (dBm)": [cell(each["power_dbm"], ".2f") for each in numbers],
         "power (W)": [None if antennas else cell(each["power_w"], ".6g") for each in numbers],
         "antenna": antennas or [None] * len(points),
+        "from": [getattr(point, "source_name", None) for point in points],
         "requires (dB)": [cell(getattr(point, "min_sinr_db", None), ".6g") for point in points],
         "weight": [cell(getattr(point, "weight", None), ".6g") for point in points],
         "uncertainty (m)": [_extents(point) for point in points],

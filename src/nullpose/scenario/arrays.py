@@ -159,8 +159,6 @@ class PointArrays:
 
     sender_positions_m = _stacked("sources", "position_m", 3)
     """Positions of the transmitters on the ground [m], (n_senders, 3)."""
-    sender_powers_w = _stacked("sources", "transmit_power_w")
-    """Their transmit powers [W], (n_senders,)."""
     sender_antennas = _antennas("sources")
     """Their antennas; None where all are isotropic."""
 
@@ -282,8 +280,10 @@ class PointArrays:
         names = [source.name for source in self.sources]
         return np.array([names.index(node.source_name or names[0]) for node in self.nodes], dtype=np.int64)
 
-    def ground_received_w(self, receivers: Sequence[GroundPoint]) -> Floats:
-        """Work out the power that points receive from each source on the ground [W], (m, n_senders).
+    def ground_received_w(
+        self, receivers: Sequence[GroundPoint], positions_m: ArrayLike | None = None
+    ) -> Floats:
+        """Work out the power that points receive from each source on the ground [W], (..., m, n_senders).
 
         ``g1 P_a G_a G_k / |s_k - q_a|^2``, with the path gain g1 at 1 m between isotropic antennas, times the
         channel's gain over free space at that distance, 1 unless it is a power law. Antennas count alike in
@@ -291,18 +291,24 @@ class PointArrays:
 
         Args:
             receivers: the points.
+            positions_m: where they are, (..., m, 3); as stated, if left out.
         """
-        gains = np.zeros((len(receivers), len(self.sources)))
-        for a, source in enumerate(self.sources):
-            channel = source.channel or self.channel
-            is_law = channel is not None and not isinstance(channel, CustomChannel)
-            law = channel.make(False) if is_law and channel and channel.model == "power-law" else None
-            for k, point in enumerate(receivers):
-                distance_m = float(np.linalg.norm(np.subtract(point.position_m, source.position_m)))
-                gains[k, a] = ratio_from_db(point.peak_dbi + source.peak_dbi) / distance_m**2
-                if law is not None:
-                    gains[k, a] *= law.strength * float(law.excess(law.row, distance_m, 0.0, 0.0))
-        return np.asarray(self.receiver.reference_gain * self.sender_powers_w * gains)
+        stated_m = np.reshape([point.position_m for point in receivers], (-1, 3))
+        places_m = stated_m if positions_m is None else np.asarray(positions_m, dtype=np.float64)
+        received_w = []
+        for source in self.sources:
+            distance_m = np.linalg.norm(places_m - source.position_m, axis=-1)
+            peaks = [ratio_from_db(point.peak_dbi + source.peak_dbi) for point in receivers]
+            gain, channel = np.array(peaks) / distance_m**2, source.channel or self.channel
+            if (
+                channel is not None
+                and channel.model == "power-law"
+                and not isinstance(channel, CustomChannel)
+            ):
+                law, none = channel.make(False), np.zeros(1)
+                gain = gain * law.strength * law.excess(np.array(law.row), distance_m, none, none)
+            received_w.append(self.receiver.reference_gain * source.transmit_power_w * gain)
+        return np.stack(received_w, axis=-1)
 
     @cached_property
     def node_signal_w(self) -> Floats:

@@ -218,8 +218,14 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
 
 
 def _source_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
-    """Yield the nodes that listen to no source, or do not say to which of several."""
-    sources = scenario.sources or ()
+    """Yield the nodes that listen to no source, or to none of several; and an airspace that does not end."""
+    sources, airspace = scenario.sources or (), scenario.airspace
+    if sources and airspace and not airspace.geofence_m and None in (airspace.x_m, airspace.y_m):
+        yield (
+            ("airspace",),
+            "has no x_m and y_m, and no geofence; with [[sources]] it must have either: the best drone may "
+            "be far away, where it jams nobody; add x_m and y_m",
+        )
     names = [each.name or f"{each.letter}{i}" for i, each in enumerate(sources, 1) if each is not None]
     for place, node in points.items() if len(names) == len(sources) > 0 else ():
         if not isinstance(node, Node):

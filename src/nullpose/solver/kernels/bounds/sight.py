@@ -292,7 +292,7 @@ def in_sight(family, domain, seen, row, workspace):
     multiply_by_sight(family, domain, nodes, True, seen, row, workspace.numerator_weight)
     weights, split = workspace.denominator_weight, others.shape[0]
     if family.pairs.shape[0] > 0:  # what jams an eavesdropper is wanted
-        split = family.denominator_start[family.denominator_of[family.pairs[:, 1].min()]]
+        split = family.denominator_start[family.denominator_of[family.pairs[0, 1]]]
     multiply_by_sight(family, domain, others[:split], False, seen, row, weights[:split])
     multiply_by_sight(family, domain, others[split:], True, seen, row, weights[split:])
     return Ratios(
