@@ -440,6 +440,32 @@ def _relay(rng: np.random.Generator) -> Table:
     return table | {"destination": end, "scheme": str(rng.choice(some))}
 
 
+def _friendly_jamming(rng: np.random.Generator) -> Table:
+    """One to three nodes, each near a source, some with noise of their own, and one or two eavesdroppers."""
+    table = _served(rng, "friendly-jamming")
+    low, high = rng.uniform(-30.0, 0.0, 2), rng.uniform(60.0, 120.0, 2)
+    ends = {axis: [float(low[i]), float(high[i])] for i, axis in enumerate(("x_m", "y_m"))}
+    nodes = [
+        {key: each for key, each in node.items() if key not in ("weight", "min_sinr_db", "power_w")}
+        for node in table["nodes"][: int(rng.integers(1, 4))]
+    ]
+    places_m = np.array([node["position_m"] for node in nodes[: int(rng.integers(1, 3))]])
+    places_m += rng.uniform([2.0, -15.0, 0.0], [15.0, 15.0, 2.0], size=places_m.shape)
+    for node in nodes:
+        node["from"] = f"A{rng.integers(len(places_m)) + 1}"
+        if rng.uniform() < 0.3:
+            node["noise_w"] = _NOISE_W * float(10.0 ** rng.uniform(-1.0, 1.0))
+    table["airspace"] = ends | table["airspace"]
+    sources = [{"position_m": p, "power_w": float(10.0 ** rng.uniform(-0.5, 1.5))} for p in places_m.tolist()]
+    heard = [
+        {"position_m": p, "noise_w": _NOISE_W * float(10.0 ** rng.uniform(-0.5, 0.5))}
+        for p in rng.uniform(0.0, [60.0, 60.0, 5.0], size=(int(rng.integers(1, 3)), 3)).tolist()
+    ]
+    upright = rng.uniform() < 0.2 and "airframe" not in table
+    scheme = "vertical" if upright else "optimum"
+    return table | {"nodes": nodes, "sources": sources, "eavesdroppers": heard, "scheme": scheme}
+
+
 def _mean(rng: np.random.Generator, objective: str) -> Table:
     """Two to twenty nodes, some with weights, and up to three jammers, with what else a scene can state.
 
@@ -516,6 +542,7 @@ FEATURES: dict[str, Callable[[np.random.Generator], Table]] = {
     "relay": _relay,
     "sum-rate": partial(_mean, objective="sum-rate"),
     "proportional-fair": partial(_mean, objective="proportional-fair"),
+    "friendly-jamming": _friendly_jamming,
 }
 
 ENDS = ("channel-ends", "narrow", "depths", "scales", "one-element")
