@@ -1,14 +1,21 @@
 """Friendly jamming: the drone jams eavesdroppers of what sources on the ground send to nodes."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.soundness.check import check_scene
+from benchmarks.soundness.features import make_feature_scene
 from hypothesis import given, strategies as st
 from scipy.optimize import minimize
 
+from nullpose.certificate import Certificate, verify
+from nullpose.errors import UsageError
 from nullpose.physics import Pose, evaluate, objective_value
-from nullpose.scenario import Scenario
+from nullpose.scenario import Scenario, apply_overrides
+from nullpose.solver import solve
+from nullpose.solver.certificate_from_proof import certificate_of
 
 KNOWN = [  # eavesdropper, power of the drone, best rate, position, rate without jamming
     ((30.0, 25.0), 1.0, 0.642329774, (30.41253, 23.96867), -0.0270),
@@ -124,3 +131,100 @@ def test_written_and_read() -> None:
     assert 'from = "A2"' in scenario.to_toml()
     assert Scenario.from_dict(scenario.to_dict()) == scenario
     assert scenario.node_senders.tolist() == [1]
+
+
+@pytest.mark.parametrize(("eavesdropper_m", "jamming_w", "rate", "position_m"), [row[:4] for row in KNOWN])
+def test_known_answers_are_certified_and_verified(
+    eavesdropper_m: tuple[float, float], jamming_w: float, rate: float, position_m: tuple[float, float]
+) -> None:
+    """The solver finds the known rate and position, closes a gap of 1e-4, and the verifier agrees."""
+    solution = solve(jammed(eavesdropper_m, jamming_w), gap=1e-4)
+    assert solution.objective.value == pytest.approx(rate, abs=1e-8)
+    np.testing.assert_allclose(solution.pose.position_m, [*position_m, 8.0], atol=1e-4)
+    assert str(solution.status) == "certified"
+    assert verify(certificate_of(solution)).proved
+
+
+@pytest.mark.parametrize("number", range(20))
+def test_random_scenes_are_sound(number: int) -> None:
+    """No independent search is above a bound, and each certificate is proved."""
+    assert check_scene(make_feature_scene("friendly-jamming", number), starts=60).faults == ()
+
+
+def test_the_null_is_on_a_node_and_jamming_helps() -> None:
+    """With one node the drone's null is towards it, and no drone at all is worse."""
+    solution = solve(jammed((30.0, 25.0), 1.0), certify=False)
+    to_node = np.array([40.0, 0.0, 0.0]) - solution.pose.position_m
+    cosine = abs(to_node @ solution.pose.antenna_axis) / np.linalg.norm(to_node)
+    assert cosine == pytest.approx(1.0, abs=1e-3)
+    weak = solve(jammed((30.0, 25.0), 1e-9), certify=False)
+    assert weak.objective.value == 0.0
+
+
+def test_more_nodes_and_eavesdroppers_never_help() -> None:
+    """The best value of a scene is at most that of the scene with one of them less."""
+    one = solve(jammed((45.0, 8.0), 1.0), gap=1e-3)
+    assert one.objective.upper_bound is not None
+    for more in (
+        {"eavesdroppers": [{"position_m": [45.0, 8.0, 0.0]}, {"position_m": [20.0, -9.0, 0.0]}]},
+        {"nodes": [{"position_m": [40.0, 0.0, 0.0]}, {"position_m": [10.0, -20.0, 0.0]}]},
+    ):
+        assert solve(jammed((45.0, 8.0), 1.0, **more), certify=False).objective.value <= (
+            one.objective.upper_bound + 1e-9
+        )
+
+
+@pytest.fixture(scope="module")
+def certificate() -> Certificate:
+    """The proof of a scene with two nodes and two eavesdroppers."""
+    more = {"nodes": [{"position_m": [40.0, 0.0, 0.0]}, {"position_m": [5.0, 30.0, 0.0]}]}
+    listeners = [{"position_m": [45.0, 28.0, 0.0]}, {"position_m": [30.0, 50.0, 0.0]}]
+    scenario = jammed((45.0, 28.0), 3.0, eavesdroppers=listeners, **more)
+    return certificate_of(solve(scenario, gap=1e-2))
+
+
+def test_a_certificate_with_other_multipliers_is_rejected(certificate: Certificate) -> None:
+    """Of every leaf the weights and what the tangents touch at count; either may not be negative."""
+    assert verify(certificate).proved
+    (tree,) = certificate.trees
+    pairs = len(certificate.scenario.nodes) * len(certificate.scenario.eavesdroppers)
+
+    def verdict_of(change: Any) -> Any:
+        mixes = tuple(dict(change(mix)) for mix in tree.leaves.mixes)
+        return verify(replace(certificate, trees=(replace(tree, leaves=replace(tree.leaves, mixes=mixes)),)))
+
+    for factor in (0.0, 0.3, 3.0):
+        assert not verdict_of(
+            lambda mix, f=factor: {q: w * (f if q >= pairs else 1.0) for q, w in mix.items()}
+        ).proved
+    assert not verdict_of(lambda mix: {q: w for q, w in mix.items() if q >= pairs} or mix).proved
+    assert "negative" in verdict_of(lambda mix: {**mix, 2 * pairs - 1: -1.0}).message
+    assert "does not exist" in verdict_of(lambda mix: {**mix, 2 * pairs: 1.0}).message
+    levels = np.full(len(tree.leaves), 0.9)
+    low = replace(tree, leaves=replace(tree.leaves, level=levels))
+    assert not verify(replace(certificate, trees=(low,))).proved
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "sources[0].power_w=1.01",
+        "transmitter.power_w=3.1",
+        "nodes[0].noise_w=9e-4",
+        "receiver.noise_w=1.1e-3",
+    ],
+)
+def test_a_certificate_of_another_scene_is_rejected(certificate: Certificate, change: str) -> None:
+    """The powers and noises on the ground are part of what is proved."""
+    other = apply_overrides(certificate.scenario, [change])
+    assert not verify(replace(certificate, scenario=other)).proved
+
+
+def test_what_does_not_know_pairs_refuses_them() -> None:
+    """Robust poses and antennas that are no dipole name the objective."""
+    for scenario in (
+        jammed((30.0, 25.0), 1.0, receiver={"noise_w": 1e-3, "reference_gain_db": 0, "position_error_m": 1}),
+        jammed((30.0, 25.0), 1.0, antenna={"kind": "half-wave"}),
+    ):
+        with pytest.raises(UsageError, match='"friendly-jamming"'):
+            solve(scenario, robust=scenario.is_uncertain)
