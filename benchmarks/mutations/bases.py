@@ -50,6 +50,17 @@ _HEARD = {
     "jammers": [],
     "eavesdroppers": [{"position_m": [17.0, 15.0, 4.0]}, {"position_m": [-30.0, 20.0, 0.0]}],
 }
+_JAMMED = {
+    "objective": "friendly-jamming",
+    "transmitter": {"power_w": 3.0},
+    "sources": [
+        {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0},
+        {"position_m": [9.0, 0.0, 0.0], "power_w": 2.0},
+    ],
+    "nodes": [{"position_m": [20.0, 5.0, 0.0], "from": "A1"}, {"position_m": [5.0, 25.0, 0.0], "from": "A2"}],
+    "jammers": [],
+    "eavesdroppers": [{"position_m": [35.0, 28.0, 0.0]}, {"position_m": [-30.0, 20.0, 0.0]}],
+}
 _FENCE = [[-20.0, -5.0], [40.0, -5.0], [10.0, 25.0], [40.0, 60.0], [-20.0, 60.0]]
 _ZONES = [
     {"centre_m": [-2.0, 24.0], "radius_m": 5.0, "altitude_m": [0.0, 12.0]},
@@ -131,6 +142,10 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
         ("vertical", 1.5, _scene(channel=_CITY) | _within(**_SQUARE)),
         ("zero-interference", 0.1, _scene(channel=_LAW | {"exponent": 2.5}) | _within(**_SQUARE)),
     ],
+    "friendly jamming": [
+        ("optimum", 0.05, _scene() | _JAMMED | _within(x_m=[-40.0, 60.0], y_m=[-40.0, 60.0])),
+        ("vertical", 0.3, _scene() | _JAMMED | _within(**_SQUARE)),
+    ],
 }
 """Scheme, gap and scenario of the certificates of each kind."""
 
@@ -142,7 +157,9 @@ def bases_of(kind: str) -> list[Data]:
 
 def optima_of(kind: str) -> list[Data]:
     """Return certificates of the same claims whose poses are best to 1e-6, or not quite."""
-    gap = {"profiles": 0.1, "zones and fence": 1e-5, "channels": 1e-3}.get(kind, 1e-6)
+    gap = {"profiles": 0.1, "friendly jamming": 1e-4, "zones and fence": 1e-5, "channels": 1e-3}.get(
+        kind, 1e-6
+    )
     return [_data(scheme, gap, tables) for scheme, _, tables in KINDS[kind]]
 
 

@@ -10,8 +10,10 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.soundness.search import best_value
 from nullpose.channel import PointChannels, excess_gain
+from nullpose.objectives import Quantity
 from nullpose.physics import (
     Pose,
+    Reception,
     eavesdropper_snr,
     maximum_gain_axis,
     node_snr,
@@ -34,8 +36,12 @@ class Problem:
         self.scenario, airspace = scenario, scenario.airspace
         nodes, jammers = scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)
         gain = scenario.receiver.reference_gain
-        if scenario.objective == "secrecy-rate":
-            others, last = scenario.eavesdropper_positions_m, jammers
+        is_rate = scenario.objective in ("secrecy-rate", "friendly-jamming")
+        if is_rate:
+            others, last = (
+                scenario.eavesdropper_positions_m,
+                np.vstack([jammers, scenario.sender_positions_m]),
+            )
             sent = gain * scenario.transmitter.transmit_power_w
             self.isotropic = 1.0
             self.above = np.repeat(sent / scenario.node_noise_w, len(others))
@@ -49,8 +55,8 @@ class Problem:
             self.node = np.arange(len(nodes))
             self.below = np.tile(scale * scenario.jammer_powers_w, (len(nodes), 1))
         self.first, self.points = len(nodes), np.vstack([nodes, others, last])
-        hearers = scenario.eavesdroppers if scenario.objective == "secrecy-rate" else scenario.jammers
-        antennas = [*scenario.nodes, *hearers, *scenario.jammers][: len(self.points)]
+        hearers = scenario.eavesdroppers if is_rate else scenario.jammers
+        antennas = [*scenario.nodes, *hearers, *scenario.jammers, *scenario.sources][: len(self.points)]
         halved = np.array([0.5 if one.antenna == "circular" else 1.0 for one in antennas])
         self.above = self.above * halved[: self.first][self.node]
         self.below = self.below * halved[self.first : self.first + self.below.shape[1]]
@@ -58,11 +64,7 @@ class Problem:
         self.axes = np.array([np.array(axis) / np.linalg.norm(axis) for axis in axes])
         self.is_dipole = np.array([one.antenna == "dipole" for one in antennas])
         self.leak = getattr(scenario.antenna_record, "leak", 0.0)  # forms are of dipoles
-        heard = (
-            scenario.eavesdropper_channels
-            if scenario.objective == "secrecy-rate"
-            else (scenario.jammer_channels)
-        )
+        heard = scenario.eavesdropper_channels if is_rate else scenario.jammer_channels
         self.channels = (scenario.node_channels, heard)
         nearest = np.clip(self.points, airspace.lower_m, airspace.upper_m)
         self.balls = self.points[np.linalg.norm(self.points - nearest, axis=1) < airspace.keep_out_m]
@@ -111,6 +113,10 @@ class Problem:
     def value(self, pose: Pose) -> float:
         """Return the smallest ratio at a pose."""
         orientation = pose.orientation(self.scenario.antenna_record)
+        if self.scenario.objective == "friendly-jamming":
+            received = Reception(self.scenario, pose.position_m, orientation)
+            overheard = received.overheard_sinr.max(axis=-1)
+            return float(((1.0 + received.jammed_sinr) / (1.0 + overheard)).min())
         if self.scenario.objective != "secrecy-rate":
             return float(objective_value(self.scenario, pose.position_m, orientation))
         wanted = node_snr(self.scenario, pose.position_m, orientation)
@@ -205,7 +211,7 @@ class Truth:
                 near=(pose.position_m, orientation),
                 null_jammer=data["null_jammer"],
             )
-            self._best[key] = 2.0**found if scenario.objective == "secrecy-rate" else found
+            self._best[key] = found if Quantity.of(scenario).unit == "dB" else 2.0**found
         return self._best[key]
 
     @staticmethod
