@@ -18,7 +18,7 @@ STUDY = StudySpec.model_json_schema(schema_generator=_TomlSchema)
 CODE = re.compile(
     r"(?<![\w`])(--[a-z][a-z-]*|\[{1,2}[a-z][\w.]*\]{1,2}|(?:[\w*]+\.)*[a-z]+(?:_[a-z0-9]+)+(?:=[\w.]*\w)?)(?!\w)"
 )
-POINTS = ("nodes", "jammers", "eavesdroppers", "destination")
+POINTS = ("nodes", "jammers", "eavesdroppers", "destination", "sources")
 
 
 def table_schema(entry: dict[str, Any]) -> dict[str, Any] | None:
