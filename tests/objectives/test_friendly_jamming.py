@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from benchmarks.soundness.check import check_scene
 from benchmarks.soundness.features import make_feature_scene
 from hypothesis import given, strategies as st
@@ -13,6 +14,7 @@ from scipy.optimize import minimize
 from nullpose.certificate import Certificate, verify
 from nullpose.errors import UsageError
 from nullpose.physics import Pose, evaluate, objective_value
+from nullpose.report.geometry import shadow_outlines_m
 from nullpose.scenario import Scenario, apply_overrides
 from nullpose.solver import solve
 from nullpose.solver.certificate_from_proof import certificate_of
@@ -23,6 +25,7 @@ KNOWN = [  # eavesdropper, power of the drone, best rate, position, rate without
     ((15.0, 10.0), 10.0, 0.671203854, (16.07122, 9.57151), -1.3270),
 ]
 """Found apart from nullpose: source at the origin, 1 W, a node 40 m east of it, noise 1 mW, 8 to 30 m."""
+FRAME_M = np.array([[-60.0, -60.0], [90.0, 90.0]])
 
 
 def jammed(eavesdropper_m: tuple[float, float], jamming_w: float, **tables: Any) -> Scenario:
@@ -119,6 +122,29 @@ def test_buildings_and_sight_leave_ground_links_alone() -> None:
     np.testing.assert_array_equal(seen.overheard_w, free.overheard_w)
     loud = jammed((30.0, 25.0), 1.0, antenna={"kind": "dipole", "gain_dbi": 1.76})
     np.testing.assert_array_equal(loud.overheard_w, free.overheard_w)
+
+
+def test_what_errs_on_the_safe_side_is_turned_round() -> None:
+    """A jammed node counts as in sight and a jammed eavesdropper as out of it, where sight is not known."""
+    sure = {"model": "elevation", "environment": "urban", "average": "guaranteed"}
+    scenario = jammed((30.0, 25.0), 1.0, channel=sure)
+    secret = jammed((30.0, 25.0), 1.0, channel=sure, objective="secrecy-rate", sources=[])
+    (node,), (eavesdropper,) = scenario.node_channels.strengths, scenario.eavesdropper_channels.strengths
+    assert (node, eavesdropper) == (
+        secret.eavesdropper_channels.strengths[0],
+        secret.node_channels.strengths[0],
+    )
+    assert node > eavesdropper
+    block = {"polygon_m": [[33.0, 8.0], [36.0, 8.0], [36.0, 16.0], [33.0, 16.0]], "height_m": 20.0}
+    for point, grows in ((scenario.nodes[0], False), (scenario.eavesdroppers[0], True)):
+        areas = [
+            sum(shapely.Polygon(ring).area for ring in shadow_outlines_m(each, point, 10.0, FRAME_M))
+            for each in (
+                jammed((30.0, 25.0), 1.0, buildings=[block], channel={"shadow_margin_m": margin_m})
+                for margin_m in (0.0, 1.0)
+            )
+        ]
+        assert (areas[1] > areas[0]) == grows
 
 
 def test_written_and_read() -> None:

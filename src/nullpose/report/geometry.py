@@ -70,7 +70,7 @@ def shadow_outlines_m(
     if scenario.prisms is None:
         return []
     places_m, (low, high) = np.array([point.position_m]), frame_m
-    shadows = shadows_of(scenario.prisms, places_m, np.array([point.is_interferer]))
+    shadows = shadows_of(scenario.prisms, places_m, np.array([scenario.is_unwanted(point)]))
     frame = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
     outlines = [_cut(frame, sides, altitude_m) for sides in np.split(shadows.sides, shadows.start[1:-1])]
     return [outline for outline in outlines if len(outline)]

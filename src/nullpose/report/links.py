@@ -79,7 +79,7 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
 
 def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
     """Set how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
-    noun, heading = scenario.interferer, "SNR (dB)"
+    noun, heading = scenario.interferer, "jamming to noise (dB)" if scenario.sources else "SNR (dB)"
     names, points = scenario.of_interferers("names"), scenario.of_interferers("positions_m")
     orientation = pose.orientation(scenario.antenna_record)
     if scenario.objective_record.transmits:

@@ -71,7 +71,7 @@ def _channels(kinds: str) -> cached_property[PointChannels | None]:
         links = [table.channel_of(point) for point in points]
         if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links) and table.prisms is None:
             return None
-        kept = PointChannels.of(links, table.prisms, [point.is_interferer for point in points])
+        kept = PointChannels.of(links, table.prisms, [*map(table.is_unwanted, points)])
         rows, strengths = read_only(kept.rows, kept.rows.shape), read_only(kept.strengths, (-1,))
         return kept._replace(strengths=strengths, rows=rows)
 
@@ -206,15 +206,17 @@ class PointArrays:
         """Return what there is of the interferers by such a key, as in ``"positions_m"``."""
         return getattr(self, f"{self.interferer}_{key}")
 
+    def is_unwanted(self, point: GroundPoint) -> bool:
+        """Check whether a link with the drone is unwanted: an interferer's, or a node's if the drone jams."""
+        return point.is_interferer != (len(self.sources) > 0)
+
     def channel_of(self, point: GroundPoint) -> LinkChannel:
         """Return the channel of a point's link, its own or the scenario's, with its antenna's profile."""
         whole = self.channel or Channel()
         channel = point.channel or whole
         lost_db = channel.blocked_loss_db or whole.blocked_loss_db or BLOCKED_DB
-        by_sight = self.prisms is not None
-        link = (
-            channel.in_sight(point.is_interferer, lost_db) if by_sight else channel.make(point.is_interferer)
-        )
+        by_sight, is_unwanted = self.prisms is not None, self.is_unwanted(point)
+        link = channel.in_sight(is_unwanted, lost_db) if by_sight else channel.make(is_unwanted)
         rows = point.antenna_profile
         return link if rows is None else with_profile(link, *zip(*rows, strict=True))
 

@@ -91,6 +91,9 @@ def marked_points(solution: Result) -> Iterator[tuple[ArrayLike, PlainTable]]:
         kind = {"kind": type(point).__name__.lower(), "name": point.name}
         power = {"power_w": point.transmit_power_w} if isinstance(point, Jammer) else {}
         yield point.position_m, kind | power | {"uncertainty_m": point.uncertainty_reach_m}
+    for source in scenario.sources:
+        power = {"power_w": source.transmit_power_w}
+        yield source.position_m, {"kind": "source", "name": source.name} | power
 
 
 def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:

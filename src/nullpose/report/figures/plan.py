@@ -77,6 +77,10 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         )
         if stage.uncertain and not isinstance(point, Terminal):
             axes.plot(*set_outline_m(point).T, color=colour, linewidth=0.8, label=f"where the {kind} may be")
+    for source in stage.scenario.sources:  # which the drone has no link with
+        place, (colour, marker) = np.asarray(source.position_m[:2]), MARKS["source"]
+        axes.scatter(*place, color=colour, marker=marker, zorder=3.0, label="source", **rim)
+        write_name(axes, source.name, place)
     reach_m = stage.axis * stage.extent_m
     ends = pose.position_m[:2] + np.outer((-reach_m, reach_m), pose.antenna_axis[:2])
     is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None

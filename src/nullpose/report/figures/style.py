@@ -26,7 +26,12 @@ NODE, JAMMER, EAVESDROPPER, NULL = "#0072b2", "#d55e00", "#b04e94", "#e69f00"
 DRONE, SURFACE = INK, "#dde2e8"
 FORBIDDEN = "#8c3b3b"
 MARKS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {"node": (NODE, "s"), "jammer": (JAMMER, "X"), "eavesdropper": (EAVESDROPPER, "D")}
+    {
+        "node": (NODE, "s"),
+        "jammer": (JAMMER, "X"),
+        "eavesdropper": (EAVESDROPPER, "D"),
+        "source": (NODE, "^"),
+    }
 )
 """Colour and marker of points: told apart in grey and with any colour vision."""
 
