@@ -74,3 +74,12 @@ def test_a_relays_destination_is_moved_like_a_node() -> None:
     assert moved.scenario.nodes == view.scenario.nodes
     with pytest.raises(ScenarioError, match=r"headed \[destination\]"):
         view.with_members("destinations", [])
+
+
+def test_a_source_is_moved_like_a_node() -> None:
+    """Where the drone jams, sources are among the points, and another place is one's own alone."""
+    view = State(scenario=load("examples/friendly-jamming.toml"))
+    assert ("sources", 0) in dict(view.points())
+    moved = view.moved(("sources", 0), (5.0, 6.0, 7.0))
+    assert moved.scenario.sources[0].position_m == (5.0, 6.0, 7.0)
+    assert moved.scenario.nodes == view.scenario.nodes

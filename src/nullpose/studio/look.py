@@ -32,6 +32,7 @@ COLOURS: Mapping[str, tuple[Rgb, Rgb]] = MappingProxyType(
         "jammers": (_rgb(JAMMER), (240, 110, 30)),
         "eavesdroppers": (_rgb(EAVESDROPPER), (222, 145, 190)),
         "destinations": (_rgb(NODE), (86, 180, 233)),
+        "sources": (_rgb(NODE), (86, 180, 233)),
         "drone": (_rgb(DRONE), (241, 243, 245)),  # of the chosen case
         "compared": (_rgb(GREY), (160, 165, 172)),  # of the second one
         "null": (_rgb(NULL), (240, 178, 40)),

@@ -183,8 +183,9 @@ MARKS = {
     **dict.fromkeys(("nodes", "destinations"), prism_mesh(shapely.box(-0.5, -0.5, 0.5, 0.5), 0.0, 1.0)),
     "jammers": merged(_four(_tube(0.22, -1.15, 1.15, 8).placed(_SLANT, [0.0, 0.0, 0.8]))),
     "eavesdroppers": revolved_mesh([0.0, 0.8, 0.0], [0.0, 1.0, 2.0], 4),
+    "sources": revolved_mesh([0.0, 0.8, 0.0], [0.0, 0.0, 1.6], 4),
 }
-"""On the origin: a cube, a cross of four diagonals, which is an X from every side, an octahedron."""
+"""On the origin: a cube, a cross of four diagonals (an X from every side), an octahedron, a pyramid."""
 
 _HULL = shapely.Polygon([(0.42, 0.0), (0.2, 0.26), (-0.34, 0.26), (-0.34, -0.26), (0.2, -0.26)])
 _ARM = prism_mesh(shapely.box(0.0, -0.05, 1.0, 0.05), -0.02, 0.06)

@@ -31,11 +31,12 @@ def shadow_shapes(state: State, size_m: float, look: Look) -> Shapes:
         size_m: of the scene, from which the hatching follows.
         look: the page's colours.
     """
+    # sources and zones have no link with it
     answer = state.shadowing
     return (
         {}
         if answer is None
-        else _shapes(answer, size_m, tuple((kind, look.colours[kind]) for kind in KINDS[:-1]))
+        else _shapes(answer, size_m, tuple((kind, look.colours[kind]) for kind in KINDS[:-2]))
     )
 
 

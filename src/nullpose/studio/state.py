@@ -21,12 +21,12 @@ from nullpose.studio.field_map import MAPS, FieldMap, Scale
 from nullpose.studio.look import scale_range
 from nullpose.studio.toml_like import toml_like
 
-Kind = Literal["nodes", "jammers", "eavesdroppers", "destinations", "no_fly"]
+Kind = Literal["nodes", "jammers", "eavesdroppers", "destinations", "sources", "no_fly"]
 """A list of the scenario, the last one being that of its airspace."""
 Key = tuple[Kind, int]
 """A ground point or a no-fly zone: which list of the scenario it is in, and where there."""
 
-KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "destinations", "no_fly")
+KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "destinations", "sources", "no_fly")
 _SCENE = ("scenario", "case", "compared", "text", "opened")
 _ROUND_M = 3  # digits of a metre that a dragged position keeps
 _ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field has all of them
