@@ -45,19 +45,14 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
     test = rows[:, node.KIND].astype(np.int64)
     ratios, weights = rows[:, node.INDEX : node.WEIGHT].astype(np.int64), rows[:, node.WEIGHT : node.TOUCH]
     has_mix, count = np.isin(test, (WORLD, TOWARDS, AFFINE)), rows[:, node.COUNT].astype(np.int64)
-    if len(family.shares):
-        # the numbers of requirements follow those of the ratios
-        tangents, required = np.zeros((2, len(rows), len(family.shares)))
-        fill_tangents(family.arrays, rows, tangents)
+    if size := len(family.shares) or len(family.pairs):
+        tangents, listed = np.zeros((2, len(rows), size))
+        (fill_tangents if len(family.shares) else fill_touched)(family.arrays, rows, tangents)
         used = np.arange(node.SUPPORT) < count[:, None]
-        required[np.nonzero(used)[0], ratios[used]] = weights[used]
-        ratios, weights, count = _order_multipliers(np.hstack([tangents, required]))
-    if len(family.pairs):
-        of_pairs, touched = np.zeros((2, len(rows), len(family.pairs)))
-        fill_touched(family.arrays, rows, touched)
-        used = np.arange(node.SUPPORT) < count[:, None]
-        of_pairs[np.nonzero(used)[0], ratios[used]] = weights[used]
-        ratios, weights, count = _order_multipliers(np.hstack([of_pairs, np.where(of_pairs > 0.0, touched, 0.0)]))
+        listed[np.nonzero(used)[0], ratios[used]] = weights[used]
+        # the numbers of requirements follow those of the ratios, those of tangents follow the pairs'
+        both = [tangents, listed] if len(family.shares) else [listed, tangents * (listed > 0.0)]
+        ratios, weights, count = _order_multipliers(np.hstack(both))
     mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0))
     point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0

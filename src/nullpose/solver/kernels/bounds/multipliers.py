@@ -232,7 +232,7 @@ def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarse
     The value is minus infinity if no axis was met inside the row's cell and band. Where no form meets the
     requirements, these are eased until one does; or their multipliers stand alone, where that bounds more.
     """
-    ratios, start, matrix, turn = family.shares.shape[0], scratch(6), scratch(6), scratch(3, 3)
+    ratios, start, matrix = family.shares.shape[0], scratch(6), scratch(6)
     row[COUNT], row[TOUCH:BALL] = 0.0, 0.0
     if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
         return -math.inf, False
@@ -274,12 +274,19 @@ def touching_form(family, axis_field, basis, row, whitening, pool, sides, coarse
     if not (is_met or found < alone):
         return alone, False
     keep_required(family, required, sides, multipliers, pool, weights, row)
-    top_eigenvector(matrix, v)
-    for i in range(3):  # out of whitened coordinates, and out of the frame
-        for m in range(3):
-            turn[m, i] = dot(basis[i], whitening[2][:, m])
-    congruence(matrix, turn, row[TOUCH:BALL])
+    keep_form(matrix, basis, whitening[2], row, v)
     return found, is_met
+
+
+@inner_kernel
+def keep_form(matrix, basis, back, row, v):
+    """Keep a form, out of whitened coordinates and out of the frame, in a row; fill its top eigenvector."""
+    turn = scratch(3, 3)
+    top_eigenvector(matrix, v)
+    for i in range(3):
+        for m in range(3):
+            turn[m, i] = dot(basis[i], back[:, m])
+    congruence(matrix, turn, row[TOUCH:BALL])
 
 
 @inner_kernel
@@ -299,7 +306,7 @@ def pair_form(family, axis_field, basis, row, whitening, pool, sides, places, co
     Over the level. It is infinite if no axis was met inside the row's cell and band.
     """
     pairs, groups, is_horizontal = family.pairs, whitening[0], has_horizontal_axes(axis_field)
-    start, matrix, turn = scratch(6), scratch(6), scratch(3, 3)
+    start, matrix = scratch(6), scratch(6)
     row[COUNT], row[TOUCH:BALL] = 0.0, 0.0
     if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
         return math.inf
@@ -317,11 +324,7 @@ def pair_form(family, axis_field, basis, row, whitening, pool, sides, places, co
     )  # fmt: skip
     fill_constraints(multipliers[:sides], sides, places, row)
     keep_largest(multipliers[sides:], count, row, False)
-    top_eigenvector(matrix, v)
-    for i in range(3):  # out of the frame
-        for m in range(3):
-            turn[m, i] = basis[i, m]
-    congruence(matrix, turn, row[TOUCH:BALL])
+    keep_form(matrix, basis, whitening[2], row, v)
     least = math.inf
     for q in range(count):
         received = form_product(heard[q], matrix), form_product(jammed[q], matrix)
@@ -349,7 +352,6 @@ def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis
     whiten(family, basis, row, workspace.denominators, mean, back)
     has_pairs = family.pairs.shape[0] > 0
     if has_pairs:  # their sums are of unit axes
-        back[:, :] = 0.0
         fill_identity(back)
     sides = constraint_forms(axis_field, basis, row, coarseness, back, pool.forms, places)
     if has_pairs:

@@ -27,16 +27,22 @@ from nullpose.solver.kernels.linear_algebra.vectors import dot, square_range
 
 
 @inner_kernel
+def add_group(family, g, weight, sums):
+    """Add a multiple of a denominator to the coefficients of the links; return what the identity gets."""
+    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
+        sums[family.denominator_point[e]] += weight * family.denominator_weight[e]
+    return weight * family.denominator_isotropic[g]
+
+
+@inner_kernel
 def add_ratio(family, k, level, weight, sums):
     """Add ``weight (N_k - t D_k)`` to the coefficients of the links; return what the identity gets, twice.
 
     As it is, and the sum of its parts without their signs, to which rounding is relative.
     """
     g = family.denominator_of[k]
-    above, below = weight * family.numerator_isotropic[k], weight * level * family.denominator_isotropic[g]
+    above, below = weight * family.numerator_isotropic[k], -add_group(family, g, -weight * level, sums)
     sums[family.numerator_point[k]] += weight * family.numerator_weight[k]
-    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-        sums[family.denominator_point[e]] -= weight * level * family.denominator_weight[e]
     return above - below, above + below
 
 
@@ -74,22 +80,13 @@ def link_to_form(family, j, row):
     return form_product(form, row[TOUCH:BALL])
 
 
-@inner_kernel
-def add_group(family, g, weight, sums):
-    """Add a multiple of a denominator to the coefficients of the links; return what the identity gets."""
-    for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
-        sums[family.denominator_point[e]] += weight * family.denominator_weight[e]
-    return weight * family.denominator_isotropic[g]
-
-
 @rare_kernel
 def touched(family, q, row):
     """Evaluate what the eavesdropper of a pair receives at the box's centre, by a row's form."""
-    trace, g = row[TOUCH] + row[TOUCH + 1] + row[TOUCH + 2], family.denominator_of[family.pairs[q, 1]]
-    total = family.denominator_isotropic[g] * trace
+    total, g = 0.0, family.denominator_of[family.pairs[q, 1]]
     for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
         total += family.denominator_weight[e] * link_to_form(family, family.denominator_point[e], row)
-    return total / trace
+    return family.denominator_isotropic[g] + total / (row[TOUCH] + row[TOUCH + 1] + row[TOUCH + 2])
 
 
 @rare_kernel

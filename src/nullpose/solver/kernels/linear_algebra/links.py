@@ -147,6 +147,13 @@ def pair_log(family, q, logs):
 
 
 @inner_kernel
+def pair_signal(family, q, which):
+    """Return what a pair's node (0) or eavesdropper (1) receives: its numerator less its denominator."""
+    k = family.pairs[q, which]
+    return family.numerator_isotropic[k] - family.denominator_isotropic[family.denominator_of[k]]
+
+
+@inner_kernel
 def pair_tangent(family, q, level, e):
     """Return constant and slope of the tangent at e that bounds a pair's node, and how ``phi`` bends there.
 
@@ -154,9 +161,7 @@ def pair_tangent(family, q, level, e):
     have beyond them, the quotient ``(1 + S_B / b) / (1 + S_E / e)`` is t or more exactly where
     ``b <= phi(e) = S_B e / ((t - 1) e + t S_E)``, which is concave for t of 1 or more.
     """
-    k, m = family.pairs[q, 0], family.pairs[q, 1]
-    wanted = family.numerator_isotropic[k] - family.denominator_isotropic[family.denominator_of[k]]
-    overheard = family.numerator_isotropic[m] - family.denominator_isotropic[family.denominator_of[m]]
+    wanted, overheard = pair_signal(family, q, 0), pair_signal(family, q, 1)
     below = (level - 1.0) * e + level * overheard
     slope = wanted * level * overheard / (below * below)
     return wanted * (level - 1.0) * (e / below) ** 2, slope, 2.0 * (level - 1.0) * slope / below
@@ -165,9 +170,7 @@ def pair_tangent(family, q, level, e):
 @inner_kernel
 def log_quotient(family, q, b, e):
     """Return the logarithm of a pair's quotient from the denominators of node and eavesdropper."""
-    k, m = family.pairs[q, 0], family.pairs[q, 1]
-    wanted = family.numerator_isotropic[k] - family.denominator_isotropic[family.denominator_of[k]]
-    overheard = family.numerator_isotropic[m] - family.denominator_isotropic[family.denominator_of[m]]
+    wanted, overheard = pair_signal(family, q, 0), pair_signal(family, q, 1)
     return math.log1p(wanted / b) - math.log1p(overheard / e)
 
 
@@ -177,10 +180,9 @@ def log_most_pair(family, q, square):
 
     No drone jams the node then, and one jams the eavesdropper as much as it can from there.
     """
-    k, m = family.pairs[q, 0], family.pairs[q, 1]
-    overheard = family.numerator_isotropic[m] - family.denominator_isotropic[family.denominator_of[m]]
-    wanted = family.numerator_isotropic[k] / family.denominator_isotropic[family.denominator_of[k]]
-    return math.log(wanted) - math.log1p(overheard / (most_heard(family, m, square) - overheard))
+    overheard, g = pair_signal(family, q, 1), family.denominator_of[family.pairs[q, 0]]
+    most = most_heard(family, family.pairs[q, 1], square) - overheard
+    return log_quotient(family, q, family.denominator_isotropic[g], most)
 
 
 @small_kernel
