@@ -113,7 +113,7 @@ def pair_multipliers(family, level, forms, sides, jammed, heard, gap, start, mul
             values[k] += step * changes[k]
         if is_centred:
             mu = max(_SHRINK * mu, 0.999 * end)
-    weight = 0.0
+    weight = 1e-290
     for k in range(total):  # to first order in the last step: the slacks alone are far less accurate
         multipliers[k] = max(0.0, 1.0 - changes[k] / slacks[k]) / slacks[k]
         if k >= sides:
