@@ -54,7 +54,7 @@ def bound_of(ratios: Ratios, level: float, jammed: np.ndarray, heard: np.ndarray
 
 @pytest.mark.parametrize("numbers", [(1, 1), (2, 1), (1, 3), (3, 2)])
 def test_multipliers_exclude_what_no_axis_reaches(numbers: tuple[int, int]) -> None:
-    """At a level that an axis reaches the sum of tangents is not negative; it is as low as it can be."""
+    """At a level that an axis reaches the sum of tangents is not negative; of one node it is as low as can be."""
     rng = np.random.default_rng(sum(numbers))
     for _ in range(6):
         ratios, below = scene(rng, *numbers)
@@ -68,7 +68,9 @@ def test_multipliers_exclude_what_no_axis_reaches(numbers: tuple[int, int]) -> N
         for level in (max(1.0, reached), 1.5 * max(1.0, reached)):
             bound, primal = bound_of(ratios, level, forms[eavesdropper], forms[node])
             assert bound >= (-1e-9 if level == reached else -np.inf)
-            assert bound == pytest.approx(primal, abs=1e-4 * np.max(forms[node, :3]))
+            assert bound >= primal - 1e-9
+            if numbers[0] == 1:  # with several nodes the last centre may not be reached
+                assert bound == pytest.approx(primal, abs=1e-4 * np.max(forms[node, :3]))
 
 
 def test_a_tangent_is_never_below_what_it_touches() -> None:
