@@ -54,7 +54,7 @@ def bound_of(ratios: Ratios, level: float, jammed: np.ndarray, heard: np.ndarray
 
 @pytest.mark.parametrize("numbers", [(1, 1), (2, 1), (1, 3), (3, 2)])
 def test_multipliers_exclude_what_no_axis_reaches(numbers: tuple[int, int]) -> None:
-    """At a level that an axis reaches the sum of tangents is not negative; of one node it is as low as can be."""
+    """At a level that an axis reaches the sum of tangents is not negative; of one node it is lowest."""
     rng = np.random.default_rng(sum(numbers))
     for _ in range(6):
         ratios, below = scene(rng, *numbers)
