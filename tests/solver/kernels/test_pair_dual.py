@@ -36,16 +36,18 @@ def scene(rng: np.random.Generator, nodes: int, eavesdroppers: int) -> tuple[Rat
     return ratios, denominators(rng, count)
 
 
-def bound_of(ratios: Ratios, level: float, jammed: np.ndarray, heard: np.ndarray) -> tuple[float, float]:
+def bound_of(ratios: Ratios, level: float, groups: np.ndarray) -> tuple[float, float]:
     """Return the largest eigenvalue of the sum of tangents, and the smallest tangent at the form found."""
-    multipliers, matrix, none = np.empty(len(jammed)), np.empty(6), np.empty((0, 6))
-    pair_multipliers(ratios, level, none, 0, jammed, heard, 1e-7, ISOTROPIC, multipliers, matrix)
+    node, eavesdropper = ratios.pairs.T
+    jammed, heard, multipliers = groups[eavesdropper], groups[node], np.empty(len(node))
+    matrix, room = np.empty(6), np.empty((len(node), 6))
+    pair_multipliers(ratios, level, groups, room, 0, 1e-7, ISOTROPIC, multipliers, matrix)
     assert np.all(multipliers >= 0.0)
     assert np.sum(multipliers) == pytest.approx(1.0, abs=1e-12)
     twice = matrix * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
     tangents = np.zeros_like(jammed)
     for q, touched in enumerate(jammed @ twice):
-        constant, slope, _ = pair_tangent(ratios, q, level, touched)
+        constant, slope = pair_tangent(ratios, q, level, touched)
         tangents[q] = slope * jammed[q] - heard[q]
         tangents[q, :3] += constant
     total = multipliers @ tangents
@@ -54,7 +56,7 @@ def bound_of(ratios: Ratios, level: float, jammed: np.ndarray, heard: np.ndarray
 
 @pytest.mark.parametrize("numbers", [(1, 1), (2, 1), (1, 3), (3, 2)])
 def test_multipliers_exclude_what_no_axis_reaches(numbers: tuple[int, int]) -> None:
-    """At a level that an axis reaches the sum of tangents is not negative; of one node it is lowest."""
+    """At a level that an axis reaches the sum of tangents is not negative, and it is nearly the lowest."""
     rng = np.random.default_rng(sum(numbers))
     for _ in range(6):
         ratios, below = scene(rng, *numbers)
@@ -66,11 +68,10 @@ def test_multipliers_exclude_what_no_axis_reaches(numbers: tuple[int, int]) -> N
         reached = float(np.max(np.min(each[node] / each[eavesdropper], axis=0)))
         forms = np.stack([below[:, i, j] for i, j in PLACES], axis=1)
         for level in (max(1.0, reached), 1.5 * max(1.0, reached)):
-            bound, primal = bound_of(ratios, level, forms[eavesdropper], forms[node])
+            bound, primal = bound_of(ratios, level, forms)
             assert bound >= (-1e-9 if level == reached else -np.inf)
             assert bound >= primal - 1e-9
-            if numbers[0] == 1:  # with several nodes the last centre may not be reached
-                assert bound == pytest.approx(primal, abs=1e-4 * np.max(forms[node, :3]))
+            assert bound == pytest.approx(primal, abs=1e-3 * np.max(forms[node, :3]))
 
 
 def test_a_tangent_is_never_below_what_it_touches() -> None:
@@ -79,9 +80,9 @@ def test_a_tangent_is_never_below_what_it_touches() -> None:
     for _ in range(100):
         ratios, _ = scene(rng, 1, 1)
         level, touched, e = 1.0 + 10.0 ** rng.uniform(-6.0, 1.0), *(10.0 ** rng.uniform(0.0, 3.0, 2))
-        constant, slope, bend = pair_tangent(ratios, 0, level, touched)
+        constant, slope = pair_tangent(ratios, 0, level, touched)
         wanted, overheard = ratios.numerator_isotropic - 1.0
         most = wanted * e / ((level - 1.0) * e + level * overheard)
         assert most <= (constant + slope * e) * (1.0 + 1e-12)
         assert log_quotient(ratios, 0, most, e) == pytest.approx(np.log(level), abs=1e-9)
-        assert bend >= 0.0
+        assert slope >= 0.0

@@ -35,7 +35,7 @@ from nullpose.solver.kernels.compiler.jit import inner_heap_kernel, inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers, positive_definite
 from nullpose.solver.kernels.linear_algebra.forms import congruence, smallest_form
-from nullpose.solver.kernels.linear_algebra.links import log_objective, log_quotient
+from nullpose.solver.kernels.linear_algebra.links import log_objective, log_quotient, row_count
 from nullpose.solver.kernels.linear_algebra.pair_dual import pair_multipliers
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_square,
@@ -305,30 +305,29 @@ def pair_form(family, axis_field, basis, row, whitening, pool, sides, places, co
 
     Over the level. It is infinite if no axis was met inside the row's cell and band.
     """
-    pairs, groups, is_horizontal = family.pairs, whitening[0], has_horizontal_axes(axis_field)
-    start, matrix = scratch(6), scratch(6)
+    groups, start, matrix, total = whitening[0], scratch(6), scratch(6), sides + row_count(family)
+    forms, multipliers = np.empty((total, 6)), np.empty(total)
     row[COUNT], row[TOUCH:BALL] = 0.0, 0.0
     if not cell_start(axis_field, basis, whitening[2], row, coarseness, start):
         return math.inf
-    count = pairs.shape[0]
-    jammed, heard, multipliers = np.empty((count, 6)), np.empty((count, 6)), np.empty(sides + count)
-    for q in range(count):
-        copy_into(groups[family.denominator_of[pairs[q, 1]]], jammed[q])
-        copy_into(groups[family.denominator_of[pairs[q, 0]]], heard[q])
-        if is_horizontal:  # no weight on the vertical
-            jammed[q, 2] = jammed[q, 4] = jammed[q, 5] = heard[q, 4] = heard[q, 5] = 0.0
-            heard[q, 2] = heard[q, 0] + heard[q, 1] + 2.0 * abs(heard[q, 3])
-    pair_multipliers(
-        family, row[LEVEL], pool.forms, sides, jammed, heard, multiplier_accuracy(coarseness), start,
-        multipliers, matrix,
-    )  # fmt: skip
+    forms[:sides] = pool.forms[:sides]
+    for q in range(
+        family.pairs.shape[0] if has_horizontal_axes(axis_field) else 0
+    ):  # no weight on the vertical
+        heard = groups[family.denominator_of[family.pairs[q, 0]]]
+        jammed = groups[family.denominator_of[family.pairs[q, 1]]]
+        jammed[2] = jammed[4] = jammed[5] = heard[4] = heard[5] = 0.0
+        heard[2] = heard[0] + heard[1] + 2.0 * abs(heard[3])
+    accuracy = multiplier_accuracy(coarseness)
+    pair_multipliers(family, row[LEVEL], groups, forms, sides, accuracy, start, multipliers, matrix)
     fill_constraints(multipliers[:sides], sides, places, row)
-    keep_largest(multipliers[sides:], count, row, False)
+    keep_largest(multipliers[sides:], total - sides, row, False)
     keep_form(matrix, basis, whitening[2], row, v)
     least = math.inf
-    for q in range(count):
-        received = form_product(heard[q], matrix), form_product(jammed[q], matrix)
-        least = min(least, log_quotient(family, q, received[0], received[1]))
+    for q in range(family.pairs.shape[0]):
+        heard = groups[family.denominator_of[family.pairs[q, 0]]]
+        jammed = groups[family.denominator_of[family.pairs[q, 1]]]
+        least = min(least, log_quotient(family, q, form_product(heard, matrix), form_product(jammed, matrix)))
     return math.exp(least) / row[LEVEL]
 
 

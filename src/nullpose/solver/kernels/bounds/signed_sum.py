@@ -96,7 +96,7 @@ def add_pairs(family, row, sums):
     for s in range(int(row[COUNT])):
         q, weight = int(row[INDEX + s]), row[WEIGHT + s]
         node, eavesdropper = family.pairs[q, 0], family.pairs[q, 1]
-        constant, slope, _ = pair_tangent(family, q, row[LEVEL], touched(family, q, row))
+        constant, slope = pair_tangent(family, q, row[LEVEL], touched(family, q, row))
         above = weight * constant
         above += add_group(family, family.denominator_of[eavesdropper], weight * slope, sums)
         below = -add_group(family, family.denominator_of[node], -weight, sums)

@@ -88,6 +88,13 @@ def feasible_step(matrix, slacks, changes, direction, trial):
 
 
 @inner_kernel
+def fill_duals(mu, slacks, changes, multipliers):
+    """Fill multipliers to first order in the last step: the slacks alone are far less accurate."""
+    for k in range(slacks.shape[0]):
+        multipliers[k] = mu * max(0.0, 1.0 - changes[k] / slacks[k]) / slacks[k]
+
+
+@inner_kernel
 def primal_value(values, shares, offset):
     """Return the smallest value, or with shares the logarithm of their mean."""
     if shares.shape[0] == 0:
@@ -132,10 +139,10 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
     for k in range(total):
         fill_slopes(forms[k], rates[k])
         rates[k, 5] = 0.0 if k < sides or is_mean else -1.0
-        values[k] = form_product(forms[k], matrix)
+        values[k], multipliers[k] = form_product(forms[k], matrix), -rates[k, 5]
     smallest = primal_value(values[sides:], shares, offset)
     mu, end = _FIRST * max(abs(level), abs(smallest)), gap * abs(level) / (total + 3)
-    s = 0.0 if is_mean else smallest - mu * (total - sides)
+    s, step = 0.0 if is_mean else smallest - mu * (total - sides), 0.0
     below = stop if stop < math.inf else -math.inf
     for _ in range(_MOST_STEPS):
         system[:, :], gradient[:] = 0.0, 0.0
@@ -148,6 +155,7 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
             add_constraints(slacks[at], duals[at], rates[at], np.int64(6), weight, system, gradient)
         add_log_det(matrix, mu, system, gradient)
         if not cholesky_factor(system, np.int64(6)):
+            step = 0.0
             break
         copy_into(gradient, direction)
         cholesky_solve(system, np.int64(6), direction)
@@ -165,10 +173,11 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
         if smallest > stop or (is_centred and (mu <= end or mu * total <= _MARGIN * (below - smallest))):
             break
         if is_centred:
+            fill_duals(mu, slacks, changes, multipliers)
             mu = max(_SHRINK * mu, 0.999 * end)
-    for k in range(total):  # to first order in the last step: the slacks alone are far less accurate
-        multipliers[k] = max(0.0, 1.0 - changes[k] / slacks[k]) / slacks[k]
-    weight = 1.0 / mu if is_mean else 0.0
+    if step > 0.0:  # else those of the last centre: past it, rounding takes over
+        fill_duals(mu, slacks, changes, multipliers)
+    weight = 1.0 if is_mean else 0.0
     for k in range(sides, 0 if is_mean else total):
         weight += multipliers[k]
     for k in range(total):

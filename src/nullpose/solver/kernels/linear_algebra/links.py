@@ -155,7 +155,7 @@ def pair_signal(family, q, which):
 
 @inner_kernel
 def pair_tangent(family, q, level, e):
-    """Return constant and slope of the tangent at e that bounds a pair's node, and how ``phi`` bends there.
+    """Return constant and slope of the tangent at e that bounds a pair's node.
 
     With ``b`` and ``e`` the denominators of node and eavesdropper and ``S_B``, ``S_E`` what their numerators
     have beyond them, the quotient ``(1 + S_B / b) / (1 + S_E / e)`` is t or more exactly where
@@ -163,8 +163,7 @@ def pair_tangent(family, q, level, e):
     """
     wanted, overheard = pair_signal(family, q, 0), pair_signal(family, q, 1)
     below = (level - 1.0) * e + level * overheard
-    slope = wanted * level * overheard / (below * below)
-    return wanted * (level - 1.0) * (e / below) ** 2, slope, 2.0 * (level - 1.0) * slope / below
+    return wanted * (level - 1.0) * (e / below) ** 2, wanted * level * overheard / (below * below)
 
 
 @inner_kernel

@@ -23,16 +23,13 @@ from nullpose.solver.kernels.compiler.scratch import scratch, zeroed
 from nullpose.solver.kernels.linear_algebra.channel import reach_of
 from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
 from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
-from nullpose.solver.kernels.linear_algebra.links import (
-    log_most_share,
-    log_objective,
-    pair_tangent,
-)
+from nullpose.solver.kernels.linear_algebra.links import log_most_share, log_objective, row_count
+from nullpose.solver.kernels.linear_algebra.pair_dual import touch_pairs
 from nullpose.solver.kernels.linear_algebra.symmetric import (
     add_scaled,
     add_square,
     copy_into,
-    form_product,
+    fill_identity,
     normalise,
     top_eigenvector,
 )
@@ -47,7 +44,6 @@ _LEAST_GAIN = 1e-9
 _LEAST_CLIMB = 1e-12
 _ROUGH = 1e-2
 _FARTHEST_M, _BISECTIONS = 1e9, 30  # of the faces beyond which a mean is too small
-_TOUCHES = 4  # axes in turn at which sums of pairs touch
 _GOLDEN = 1.2207440846057596  # the root of x^4 = x + 1: the golden ratio of three dimensions
 
 
@@ -118,67 +114,32 @@ def cut_box(family, low, high, level, box_low, box_high):
                 box_high[i] = min(box_high[i], point[i] + left)
 
 
-@inner_heap_kernel
-def likely_axis_of_pairs(family, p, axis):
-    """Do what ``likely_axis`` does for pairs: from sums that touch at an axis, then at the axis found."""
-    pairs, ratios, groups = (
-        family.pairs,
-        family.numerator_isotropic.shape[0],
-        family.denominator_isotropic.shape[0],
-    )
-    numerators, denominators = np.empty((ratios, 6)), np.empty((groups, 6))
-    forms, multipliers = np.empty((pairs.shape[0], 6)), np.empty(pairs.shape[0])
-    logs, f, start, matrix, trial = np.empty(groups), np.empty(ratios), zeroed(6), zeroed(6), scratch(3)
-    fill_forms(family, p, numerators, denominators)
-    start[:3] = 1.0 / 3.0
-    copy_into(start, matrix)
-    level, best = 1.0, -math.inf
-    for _ in range(_TOUCHES):
-        size = 0.0
-        for q in range(pairs.shape[0]):
-            jammed, heard = (
-                denominators[family.denominator_of[pairs[q, 1]]],
-                family.denominator_of[pairs[q, 0]],
-            )
-            constant, slope, _ = pair_tangent(family, q, level, form_product(jammed, matrix))
-            for m in range(6):
-                forms[q, m] = slope * jammed[m] - denominators[heard, m] + (constant if m < 3 else 0.0)
-            size = max(size, abs(form_product(forms[q], matrix)))
-        dual_multipliers(
-            forms, np.int64(0), pairs.shape[0], size, math.inf, _ROUGH, start, multipliers, matrix,
-            family.shares, 0.0,
-        )  # fmt: skip
-        top_eigenvector(matrix, trial)
-        value = log_objective(family, p, trial, logs, f)
-        if not value > best + 1e-3:
-            break
-        best, level = value, max(1.0, math.exp(value))
-        copy_into(trial, axis)
-        matrix[:] = 0.0
-        add_square(1.0, trial, matrix)
-    return best
-
-
 @heap_kernel
 def likely_axis(family, p, axis):
     """Fill the axis that the relaxation of the best axis suggests at a position; return its log value.
 
     The top eigenvector of the dual's matrix: exact unless there is a duality gap, and then a good place to
-    start. With several denominators, that of the ratios' excess over a level, taken three times more.
+    start. With several denominators, that of the ratios' excess over a level, taken three times more; with
+    pairs that of their tangents at the last axis.
     """
-    if family.pairs.shape[0] > 0:
-        return likely_axis_of_pairs(family, p, axis)
     ratios, groups = family.numerator_isotropic.shape[0], family.denominator_isotropic.shape[0]
-    numerators, denominators, forms = np.empty((ratios, 6)), np.empty((groups, 6)), np.empty((ratios, 6))
+    has_pairs, forms = family.pairs.shape[0] > 0, np.empty((row_count(family), 6))
+    numerators, denominators = np.empty((ratios, 6)), np.empty((groups, 6))
     fill_forms(family, p, numerators, denominators)
     logs, f = np.empty(groups), np.empty(ratios)
     back, mean, plain, trial = scratch(3, 3), zeroed(6), scratch(6), scratch(3)
-    for g in range(groups):
-        add_scaled(1.0 / groups, denominators[g], mean)
-    inverse_factor(mean, back)
     level, size, best = 0.0, math.inf, -math.inf
+    if has_pairs:
+        fill_identity(back)
+        mean[:3], size = 1.0 / 3.0, 1.0
+    else:
+        for g in range(groups):
+            add_scaled(1.0 / groups, denominators[g], mean)
+        inverse_factor(mean, back)
     for attempt in range(4 if groups > 1 else 1):
-        for k in range(ratios):
+        if has_pairs:
+            touch_pairs(family, max(1.0, level), denominators, mean, forms)
+        for k in range(0 if has_pairs else ratios):
             below = denominators[family.denominator_of[k]]
             for m in range(6):
                 plain[m] = numerators[k, m] + level * (mean[m] - below[m])
@@ -192,6 +153,9 @@ def likely_axis(family, p, axis):
         best = value
         copy_into(trial, axis)
         size = level = math.exp(best) if best > -20.0 else size
+        if has_pairs:
+            mean[:] = 0.0
+            add_square(1.0, trial, mean)
     return best
 
 
