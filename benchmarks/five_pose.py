@@ -59,6 +59,7 @@ def unpack(reals, counts):
         np.zeros(0),
         0.0,
         np.zeros(0),
+        np.zeros((0, 2), np.int64),
     )
     bounds = reals[e : e + 6]
     return family, bounds, reals[e + 6 : e + 6 + groups], reals[e + 6 + groups : e + 6 + groups + ratios]

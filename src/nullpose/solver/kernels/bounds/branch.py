@@ -62,6 +62,7 @@ EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes
 _HALVINGS = 3
 
 _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
+_OF_MEANS = 0.1  # of that, for means: their bounds are of second order in a box's size
 _FINEST = 0.05  # side of a cell, over a box's size, below which smaller cells tell nothing more
 _FAINT = 1e-6  # what multipliers leave over that is too little for smaller boxes to be sure to exclude
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen
@@ -180,9 +181,12 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
         if excludes(family, domain, axis_field, frame, row, workspace):
             return EXCLUDED, 1 if attempt == 2 else 0
     # Where multipliers exclude the centre, most often they exclude the halves of the box soon, and axes need
-    # not be split. With several denominators that takes long, unless they do so by more than the box's size.
-    spare = goal.spare if family.denominator_isotropic.shape[0] == 1 else max(1.0, goal.spare)
-    split_axes = followed and primal - reached > coarseness and primal > 1.0 - max(_FAINT, spare * coarseness)
+    # not be split. With several denominators that takes long, unless they do so by more than the box's size;
+    # for a mean of many ratios, too, whose gaps are small but wide.
+    is_mean = family.shares.shape[0] > 0
+    spare = max(1.0, goal.spare) if is_mean or family.denominator_isotropic.shape[0] > 1 else goal.spare
+    wide = coarseness * (_OF_MEANS if is_mean else 1.0)
+    split_axes = followed and primal - reached > wide and primal > 1.0 - max(_FAINT, spare * coarseness)
     # two forms have no duality gap (Brickman), unless a cell or a band is in force
     split_axes = split_axes and (family.numerator_isotropic.shape[0] > 2 or row[FACE] >= 0.0 or is_band)
     split_axes = split_axes or coarseness == 0.0  # one position has no halves
