@@ -61,6 +61,10 @@ _JAMMED = {
     "jammers": [],
     "eavesdroppers": [{"position_m": [35.0, 28.0, 0.0]}, {"position_m": [-30.0, 20.0, 0.0]}],
 }
+_RELAY = {
+    "transmitter": {"power_w": 0.5},
+    "destination": {"position_m": [35.0, 40.0, 0.0], "noise_w": 1e-3},
+}
 _FENCE = [[-20.0, -5.0], [40.0, -5.0], [10.0, 25.0], [40.0, 60.0], [-20.0, 60.0]]
 _ZONES = [
     {"centre_m": [-2.0, 24.0], "radius_m": 5.0, "altitude_m": [0.0, 12.0]},
@@ -141,6 +145,18 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
         ("optimum", 0.8, _scene(0.1, channel=_LAW, nodes=_OWN) | _QUIET | _within(**_SQUARE)),
         ("vertical", 1.5, _scene(channel=_CITY) | _within(**_SQUARE)),
         ("zero-interference", 0.1, _scene(channel=_LAW | {"exponent": 2.5}) | _within(**_SQUARE)),
+    ],
+    "sums and means": [
+        ("optimum", 0.1, _scene(10.0, objective="sum-rate")),
+        ("optimum", 0.2, _scene(objective="sum-rate", nodes=_WEIGHTED) | _within(**_SQUARE)),
+        ("optimum", 0.2, _scene(objective="proportional-fair") | _THREE),
+        ("vertical", 0.4, _scene(objective="proportional-fair", nodes=_WEIGHTED)),
+        ("optimum", 0.3, _scene(0.1, objective="sum-rate", nodes=_WHIPS, airframe=_LEANING)),
+    ],
+    "the drone sends": [
+        ("optimum", 0.1, _scene(objective="downlink", transmitter={"power_w": 1.0})),
+        ("optimum", 0.2, _scene(objective="relay") | _RELAY),
+        ("vertical", 0.3, _scene(objective="relay", channel=_LAW) | _RELAY | _within(**_SQUARE)),
     ],
     "friendly jamming": [
         ("optimum", 0.05, _scene() | _JAMMED | _within(x_m=[-40.0, 60.0], y_m=[-40.0, 60.0])),

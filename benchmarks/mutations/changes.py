@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.mutations.truth import Data, Problem, pose_of
+from benchmarks.mutations.truth import Data, pose_of, value_at
 from nullpose.certificate.certificate import COLUMNS
 from nullpose.certificate.file import scenario_digest
 from nullpose.errors import ScenarioError
+from nullpose.objectives import RECORDS
 from nullpose.scenario import Scenario
 
 
@@ -48,7 +49,8 @@ _LEAF = (*COLUMNS, "mixes")
 _CLAIM = ("value", "upper_bound", "position_m", "angle", "root_m", "axis", "scheme", "null_jammer")
 _FILE = ("format", "version", "scenario_sha256", "scenario", "scenario, digest redone")
 _REDONE = tuple(f"{part}, claim redone" for part in ("scenario", "airframe", "no_fly", "antenna", "channel"))
-CLASSES = (*_LEAF, *_CLAIM, *_FILE, *_REDONE, "leaf dropped", "leaf moved", "tree dropped")
+_OBJECTIVE = "objective, claim redone"
+CLASSES = (*_LEAF, *_CLAIM, *_FILE, *_REDONE, "leaf dropped", "leaf moved", "tree dropped", _OBJECTIVE)
 
 
 def paths_of(kind: str, data: Data, rng: np.random.Generator) -> list[tuple]:
@@ -90,6 +92,10 @@ def spoiled(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
     """Return a certificate's data with one change of a class, or None if it has no such place."""
     data = copy.deepcopy(sound)
     leaves = data["trees"][int(rng.integers(len(data["trees"])))]["leaves"]
+    if kind == _OBJECTIVE:
+        data["scenario"]["objective"] = str(rng.choice(list(RECORDS)))
+        data["scenario_sha256"] = scenario_digest(data["scenario"])
+        return data
     if kind in ("leaf dropped", "leaf moved"):
         row = int(rng.integers(len(leaves["box"])))
         if kind == "leaf moved":
@@ -120,7 +126,7 @@ def forged(data: Data, *, keep_bound: bool = False) -> Data | None:
         scenario = Scenario.from_dict(data["scenario"])
     except ScenarioError:
         return None
-    value = Problem(scenario).value(pose_of(data, scenario))
+    value = value_at(scenario, pose_of(data, scenario))
     factor = 1.0 if keep_bound else value / (data["value"] or 1.0)
     data["value"], data["upper_bound"] = value, max(value, factor * data["upper_bound"])
     for tree in data["trees"]:

@@ -11,15 +11,7 @@ from scipy.spatial.transform import Rotation
 from benchmarks.soundness.search import best_value
 from nullpose.channel import PointChannels, excess_gain
 from nullpose.objectives import Quantity
-from nullpose.physics import (
-    Pose,
-    Reception,
-    eavesdropper_snr,
-    maximum_gain_axis,
-    node_snr,
-    objective_value,
-    zero_interference_axis,
-)
+from nullpose.physics import Pose, Reception, maximum_gain_axis, objective_value, zero_interference_axis
 from nullpose.scenario import Scenario
 from nullpose.scenario.polygon import depth_m
 
@@ -36,12 +28,8 @@ class Problem:
         self.scenario, airspace = scenario, scenario.airspace
         nodes, jammers = scenario.node_positions_m, scenario.jammer_positions_m.reshape(-1, 3)
         gain = scenario.receiver.reference_gain
-        is_rate = scenario.objective in ("secrecy-rate", "friendly-jamming")
-        if is_rate:
-            others, last = (
-                scenario.eavesdropper_positions_m,
-                np.vstack([jammers, scenario.sender_positions_m]),
-            )
+        if scenario.objective == "secrecy-rate":
+            others, last = scenario.eavesdropper_positions_m, jammers
             sent = gain * scenario.transmitter.transmit_power_w
             self.isotropic = 1.0
             self.above = np.repeat(sent / scenario.node_noise_w, len(others))
@@ -55,8 +43,8 @@ class Problem:
             self.node = np.arange(len(nodes))
             self.below = np.tile(scale * scenario.jammer_powers_w, (len(nodes), 1))
         self.first, self.points = len(nodes), np.vstack([nodes, others, last])
-        hearers = scenario.eavesdroppers if is_rate else scenario.jammers
-        antennas = [*scenario.nodes, *hearers, *scenario.jammers, *scenario.sources][: len(self.points)]
+        hearers = scenario.eavesdroppers if scenario.objective == "secrecy-rate" else scenario.jammers
+        antennas = [*scenario.nodes, *hearers, *scenario.jammers][: len(self.points)]
         halved = np.array([0.5 if one.antenna == "circular" else 1.0 for one in antennas])
         self.above = self.above * halved[: self.first][self.node]
         self.below = self.below * halved[self.first : self.first + self.below.shape[1]]
@@ -64,7 +52,11 @@ class Problem:
         self.axes = np.array([np.array(axis) / np.linalg.norm(axis) for axis in axes])
         self.is_dipole = np.array([one.antenna == "dipole" for one in antennas])
         self.leak = getattr(scenario.antenna_record, "leak", 0.0)  # forms are of dipoles
-        heard = scenario.eavesdropper_channels if is_rate else scenario.jammer_channels
+        heard = (
+            scenario.eavesdropper_channels
+            if scenario.objective == "secrecy-rate"
+            else (scenario.jammer_channels)
+        )
         self.channels = (scenario.node_channels, heard)
         nearest = np.clip(self.points, airspace.lower_m, airspace.upper_m)
         self.balls = self.points[np.linalg.norm(self.points - nearest, axis=1) < airspace.keep_out_m]
@@ -112,16 +104,38 @@ class Problem:
 
     def value(self, pose: Pose) -> float:
         """Return the smallest ratio at a pose."""
-        orientation = pose.orientation(self.scenario.antenna_record)
-        if self.scenario.objective == "friendly-jamming":
-            received = Reception(self.scenario, pose.position_m, orientation)
-            overheard = received.overheard_sinr.max(axis=-1)
-            return float(((1.0 + received.jammed_sinr) / (1.0 + overheard)).min())
-        if self.scenario.objective != "secrecy-rate":
-            return float(objective_value(self.scenario, pose.position_m, orientation))
-        wanted = node_snr(self.scenario, pose.position_m, orientation)
-        overheard = eavesdropper_snr(self.scenario, pose.position_m, orientation)
-        return float((1.0 + wanted.min()) / (1.0 + overheard.max()))
+        return value_at(self.scenario, pose)
+
+
+def value_at(scenario: Scenario, pose: Pose) -> float:
+    """Return what a certificate's value states of a pose: a ratio, the smallest or the mean."""
+    received = Reception(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
+    if scenario.objective == "sum-rate":
+        return float(np.exp(np.average(np.log1p(received.sinr), weights=weights_of(scenario))))
+    if scenario.objective == "proportional-fair":
+        return float(np.exp(np.average(np.log(received.sinr), weights=weights_of(scenario))))
+    if scenario.objective == "friendly-jamming":
+        overheard = received.overheard_sinr.max(axis=-1)
+        return float(((1.0 + received.jammed_sinr) / (1.0 + overheard)).min())
+    if scenario.objective == "secrecy-rate":
+        return float((1.0 + received.node_snr.min()) / (1.0 + received.eavesdropper_snr.max()))
+    return float(objective_value(scenario, pose.position_m, received.axis))
+
+
+def weights_of(scenario: Scenario) -> list[float]:
+    """Return the weights that nodes have in a sum or a mean."""
+    return [1.0 if node.weight is None else node.weight for node in scenario.nodes]
+
+
+def misses(scenario: Scenario, pose: Pose) -> bool:
+    """Check whether a node has less than it requires, where a sum or a mean is maximised."""
+    if scenario.objective not in ("sum-rate", "proportional-fair"):
+        return False
+    orientation = pose.orientation(scenario.antenna_record)
+    required_db = [-np.inf if node.min_sinr_db is None else node.min_sinr_db for node in scenario.nodes]
+    with np.errstate(divide="ignore"):
+        reached_db = 10.0 * np.log10(Reception(scenario, pose.position_m, orientation).sinr)
+    return bool(np.any(reached_db < np.array(required_db) - _ROUNDING))
 
 
 def allowed_axes(data: Data, scenario: Scenario) -> dict[str, Any]:
@@ -150,17 +164,18 @@ def claim_fault(data: Data, scenario: Scenario) -> str:
     value, bound = data["value"], data["upper_bound"]
     if not value > 0.0 or bound < value:
         return "bound below the value"
-    airframe, problem, pose = scenario.airframe, Problem(scenario), pose_of(data, scenario)
+    airframe, pose = scenario.airframe, pose_of(data, scenario)
     if scenario.airspace.clearance_m(pose.position_m) < -2e-9:
         return "pose outside"
-    if np.min(np.linalg.norm(problem.points - pose.position_m, axis=1)) < (
-        scenario.airspace.keep_out_m - 1e-6
-    ):
+    points_m = np.array([point.position_m for point in scenario.points])
+    if np.min(np.linalg.norm(points_m - pose.position_m, axis=1)) < scenario.airspace.keep_out_m - 1e-6:
         return "pose kept out"
     if airframe is not None and pose.tilt_rad > airframe.tilt_max_rad + 2e-9:
         return "tilt"
-    if abs(problem.value(pose) - value) > 1e-9 * value:
+    if abs(value_at(scenario, pose) - value) > 1e-9 * value:
         return "value"
+    if misses(scenario, pose):
+        return "requirement"
     axes = allowed_axes(data, scenario)
     if not axes:
         return "scheme"
@@ -211,7 +226,8 @@ class Truth:
                 near=(pose.position_m, orientation),
                 null_jammer=data["null_jammer"],
             )
-            self._best[key] = found if Quantity.of(scenario).unit == "dB" else 2.0**found
+            rates = sum(weights_of(scenario)) if scenario.objective == "sum-rate" else 1.0
+            self._best[key] = found if Quantity.of(scenario).unit == "dB" else 2.0 ** (found / rates)
         return self._best[key]
 
     @staticmethod
