@@ -93,7 +93,7 @@ def worst(scenario: Scenario, position_m: FloatArray, axis: FloatArray, errors: 
     across = _unit(np.cross(axis, errors.across))
     axes = np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * across
     positions = position_m + scenario.receiver.position_error_m * errors.position
-    moved = np.einsum("jab,njb->nja", scenario.jammer_uncertainty_m, errors.jammers)
+    moved = scenario.jammer_uncertainty_m[:, None] * errors.jammers
     g0 = scenario.receiver.reference_gain
 
     def received(points: FloatArray, powers: FloatArray, channels: PointChannels | None) -> FloatArray:

@@ -50,8 +50,19 @@ def test_sizes_that_are_none_are_refused_by_name(run, paper, text):
 
 def test_robust_takes_these_errors_where_none_are_stated(run, paper):
     """--robust solves for the errors of --off, and says so."""
-    found = json.loads(run("solve", paper, "--robust", "--fast", "--off", "position_m=2", "--json").stdout)
+    found = json.loads(
+        run("solve", paper, "--robust", "--fast", "--off", "position_m=2,jammers_m=1.5", "--json").stdout
+    )
     assert found["scenario"]["receiver"]["position_error_m"] == 2.0
-    assert found["scenario"]["jammers"][0]["uncertainty_m"] == [10.0, 10.0, 0.0]
+    assert found["scenario"]["jammers"][0]["uncertainty_m"] == 1.5
     assert "file states no errors" in found["note"]
+    assert "axis 1 deg, position 2 m, M up to 1.5 m" in found["note"]
     assert found["robust"]["guaranteed"] <= found["sensitivity"]["all"]["value"]
+
+
+def test_assumed_balls_stay_out_of_the_airspace(run, paper):
+    """The jammer is 4 m below the floor: its ball has less than 3 m, as the note says."""
+    found = json.loads(run("solve", paper, "--robust", "--fast", "--json").stdout)
+    radius_m = found["scenario"]["jammers"][0]["uncertainty_m"]
+    assert 2.0 < radius_m < 3.0
+    assert f"M up to {radius_m:g} m" in found["note"]

@@ -92,12 +92,11 @@ def test_without_errors_it_is_the_nominal_family(secret: bool) -> None:
 
 
 def test_points_have_the_sets_of_whom_they_stand_for() -> None:
-    """Nodes are known; jammers, or with secrecy rates eavesdroppers, have their own matrices."""
+    """Nodes are known; jammers, or with secrecy rates eavesdroppers, have their own radii."""
     for secret in (False, True):
         scene = a_scene(np.random.default_rng(7), secret=secret)
-        sets_m = point_uncertainty_m(scene)
-        assert sets_m.shape == (*build_family(scene).points_m.shape, 3)
-        np.testing.assert_array_equal(sets_m[:3], np.zeros((3, 3, 3)))
-        radii = (1.0, 2.0) if secret else (2.0, 2.0)
-        np.testing.assert_array_equal(sets_m[3:5], [radius * np.eye(3) for radius in radii])
-        np.testing.assert_array_equal(sets_m[5:], np.zeros_like(sets_m[5:]))
+        radii_m = point_uncertainty_m(scene)
+        assert radii_m.shape == build_family(scene).points_m.shape[:1]
+        np.testing.assert_array_equal(radii_m[:3], np.zeros(3))
+        np.testing.assert_array_equal(radii_m[3:5], (1.0, 2.0) if secret else (2.0, 2.0))
+        np.testing.assert_array_equal(radii_m[5:], np.zeros(len(radii_m) - 5))

@@ -51,7 +51,7 @@ def test_values_of_the_downlink() -> None:
     assert quiet.eavesdropper_names == ("E1", "van")
     np.testing.assert_array_equal(quiet.eavesdropper_positions_m, [[9, 9, 1], [8, 9, 1]])
     np.testing.assert_allclose(quiet.eavesdropper_noise_w, [1e-3, 1e-6], rtol=1e-14)
-    np.testing.assert_array_equal(quiet.eavesdropper_uncertainty_m, [np.zeros((3, 3)), 2.0 * np.eye(3)])
+    np.testing.assert_array_equal(quiet.eavesdropper_uncertainty_m, [0.0, 2.0])
     np.testing.assert_allclose(quiet.node_noise_w, [1e-3, 2e-3], rtol=1e-14)
     at_first, at_second = 10.0 * (3.0 / 25.0 + 1.0 / 2600.0), 10.0 * (3.0 / 2525.0 + 1.0 / 100.0)
     noise_w = [1e-3 + at_first, 2e-3 + at_second, 0.01 + 0.1]
@@ -66,7 +66,7 @@ def test_values_of_the_downlink() -> None:
         (SECRET, True),
         (SECRET | {"eavesdroppers": SECRET["eavesdroppers"][:1]}, False),
         ({"jammers": [Jammer(position_m=(9, 9, 1), power_w=1, uncertainty_m=0.0)]}, False),
-        ({"jammers": [Jammer(position_m=(9, 9, 1), power_w=1, uncertainty_m=[0, 0, 1])]}, True),
+        ({"jammers": [Jammer(position_m=(9, 9, 1), power_w=1, uncertainty_m=1.0)]}, True),
         ({"receiver": {"noise_w": 1, "reference_gain_db": 0, "attitude_error_deg": 2}}, True),
         ({"receiver": {"noise_w": 1, "reference_gain_db": 0, "position_error_m": 0.5}}, True),
     ],

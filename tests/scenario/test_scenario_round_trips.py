@@ -22,7 +22,7 @@ places = st.lists(st.tuples(*[st.integers(-500, 500).map(float)] * 3), unique=Tr
 optional_label = st.none() | st.text(
     st.characters(exclude_categories=["C", "Z"]), min_size=1, max_size=4
 ).filter(lambda name: name not in ("S1", "S2", "M1"))
-extents = st.none() | lengths | st.lists(lengths, min_size=3, max_size=3)
+extents = st.none() | lengths
 
 airframes = st.one_of(
     st.none(),
@@ -54,8 +54,6 @@ def scenarios(draw: st.DrawFn) -> Scenario:
     margin = draw(st.sampled_from([{}, {"weight": 2.5}, {"min_sinr_db": -3.0}]))
     noise = draw(st.sampled_from([{}, {"noise_w": 2e-3, "jamming_dbm": 3.0}, {"noise_dbm": 1.0}]))
     uncertain = stated(uncertainty_m=draw(extents))
-    if isinstance(uncertain.get("uncertainty_m"), list):
-        uncertain |= stated(uncertainty_attitude_deg=draw(st.none() | st.just([10.0, -20.0, 30.0])))
     errors = {"attitude_error_deg": draw(st.sampled_from([0.0, 2.0])), "position_error_m": draw(lengths)}
     data = stated(
         name=draw(titles),

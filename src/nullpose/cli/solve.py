@@ -32,7 +32,11 @@ if TYPE_CHECKING:
     from nullpose.solver import ErrorSizes, Result
 
 _REJECTED = "{}; this is a fault of nullpose: please report it with the scenario"
-_ASSUMED = "Your file states no errors, so these defaults count (change: --off)."
+_ASSUMED = (
+    "Your file states no errors, so these count (change: --off), "
+    "balls no larger than the airspace allows: {}."
+)
+_SHRINKING, _SMALLEST_M = 0.8, 1e-3  # of balls that are assumed
 
 
 @expanded
@@ -100,6 +104,7 @@ def solve(
       vertical              the antenna upright
     """  # noqa: D301  the mark that keeps the lines as they are
     from nullpose.report.results import result_view
+    from nullpose.report.words import error_words
     from nullpose.solver import solve as solve_scenario
     from nullpose.solver.certificate_from_proof import require_certificate, verified
     from nullpose.solver.options import SolveOptions
@@ -128,8 +133,10 @@ def solve(
         refuse("with --fast, which proves nothing,", certificate=certificate, verify=verify)
     if is_checked:
         require_certificate(scenario, scheme.value, null_jammer)
-    note = _ASSUMED if robust and not scenario.is_uncertain else ""
-    scenario = _with_errors(scenario, sizes) if note else scenario
+    note = ""
+    if robust and not scenario.is_uncertain:
+        scenario = _with_errors(scenario, sizes)
+        note = _ASSUMED.format(error_words(scenario))
     target = SolveOptions(**options).of(scenario, ROBUST_GAP if robust else None).target
     with compiling_announced(proof.time_limit), GapBar(target) as bar:
         found = solve_scenario(
@@ -146,17 +153,25 @@ def solve(
 
 
 def _with_errors(scenario: Scenario, sizes: ErrorSizes) -> Scenario:
-    """Give a scenario the errors of the sizes."""
+    """Give a scenario the errors of the sizes; shrink balls until none reaches into the airspace."""
+    from nullpose.errors import ScenarioError
     from nullpose.scenario import apply_overrides
     from nullpose.scenario.overrides import Override
 
-    disc_m = [sizes.jammers_m, sizes.jammers_m, 0.0]
-    errors = {
+    kind, count = scenario.objective_record.interferers, len(scenario.interferers)
+    radii_m = {f"{kind}[{i}].uncertainty_m": sizes.jammers_m for i in range(count)}
+    pose = {
         "receiver.attitude_error_deg": sizes.attitude_deg,
         "receiver.position_error_m": sizes.position_m,
-        **{f"{scenario.interferer}s[{i}].uncertainty_m": disc_m for i in range(len(scenario.interferers))},
     }
-    return apply_overrides(scenario, [Override(path, size) for path, size in errors.items()])
+    while True:
+        try:
+            return apply_overrides(scenario, [Override(*error) for error in (pose | radii_m).items()])
+        except ScenarioError as refused:
+            reaching = {fault.path for fault in refused.faults} & radii_m.keys()
+            if not reaching or min(radii_m.values()) < _SMALLEST_M:
+                raise
+            radii_m |= {path: _SHRINKING * radii_m[path] for path in reaching}
 
 
 def _write(

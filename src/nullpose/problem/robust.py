@@ -87,7 +87,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
 
 
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
-    """Collect the matrices of the sets in which each point of the family may be, (m, 3, 3), metres."""
+    """Collect the radii of the balls in which each point of the family may be, (m,), metres."""
     family = build_family(scenario, any_channel=True)
     return _of_points(family, scenario, scenario.of_interferers("uncertainty_m"))
 

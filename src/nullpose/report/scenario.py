@@ -293,5 +293,5 @@ def _gain_words(antenna: _Point | Antenna | None) -> str:
 
 def _extents(point: _Point) -> str | None:
     """Write how far a point may be from its position; None if it is not uncertain."""
-    extents_m = np.atleast_1d(getattr(point, "uncertainty_m", None) or 0.0)
-    return " x ".join(f"{size_m:g}" for size_m in extents_m) if np.any(extents_m > 0.0) else None
+    radius_m = getattr(point, "uncertainty_m", None)
+    return f"{radius_m:g}" if radius_m else None

@@ -134,8 +134,8 @@ class PointArrays:
     """Positions of the jammers [m], (n_jammers, 3)."""
     jammer_powers_w = _stacked("jammers", "transmit_power_w")
     """Transmit powers of the jammers [W], (n_jammers,)."""
-    jammer_uncertainty_m = _stacked("jammers", "uncertainty_matrix_m", 3, 3)
-    """Matrices of the jammers' uncertainty sets [m], (n_jammers, 3, 3)."""
+    jammer_uncertainty_m = _stacked("jammers", "uncertainty_reach_m")
+    """Radii of the balls that the jammers are in [m], (n_jammers,)."""
     jammer_antennas = _antennas("jammers")
     """The jammers' antennas; None where all are isotropic."""
     jammer_channels = _channels("jammers")
@@ -150,8 +150,8 @@ class PointArrays:
     """The sources' channels; None where all are in free space with line of sight."""
     eavesdropper_positions_m = _stacked("eavesdroppers", "position_m", 3)
     """Positions of the eavesdroppers [m], (n_eavesdroppers, 3)."""
-    eavesdropper_uncertainty_m = _stacked("eavesdroppers", "uncertainty_matrix_m", 3, 3)
-    """Matrices of the eavesdroppers' uncertainty sets [m], (n_eavesdroppers, 3, 3)."""
+    eavesdropper_uncertainty_m = _stacked("eavesdroppers", "uncertainty_reach_m")
+    """Radii of the balls that the eavesdroppers are in [m], (n_eavesdroppers,)."""
     eavesdropper_antennas = _antennas("eavesdroppers")
     """The eavesdroppers' antennas; None where all are isotropic."""
     eavesdropper_channels = _channels("eavesdroppers")

@@ -13,42 +13,6 @@ from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.uncertainty import Uncertain
 
-_HALVINGS = 100  # of the multiplier's range, which is bounded relative to the answer
-
-
-def distance_m(points_m: Floats, centre_m: Floats, matrix_m: Floats) -> Floats:
-    """Measure the distance of points from the set ``{centre + A x : |x| <= 1}`` [m]; 0 inside it.
-
-    With y the offset from the centre along the principal axes, of lengths a, the nearest point of the set is
-    ``a^2 y / (a^2 + t)``; the multiplier t is 0 inside and else the positive root of
-    ``sum (a y / (a^2 + t))^2 = 1``, which falls as t grows.
-
-    Args:
-        points_m: points [m], (n, 3).
-        centre_m: middle of the set [m], (3,).
-        matrix_m: the matrix A [m], (3, 3); it may be singular.
-
-    Returns:
-        Array of shape ``(n,)``.
-    """
-    squares, axes = np.linalg.eigh(matrix_m @ matrix_m.T)
-    squares = np.where(squares > 1e-14 * max(squares.max(), 0.0), squares, 0.0)
-    offsets = (points_m - centre_m) @ axes
-    low = np.zeros(len(offsets))
-    high = np.sqrt(squares.max()) * np.linalg.norm(offsets, axis=1)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        reach = np.linalg.norm(np.sqrt(squares) * _share(offsets, squares, middle), axis=1)
-        low, high = np.where(reach > 1.0, middle, low), np.where(reach > 1.0, high, middle)
-    return np.asarray(np.linalg.norm(offsets - squares * _share(offsets, squares, high), axis=1))
-
-
-def _share(offsets: Floats, squares: Floats, multiplier: Floats) -> Floats:
-    """Return ``y / (a^2 + t)``, and 0 where both are 0."""
-    total = squares + multiplier[:, None]
-    return np.divide(offsets, total, out=np.zeros_like(offsets), where=total > 0.0)
-
-
 _TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled out counts as found
 _BATCH = 256
 
@@ -162,20 +126,17 @@ def _reach_faults(
     error: the distance may then be zero, at which the model has no limit.
     """
     for place, point in points.items():
-        reach_m, matrix_m = 0.0, np.zeros((3, 3))
-        if isinstance(point, Uncertain):
-            reach_m, matrix_m = point.uncertainty_reach_m, point.uncertainty_matrix_m
+        reach_m = point.uncertainty_reach_m if isinstance(point, Uncertain) else 0.0
         if (total_m := reach_m + error_m) == 0.0 or total_m < airspace.keep_out_m:
             continue
-        half_m = np.sqrt(np.diag(matrix_m @ matrix_m.T)) + error_m
         centre_m = np.asarray(point.position_m)
 
-        def clearance_m(at: Floats, centre_m: Floats = centre_m, matrix_m: Floats = matrix_m) -> Floats:
-            inside = error_m - distance_m(at, centre_m, matrix_m)
+        def clearance_m(at: Floats, centre_m: Floats = centre_m, total_m: float = total_m) -> Floats:
+            inside = total_m - np.linalg.norm(at - centre_m, axis=1)
             return np.asarray(np.minimum(inside, _clearance_m(airspace, centres_m, at)))
 
-        lower_m = np.maximum(airspace.lower_m, centre_m - half_m)
-        upper_m = np.minimum(airspace.upper_m, centre_m + half_m)
+        lower_m = np.maximum(airspace.lower_m, centre_m - total_m)
+        upper_m = np.minimum(airspace.upper_m, centre_m + total_m)
         met_m, _ = find_position(lower_m, upper_m, clearance_m)
         if met_m is not None:
             yield (

@@ -143,10 +143,6 @@ AxisDirection = Annotated[
     ListOf("a list of three numbers [x, y, z]: a direction, east, north and up, of any length", 3, 3),
     AfterValidator(_pointing),
 ]
-RollPitchYaw = Annotated[
-    tuple[AttitudeDegrees, AttitudeDegrees, AttitudeDegrees],
-    ListOf("a list of three angles in degrees [roll, pitch, yaw]", 3, 3),
-]
 
 
 def power_w(watts: float | None, dbm: float | None) -> float:

@@ -30,6 +30,7 @@ _CONVERSIONS = {
     r"_mhz$": "1 MHz is 1e6 Hz",
     r"_ghz$": "1 GHz is 1e9 Hz",
     r"_rad$": "1 rad is 57.29578 degrees",
+    r"uncertainty_attitude": "uncertainty_m is the radius of a ball, which has no attitude",
 }
 
 

@@ -100,7 +100,7 @@ def _point(key: Key, point: GroundPoint, state: State, size_m: float, look: Look
         )
     if isinstance(point, Jammer | Eavesdropper) and point.uncertainty_reach_m > 0.0:
         shapes[f"{name}/uncertainty"] = mesh(
-            sphere_mesh(10, 16).placed(point.uncertainty_matrix_m), colour, wireframe=True
+            sphere_mesh(10, 16), colour, wireframe=True, scale=point.uncertainty_reach_m
         )
     if kind == "jammers" and (radius_m := _ring_radius_m(key, state, size_m)) > 0.0:
         rings = _circle(radius_m) * _RINGS[:, None, None, None]

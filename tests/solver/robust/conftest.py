@@ -68,7 +68,7 @@ def draw_errors() -> Callable[..., Draw]:
         axes = np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * across
         secret = scene.objective == "secrecy-rate"
         sets_m = scene.eavesdropper_uncertainty_m if secret else scene.jammer_uncertainty_m
-        moved = np.einsum("jab,njb->nja", sets_m, in_ball(rng, count, len(sets_m)))
+        moved = sets_m[:, None] * in_ball(rng, count, len(sets_m))
         return axes, scene.receiver.position_error_m * in_ball(rng, count), moved
 
     return draw

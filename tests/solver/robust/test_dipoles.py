@@ -69,7 +69,7 @@ def hovering(*, whips: bool, seed: int = 0) -> Scenario:
     return Scenario.from_dict(
         {
             "nodes": [point(power_w=0.5) for _ in range(5)],
-            "jammers": [point(power_w=5.0) | {"uncertainty_m": [10.0, 10.0, 2.0]}],
+            "jammers": [point(power_w=5.0) | {"uncertainty_m": 3.0}],
             "receiver": receiver | {"attitude_error_deg": 3.0, "position_error_m": 3.0},
             "airspace": {"x_m": [-300.0, 300.0], "y_m": [-300.0, 300.0], "altitude_m": [30.0, 120.0]},
             "antenna": {"null_depth_db": 20.0},
@@ -78,9 +78,9 @@ def hovering(*, whips: bool, seed: int = 0) -> Scenario:
     )
 
 
-@pytest.mark.parametrize(("whips", "accuracy"), [(False, 0.03), (True, 0.2)])
+@pytest.mark.parametrize(("whips", "accuracy"), [(False, 0.05), (True, 0.3)])
 def test_the_guarantee_straight_above_a_jammer_settles(*, whips: bool, accuracy: float) -> None:
-    """In both nulls, with a leak and an ellipsoid, the bound is close after few cells and holds."""
+    """In both nulls, with a leak and a ball, the bound is close after few cells and holds."""
     scenario = hovering(whips=whips)
     position_m, axis = scenario.jammer_positions_m[0] + [0.0, 0.0, 32.0], np.array([0.0, 0.0, 1.0])
     held = guarantee(scenario, position_m, axis, accuracy=1e-2)
@@ -97,7 +97,7 @@ def test_the_guarantee_straight_above_a_jammer_settles(*, whips: bool, accuracy:
             ErrorCase.none(scenario),
             rotation_world=rotation_between(axis, turned),
             position_offset_m=3.0 * shift,
-            jammer_offsets_m=(scenario.jammer_uncertainty_m[0] @ moved)[None],
+            jammer_offsets_m=(scenario.jammer_uncertainty_m[0] * moved)[None],
         )
         assert np.all(ratios_under(scenario, position_m, axis, case)[:, 0] >= lower)
 

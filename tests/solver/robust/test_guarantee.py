@@ -21,8 +21,8 @@ KINDS = {
     "attitude and ball": {"attitude_deg": 2.0, "extent_m": 3.0},
     "position": {"position_m": 0.5},
     "all three": {"attitude_deg": 2.0, "position_m": 0.5, "extent_m": 3.0},
-    "ellipsoid": {"attitude_deg": 5.0, "extent_m": [6.0, 2.0, 0.5]},
-    "ellipsoid and position": {"position_m": 1.0, "extent_m": [0.0, 3.0, 1.0]},
+    "wide ball": {"attitude_deg": 5.0, "extent_m": 6.0},
+    "ball and position": {"position_m": 1.0, "extent_m": 3.0},
     "large turns": {"attitude_deg": 50.0, "extent_m": 1.0},
 }
 
@@ -88,7 +88,7 @@ def test_no_random_error_breaks_it_anywhere(
         assert one.worst <= one.nominal * (1.0 + 1e-9)
 
 
-@pytest.mark.parametrize("kind", ["attitude and ball", "all three", "ellipsoid and position"])
+@pytest.mark.parametrize("kind", ["attitude and ball", "all three", "ball and position"])
 def test_a_local_search_over_errors_ends_at_it(kind: str, scene_of: Callable, ratios_at: Callable) -> None:
     """A general solver over all errors together never gets below the bound, and gets within 1 % of it."""
     rng = np.random.default_rng(11)
@@ -106,7 +106,7 @@ def test_a_local_search_over_errors_ends_at_it(kind: str, scene_of: Callable, ra
         angle = float(np.linalg.norm(lean))
         way = lean / angle if angle > 0.0 else lean
         axis = math.cos(angle) * held.axis + math.sin(angle) * (way @ frame[1:])
-        return axis[None], reach * blocks[1][None], np.einsum("jab,jb->ja", sets_m, blocks[2:])[None]
+        return axis[None], reach * blocks[1][None], (sets_m[:, None] * blocks[2:])[None]
 
     for k, one in enumerate(held.ratios):
         found = math.inf
@@ -154,10 +154,9 @@ def test_larger_errors_guarantee_less(which: str, random_scene: Callable, erring
 @settings(max_examples=15)
 @given(seed=SEEDS)
 def test_turning_the_scene_changes_nothing(seed: int, random_scene: Callable, erring: Callable) -> None:
-    """Rotating and shifting everything, ellipsoids included, leaves what is guaranteed as it was."""
+    """Rotating and shifting everything, balls included, leaves what is guaranteed as it was."""
     rng = np.random.default_rng(seed)
     plain = random_scene(rng, 2, 2, 20.0, altitude_m=(-1e4, 1e4), keep_out_m=0.1).to_dict()
-    attitudes = rng.uniform(-180.0, 180.0, (2, 3))
     turn = Rotation.from_quat(rng.normal(size=4))
     shift = rng.uniform(-50.0, 50.0, 3)
     p, u = place_above(rng), rng.normal(size=3)
@@ -169,9 +168,8 @@ def test_turning_the_scene_changes_nothing(seed: int, random_scene: Callable, er
             moved[kind] = [
                 one | {"position_m": (turn.apply(one["position_m"]) + shift).tolist()} for one in plain[kind]
             ]
-        for one, attitude in zip(moved["jammers"], attitudes, strict=True):
-            angles = (turn * Rotation.from_euler("xyz", attitude, degrees=True)).as_euler("xyz", degrees=True)
-            one |= {"uncertainty_m": [4.0, 1.0, 2.0], "uncertainty_attitude_deg": angles.tolist()}
+        for each in moved["jammers"]:
+            each["uncertainty_m"] = 4.0
         moved["airspace"] = {"altitude_m": [1000.0, 1001.0]}
         moved["receiver"] = plain["receiver"] | {"attitude_error_deg": 3.0, "position_error_m": 0.3}
         return Scenario(**moved), turn.apply(p) + shift, turn.apply(u)
@@ -194,10 +192,8 @@ def test_the_case_is_allowed_and_as_bad_as_told(scene_of: Callable) -> None:
             case = one.case
             assert case.rotation_rad <= math.radians(scene.receiver.attitude_error_deg) * (1.0 + 1e-9)
             assert np.linalg.norm(case.position_offset_m) <= scene.receiver.position_error_m * (1.0 + 1e-9)
-            for offset, matrix in zip(case.jammer_offsets_m, scene.jammer_uncertainty_m, strict=True):
-                x = np.linalg.lstsq(matrix, offset, rcond=1e-6)[0]
-                assert np.linalg.norm(x) <= 1.0 + 1e-6
-                assert np.linalg.norm(matrix @ x - offset) <= 1e-7
+            away_m = np.linalg.norm(case.jammer_offsets_m, axis=1)
+            assert np.all(away_m <= scene.jammer_uncertainty_m * (1.0 + 1e-9))
             assert one.worst == pytest.approx(float(ratios_under(scene, p, held.axis, case)[k, 0]), rel=1e-13)
         assert held.worst == pytest.approx(float(objective_value(scene, p, held.axis, held.case)), rel=1e-13)
         assert held.binding.node == held.ratios[np.argmin([one.worst for one in held.ratios])].node

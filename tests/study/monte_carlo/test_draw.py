@@ -186,7 +186,7 @@ def test_what_is_not_drawn_stays(spec: Spec, paper: Scenario) -> None:
 
 
 WHIP = {"antenna": "dipole", "antenna_axis": [1.0, 0.0, 1.0], "null_depth_db": 20.0, "gain_dbi": 2.15}
-BALL = {"uncertainty_m": [2.0, 1.0, 1.0], "uncertainty_attitude_deg": [0.0, 0.0, 30.0]}
+BALL = {"uncertainty_m": 2.0}
 DOWNLINK = {"noise_dbm": -90.0, "jamming_dbm": -80.0}
 DISC = {"layout": "disc", "count": 3, "centre_m": [0.0, 25.0], "radius_m": 60.0}
 

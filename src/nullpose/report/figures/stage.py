@@ -161,6 +161,5 @@ def _key_of(scenario: Scenario) -> dict[tuple[bool, str], str]:
 def set_outline_m(point: Jammer | Eavesdropper) -> FloatArray:
     """List places around the set that a point may be anywhere in, from above, (n, 2), metres."""
     around = np.linspace(0.0, math.tau, 73)
-    turn, half_axes_m, _ = np.linalg.svd(point.uncertainty_matrix_m[:2])
-    away_m = (turn * half_axes_m) @ np.stack([np.cos(around), np.sin(around)])
-    return np.asarray(away_m.T + point.position_m[:2])
+    away_m = point.uncertainty_reach_m * np.stack([np.cos(around), np.sin(around)], axis=1)
+    return np.asarray(away_m + point.position_m[:2])

@@ -24,11 +24,9 @@ ACCURACY = 3e-3
 """Relative distance between a guarantee and the worst case found, unless another is asked for."""
 
 _FINEST = 1e-6
-_ROUND_SET = 1e-12  # semi-axes this close make a ball
-_FLATTEST = 1e-9  # semi-axes are at least this share of the largest
 _EXACT = 1e-9  # accuracy where nothing has to be split
 _STAGE_CELLS = 100_000  # cells of a node after which the level is lowered
-_STAGE_CELLS_ELLIPSOIDS, _STAGE_CELLS_DIPOLES = 4_000, 1_000  # whose bounds take so much longer
+_STAGE_CELLS_LEAK, _STAGE_CELLS_DIPOLES = 4_000, 1_000  # whose bounds take so much longer
 
 
 @checked
@@ -143,11 +141,11 @@ class Inner:
         self.moved = f"{scenario.interferer}_offsets_m"
         axes = self.family.ground_axes
         self.dipoles = axes if len(axes) else np.zeros_like(self.family.points_m)
-        self.radii, self.axes, self.semi = _shapes(point_uncertainty_m(scenario))
-        is_closed = (self.family.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
+        self.radii = point_uncertainty_m(scenario)
+        self.is_closed = (self.family.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
         if len(channels):
-            is_closed &= channels[:, 0] == CONSTANT
-        self.radii[~is_closed & (self.radii > 0.0)] = -1.0
+            self.is_closed &= channels[:, 0] == CONSTANT
+        self.is_closed |= self.radii == 0.0
 
     def worst(
         self, position_m: FloatArray, axis: FloatArray, accuracy: float = 1.0
@@ -188,22 +186,16 @@ class Inner:
             node=tuple((family.points_m[node] - p).tolist()),
             shares=family.denominator_weight[entries] / noise,
             centres=family.points_m[points] - p,
-            sets=Sets(
-                self.radii[points],
-                self.axes[points],
-                self.semi[points],
-                self.dipoles[points],
-                np.max(self.semi[points], axis=1),
-                channels,
-            ),
+            sets=Sets(self.radii[points], self.dipoles[points], channels),
             leak=family.leak,
             dipole=tuple(self.dipoles[node].tolist()),
         )
         errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
-        if np.all(numbers.sets.radii >= 0.0) and self.angle_rad == self.reach_m == 0.0:
+        is_closed = np.all(self.is_closed[points])
+        if is_closed and self.angle_rad == self.reach_m == 0.0:
             accuracy = min(accuracy, _EXACT)  # closed form
         y, offset, places = np.empty(3), np.empty(3), np.empty((len(points), 3))
-        most = _STAGE_CELLS_ELLIPSOIDS if np.any(numbers.sets.radii < 0.0) else _STAGE_CELLS
+        most = _STAGE_CELLS if is_closed else _STAGE_CELLS_LEAK
         is_slow = len(channels) or np.any(numbers.sets.dipoles)
         most = _STAGE_CELLS_DIPOLES if is_slow else most
         lower, worst, cells = worst_case(numbers, errors, accuracy, most, y, offset, places)
@@ -243,13 +235,3 @@ def _frame(u: FloatArray) -> Any:
     first = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
     first /= np.linalg.norm(first)
     return tuple(tuple(each.tolist()) for each in (u, first, np.cross(u, first)))
-
-
-def _shapes(sets_m: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Describe sets by radius, -1 for no ball, and by axes and half lengths."""
-    axes, semi, _ = np.linalg.svd(sets_m)
-    largest = semi[:, :1]
-    is_ball = np.all(semi >= largest * (1.0 - _ROUND_SET), axis=1)
-    grown = largest[:, 0] * (1.0 + 4.0 * np.finfo(float).eps)  # what rounding may have taken off
-    semi = np.maximum(semi, _FLATTEST * largest) * (1.0 + 4.0 * np.finfo(float).eps)
-    return np.where(is_ball, grown, -1.0), np.ascontiguousarray(np.swapaxes(axes, 1, 2)), semi

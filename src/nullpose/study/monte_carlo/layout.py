@@ -63,7 +63,6 @@ _PLACING = ("count", "density_per_m2", "parents", "spread_m", *_REGIONS[0], *_RE
 _PLACE = ("name", "position_m", *GEODETIC_KEYS, *ALTITUDE_KEYS)
 _DETAILS = {
     "antenna": ("antenna_axis", "antenna_file", "antenna_profile", "gain_dbi", "null_depth_db"),
-    "uncertainty_m": ("uncertainty_attitude_deg",),
 }
 
 

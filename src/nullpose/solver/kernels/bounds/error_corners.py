@@ -14,7 +14,7 @@ from nullpose.solver.kernels.linear_algebra.channel import excess_in_sight
 from nullpose.solver.kernels.linear_algebra.vectors import corner_of, cross, dot, minus, norm, row, scaled
 from nullpose.solver.kernels.search.set_links import ROUND, has_dipole
 from nullpose.solver.kernels.search.worst_case import FloatArray
-from nullpose.solver.kernels.search.worst_case_links import clearance, strongest_link
+from nullpose.solver.kernels.search.worst_case_links import strongest_link
 
 
 class Corners(NamedTuple):
@@ -113,10 +113,10 @@ def curvatures(ratio, channels, weight, level, cell, across):
     c = 2.0 * weight * length**2 * (node.slope**2 + node.length * node.bend)
     for j in range(n):
         q = minus(row(ratio.centres, j), cell.d)
-        near = clearance(ratio.sets, j, q) - swing
+        near = norm(q) - ratio.sets.radii[j] - swing
         if not near > 0.0:
             return math.inf, math.inf, math.inf
-        far = norm(q) + ratio.sets.extents[j] + swing
+        far = norm(q) + ratio.sets.radii[j] + swing
         reach = link_reach(channels, j, q, near, far, has_dipole(row(ratio.sets.dipoles, j)))
         most = across[j] + lean * reach.length + swing * length * reach.slope  # no corner is farther off
         part = 2.0 * level * ratio.shares[j] * most

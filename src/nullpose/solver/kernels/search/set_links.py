@@ -25,13 +25,10 @@ FloatArray = NDArray[np.float64]
 
 
 class Sets(NamedTuple):
-    """The sets that points are known up to, about a centre each: balls and ellipsoids."""
+    """The balls that points are known up to, about a centre each."""
 
-    radii: FloatArray  # (n,) of a ball; negative for an ellipsoid
-    axes: FloatArray  # (n, 3, 3) an ellipsoid's axes, as rows
-    semi: FloatArray  # (n, 3) and its half lengths
-    dipoles: FloatArray  # (n, 3) the axes of the dipoles there, zero where there is none; balls are of others
-    extents: FloatArray  # (n,) the largest half length of each
+    radii: FloatArray  # (n,)
+    dipoles: FloatArray  # (n, 3) the axes of the dipoles there, zero where there is none
     channels: FloatArray  # (n + 1, WIDTH) rows of their channels and the node's; no row if all are free
 
 

@@ -29,7 +29,7 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
 from nullpose.solver.kernels.search.set_links import Sets, channel_slopes, has_dipole
 from nullpose.solver.kernels.search.worst_case_links import strongest_link
 
-_LOOSE = 1e-3  # tolerance of an ellipsoid's strongest link in the search, which asks for what is attained
+_LOOSE = 1e-3  # tolerance of a ball's strongest link in the search, which asks for what is attained
 _STEPS = 200
 _TRIES = 40
 _SMALL = 1e-13

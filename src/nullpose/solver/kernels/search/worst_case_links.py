@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import math
 
+from nullpose.channel.model import CONSTANT
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.linear_algebra.channel import excess_in_sight
 from nullpose.solver.kernels.linear_algebra.vectors import (
     along,
-    components,
     cross,
     dot,
     norm,
     over,
     perpendicular,
     row,
-    rows,
 )
-from nullpose.solver.kernels.search.ellipsoid_forms import least_distance
-from nullpose.solver.kernels.search.ellipsoid_links import strongest_in_ellipsoid
-from nullpose.solver.kernels.search.set_links import ORIGIN, ROUND, ROUNDING, link_and_slopes
+from nullpose.solver.kernels.search.ball_links import strongest_by_parts
+from nullpose.solver.kernels.search.set_links import ORIGIN, ROUND, ROUNDING, has_dipole, link_and_slopes
 
 
 @inner_kernel
@@ -39,24 +37,17 @@ def strongest_in_ball(y, q, radius):
 
 
 @kernel
-def clearance(sets, j, q):
-    """Return a lower bound on the distance from the origin to set j about q; not positive if it is inside."""
-    if sets.radii[j] < 0.0:
-        return least_distance(components(rows(sets.axes[j]), q), row(sets.semi, j))
-    return norm(q) - sets.radii[j]
-
-
-@kernel
 def strongest_link(sets, j, y, q, leak, tolerance):
     """Return (attained, upper bound, place) of the largest root link of set j about q, y a unit vector."""
     radius, dipole = sets.radii[j], row(sets.dipoles, j)
-    if radius < 0.0:
-        return strongest_in_ellipsoid(sets, sets.channels, j, y, q, leak, tolerance)
     if radius == 0.0:
         scale = 1.0
         if sets.channels.shape[0] > 0:
             scale = math.sqrt(excess_in_sight(sets.channels[j], q))
         root = scale * math.sqrt(link_and_slopes(y, q, dipole, leak)[0])
         return root, root * (1.0 + ROUNDING) + 4.0 * ROUND * scale / norm(q), q
+    is_free = sets.channels.shape[0] == 0 or sets.channels[j, 0] == CONSTANT
+    if leak > 0.0 or has_dipole(dipole) or not is_free:
+        return strongest_by_parts(sets, sets.channels, j, y, q, leak, tolerance)
     most, place = strongest_in_ball(y, q, radius)
     return most, most + ROUND * norm(q) / (dot(q, q) - radius * radius), place

@@ -1,4 +1,4 @@
-"""The largest value over an ellipsoid of a form, of its ratio to another, and of its ratio to a power.
+"""The largest value over a ball of a form, of its ratio to another, and of its ratio to a power.
 
 Lemma 3 of docs/robust.md, parts 2 and 3.
 """
@@ -11,7 +11,7 @@ from typing import NamedTuple
 from nullpose.solver.kernels.compiler.jit import inner_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.symmetric import eigen3
-from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, norm, scaled, store, times
+from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, norm, scaled, store
 from nullpose.solver.kernels.search.set_links import ORIGIN, ROUNDING
 
 _ITERATIONS = 40
@@ -47,8 +47,8 @@ def lengthened(form, length):
 
 
 @inner_kernel
-def largest_form(form, q, semi):
-    """Return (an upper bound on a form over the ellipsoid ``q + semi x``, where it is about attained).
+def largest_form(form, q, radius):
+    """Return (an upper bound on a form over the ball ``q + radius x``, where it is about attained).
 
     The dual of a quadratic function over the unit ball, which has no gap: the least ``k + m + sum_i b_i^2 /
     (m - e_i)`` over m above the eigenvalues e, b being the linear part along the eigenvectors.
@@ -56,10 +56,10 @@ def largest_form(form, q, semi):
     matrix, values, vectors, pull, x = scratch(3, 3), scratch(3), scratch(3, 3), scratch(3), scratch(3)
     for i in range(3):
         unit_vector = (1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0, 1.0 if i == 2 else 0.0)
-        store(scaled(semi[i], times(semi, form_times(form, unit_vector))), matrix[i])
+        store(scaled(radius * radius, form_times(form, unit_vector)), matrix[i])
     eigen3(matrix, values, vectors)
     image = form_times(form, q)
-    slope, bound, m = times(semi, image), dot(q, image), 0.0
+    slope, bound, m = scaled(radius, image), dot(q, image), 0.0
     size = abs(bound)
     for i in range(3):
         pull[i] = slope[0] * vectors[0, i] + slope[1] * vectors[1, i] + slope[2] * vectors[2, i]
@@ -80,12 +80,12 @@ def largest_form(form, q, semi):
     for i in range(3):
         bound += pull[i] * pull[i] / (m - values[i]) if m > values[i] else 0.0
         total = along(total, x[i], (vectors[0, i], vectors[1, i], vectors[2, i]))
-    place = along(q, 1.0, times(semi, scaled(1.0 / max(1.0, norm(total)), total)))
+    place = along(q, radius / max(1.0, norm(total)), total)
     return bound + m + ROUNDING * (size + m), place
 
 
 @inner_kernel
-def largest_ratio(form, q, semi, slope, constant, nearest, place, close):
+def largest_ratio(form, q, radius, slope, constant, nearest, place, close):
     """Return (an upper bound on a form's ratio to ``slope |q'|^2 + constant``, where it is about attained).
 
     By Dinkelbach's method from a place, until the bound is relatively close to what is attained. The
@@ -94,7 +94,7 @@ def largest_ratio(form, q, semi, slope, constant, nearest, place, close):
     upper, at = math.inf, place
     ratio = dot(at, form_times(form, at)) / (slope * dot(at, at) + constant)
     for _ in range(_QUICK):
-        most, at = largest_form(lengthened(form, form.length - ratio * slope), q, semi)
+        most, at = largest_form(lengthened(form, form.length - ratio * slope), q, radius)
         upper = min(upper, ratio + max(0.0, most - ratio * constant) / (slope * nearest + constant))
         new = dot(at, form_times(form, at)) / (slope * dot(at, at) + constant)
         if new > ratio:
@@ -105,7 +105,7 @@ def largest_ratio(form, q, semi, slope, constant, nearest, place, close):
 
 
 @inner_kernel
-def bound_of_part(form, power, trials, q, semi, near, far, nearest, tolerance, best, place):
+def bound_of_part(form, power, trials, q, radius, near, far, nearest, tolerance, best, place):
     """Return (lemma 3 (2)'s bound where ``near <= |q'|^2 <= far``, where its form is about the largest).
 
     The form is over the power of ``|q'|^2``. The slope of the line under that is sought by bisection, until
@@ -117,7 +117,7 @@ def bound_of_part(form, power, trials, q, semi, near, far, nearest, tolerance, b
         touch, square, steep = min(max(slope, near), far), 0.0, power * slope ** (power - 1.0)
         constant = touch**power - steep * touch
         if steep * nearest + constant > 0.0:
-            upper, at = largest_ratio(form, q, semi, steep, constant, nearest, place, 0.2 * tolerance)
+            upper, at = largest_ratio(form, q, radius, steep, constant, nearest, place, 0.2 * tolerance)
             bound = min(bound, upper)
             if bound <= best * (1.0 + tolerance):
                 break
@@ -128,14 +128,3 @@ def bound_of_part(form, power, trials, q, semi, near, far, nearest, tolerance, b
         inside = trial < _QUICK_TRIALS and low < square < high
         slope = square if inside else 0.5 * (low + min(high, 2.0 * slope))
     return bound, at
-
-
-@inner_kernel
-def least_distance(q, semi):
-    """Return a lower bound on the distance from the origin to an ellipsoid about q; negative if inside."""
-    size = (q[0] / semi[0], q[1] / semi[1], q[2] / semi[2])
-    normal = norm((size[0] / semi[0], size[1] / semi[1], size[2] / semi[2]))
-    # the tangent plane across the line to the centre, as the ellipsoid's form sees it
-    return 0.999 * max(
-        norm(q) - max(semi[0], max(semi[1], semi[2])), norm(size) * (norm(size) - 1.0) / normal
-    )

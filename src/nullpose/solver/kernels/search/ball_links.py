@@ -1,4 +1,4 @@
-"""The strongest link that a point known up to an ellipsoid can have: lemma 3 of docs/robust.md."""
+"""The strongest link of a point in a ball, with any antennas and channel: lemma 3 of docs/robust.md."""
 
 from __future__ import annotations
 
@@ -10,23 +10,15 @@ from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import elevation_gain, sight_probability, steepness
 from nullpose.solver.kernels.linear_algebra.vectors import (
     along,
-    combination,
-    components,
     dot,
     norm,
-    over,
     row,
-    rows,
-    times,
 )
-from nullpose.solver.kernels.search.ellipsoid_forms import (
+from nullpose.solver.kernels.search.ball_forms import (
     Form,
     bound_of_part,
     form_times,
-    largest_form,
     largest_ratio,
-    least_distance,
-    lengthened,
 )
 from nullpose.solver.kernels.search.set_links import (
     ORIGIN,
@@ -46,29 +38,24 @@ _TRIALS = 14  # slopes tried for a part
 _FEW_TRIALS = 3
 _RANGE = 1e-3  # accuracy of the range of g
 _CLIMB = 6
+_UP = (0.0, 0.0, 1.0)
 
 
 @inner_kernel
 def climb(sets, channels, j, y, q, leak, place):
-    """Return (a link, its place) uphill from a place: the point whose normal is the gradient, repeatedly.
-
-    All in the axes of ellipsoid j.
-    """
-    frame, semi, axis = rows(sets.axes[j]), row(sets.semi, j), row(sets.dipoles, j)
-    y, q = combination(frame, y), combination(frame, q)
-    start = combination(frame, place)
+    """Return (a link, its place) uphill from a place: the point whose normal is the gradient, repeatedly."""
+    start, axis = place, row(sets.dipoles, j)
     best, _, slope = channel_slopes(channels, j, y, start, axis, leak)
     for _ in range(_CLIMB):
-        normal = times(semi, components(frame, slope))
-        length = norm(normal)
+        length = norm(slope)
         if not length > 0.0:
             break
-        new_place = along(q, 1.0, combination(frame, times(semi, over(normal, length))))
+        new_place = along(q, sets.radii[j] / length, slope)
         new, _, slope = channel_slopes(channels, j, y, new_place, axis, leak)
         if not new > best * (1.0 + ROUNDING):
             break
         best, start = new, new_place
-    return best, components(frame, start)
+    return best, start
 
 
 @inner_kernel
@@ -103,15 +90,15 @@ def line_over(row, slope, low, high):
 
 
 @inner_kernel
-def mean_form(row, y, up, leak, low, high, slope, weight):
+def mean_form(row, y, leak, low, high, slope, weight):
     """Return a form that over ``|q|^3`` is not below the root of a link by elevation, lemma 3 (4)."""
     line, inverse = line_over(row, slope, low, high), 0.5 / weight
     length = 0.5 * weight * leak + inverse * (line + slope)
-    return Form(y, up, 0.0, 0.5 * weight * (1.0 - leak), -inverse * slope, length)
+    return Form(y, _UP, 0.0, 0.5 * weight * (1.0 - leak), -inverse * slope, length)
 
 
 @inner_kernel
-def part_by_elevation(row, y, axis, up, leak, q, semi, part, nearest, tolerance, best, place):
+def part_by_elevation(row, y, axis, leak, q, radius, part, nearest, tolerance, best, place):
     """Return (lemma 3 (4)'s bound for a part, where its form is about the largest).
 
     Lines are a tangent of the gain and its chord, with the weights of the best place, then of the form's.
@@ -124,16 +111,16 @@ def part_by_elevation(row, y, axis, up, leak, q, semi, part, nearest, tolerance,
     root, bound, at, peak = math.sqrt(best), math.inf, place, place
     for trial in range(_LINES):
         if trial % 2 == 0:
-            angle = math.asin(min(1.0, -dot(peak, up) / norm(peak)))
+            angle = math.asin(min(1.0, -peak[2] / norm(peak)))
             p = sight_probability(row, angle)
             gain = elevation_gain(row, p)
             across = max(_SMALL, link_and_slopes(y, peak, axis, leak)[0] * dot(peak, peak))
             slope = steepness(row, gain) * gain * row[2] * p * (1.0 - p) / max(_SMALL, math.sin(2.0 * angle))
         else:
             slope = rise / max(_SMALL, high - low)
-        form = mean_form(row, y, up, leak, low, high, slope, math.sqrt(gain / across))
+        form = mean_form(row, y, leak, low, high, slope, math.sqrt(gain / across))
         upper, peak = bound_of_part(
-            form, 1.5, _FEW_TRIALS, q, semi, near, far, nearest, 0.5 * tolerance, root, peak
+            form, 1.5, _FEW_TRIALS, q, radius, near, far, nearest, 0.5 * tolerance, root, peak
         )
         if upper < bound:
             bound, at = upper, peak
@@ -143,44 +130,40 @@ def part_by_elevation(row, y, axis, up, leak, q, semi, part, nearest, tolerance,
 
 
 @kernel
-def strongest_in_ellipsoid(sets, channels, j, y, q, leak, tolerance):
-    """Return (attained, upper bound, place) of the largest root link over an ellipsoid about q, by lemma 3.
+def strongest_by_parts(sets, channels, j, y, q, leak, tolerance):
+    """Return (attained, upper bound, place) of the largest root link over ball j about q, by lemma 3.
 
-    Parts of the ellipsoid, between two distances and two values of g, are halved until the bounds of all are
+    Parts of the ball, between two distances and two values of g, are halved until the bounds of all are
     within the tolerance, or there are many. In a channel by elevation the two are squared sines of it.
     """
-    frame, semi = rows(sets.axes[j]), row(sets.semi, j)
-    y, q, axis = components(frame, y), components(frame, q), components(frame, row(sets.dipoles, j))
-    if not least_distance(q, semi) > 0.0:
+    radius, axis, distance = sets.radii[j], row(sets.dipoles, j), norm(q)
+    clear = (distance - radius) * (1.0 - ROUNDING)
+    if not clear > 0.0:
         return math.inf, math.inf, ORIGIN
-    power, scale, is_tilted = 2.0, 1.0, False
-    lengths, both = Form(y, axis, 0.0, 0.0, 0.0, 1.0), Form(y, axis, 1.0, 0.0, 0.0, 0.0)
-    up = components(frame, (0.0, 0.0, 1.0))
+    power, scale, is_tilted, both = 2.0, 1.0, False, Form(y, axis, 1.0, 0.0, 0.0, 0.0)
     if channels.shape[0] > 0:
         kind = channels[j, 0]
         if kind == BY_DISTANCE:
             power, scale = 2.0 - 0.5 * channels[j, 1], channels[j, 2] ** -channels[j, 1]
         elif kind == BY_ELEVATION:
-            is_tilted = not has_dipole(axis) and dot(q, up) + norm(times(semi, up)) <= 0.0
-            high = norm(times(semi, up)) - dot(q, up)
-            sine = min(1.0, max(0.0, high / least_distance(q, semi)))
+            is_tilted = not has_dipole(axis) and q[2] + radius <= 0.0
+            sine = min(1.0, max(0.0, (radius - q[2]) / clear))
             scale = elevation_gain(channels[j], sight_probability(channels[j], math.asin(sine)))
             if is_tilted:
-                both = Form(y, up, 0.0, 0.0, -1.0, 1.0)
-    negative, place = largest_form(lengthened(lengths, -1.0), q, semi)
-    nearest, longest = max(-negative, least_distance(q, semi) ** 2), max(semi[0], max(semi[1], semi[2]))
+                both = Form(y, _UP, 0.0, 0.0, -1.0, 1.0)
+    nearest, place = clear * clear, along(q, -radius / distance, q)
     parts = scratch(_MOST_PARTS, 4)
-    parts[0, 0], parts[0, 1] = nearest, (norm(q) + longest) ** 2
+    parts[0, 0], parts[0, 1] = nearest, (distance + radius) ** 2
     parts[0, 2] = parts[0, 3] = dot(place, form_times(both, place)) / dot(place, place)
     if (has_dipole(axis) or is_tilted) and tolerance < math.inf:
         opposite = Form(y, both.axis, -both.both, 0.0, -both.beside, -both.length)
-        parts[0, 3] = largest_ratio(both, q, semi, 1.0, 0.0, nearest, place, _RANGE)[0]
-        parts[0, 2] = -largest_ratio(opposite, q, semi, 1.0, 0.0, nearest, place, _RANGE)[0]
+        parts[0, 3] = largest_ratio(both, q, radius, 1.0, 0.0, nearest, place, _RANGE)[0]
+        parts[0, 2] = -largest_ratio(opposite, q, radius, 1.0, 0.0, nearest, place, _RANGE)[0]
     near, far, reach = nearest, parts[0, 1], 2.0 - power
     rest = 4.0 * ROUND * math.sqrt(scale * max(near**reach, far**reach) / near)
     best, place = climb(sets, channels, j, y, q, leak, place)
     for tip in range(6 if is_tilted else 0):
-        size = semi[tip % 3] if tip < 3 else -semi[tip % 3]
+        size = radius if tip < 3 else -radius
         end = size if tip % 3 == 0 else 0.0, size if tip % 3 == 1 else 0.0, size if tip % 3 == 2 else 0.0
         found, peak = climb(sets, channels, j, y, q, leak, along(q, 1.0, end))
         if found > best:
@@ -194,12 +177,12 @@ def strongest_in_ellipsoid(sets, channels, j, y, q, leak, tolerance):
         if is_tilted:
             part = near, far, low, high
             bound, at = part_by_elevation(
-                channels[j], y, axis, up, leak, q, semi, part, nearest, tolerance, best, place
+                channels[j], y, axis, leak, q, radius, part, nearest, tolerance, best, place
             )
         else:
             form = form_of(y, axis, leak, low, high)
             bound, at = bound_of_part(
-                form, power, _TRIALS, q, semi, near, far, nearest, tolerance, best / scale, place
+                form, power, _TRIALS, q, radius, near, far, nearest, tolerance, best / scale, place
             )
             bound *= scale
         found, peak = climb(sets, channels, j, y, q, leak, at)
@@ -222,8 +205,4 @@ def strongest_in_ellipsoid(sets, channels, j, y, q, leak, tolerance):
             parts[top, 1] = parts[top + 1, 0] = 0.5 * (near + far)
         top += 2
     root = math.sqrt(best)
-    return (
-        root,
-        max(root, math.sqrt(upper) * (1.0 + ROUNDING) + rest),
-        combination(frame, place),
-    )
+    return root, max(root, math.sqrt(upper) * (1.0 + ROUNDING) + rest), place
