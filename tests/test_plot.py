@@ -1,4 +1,4 @@
-"""Figures for notebooks: axes come back, those that are given are drawn on, the kinds are not mixed up."""
+"""Figures for notebooks: axes come back, those that are given are drawn on, those in 3-D are refused."""
 
 import subprocess
 import sys
@@ -37,21 +37,6 @@ def test_axes_come_back(name: str) -> None:
     solid = pyplot.figure().add_subplot(projection="3d")
     with pytest.raises(nullpose.NullposeError, match="without a projection"):
         DRAWN[name](solid)
-    pyplot.close("all")
-
-
-def test_a_pose_in_three_dimensions() -> None:
-    """Wants axes in 3-D, and has a line towards every point."""
-    axes = plot.pose(result())
-    assert sorted(line.get_label() for line in axes.lines if line.get_label() in ("node", "jammer")) == [
-        "jammer",
-        "node",
-        "node",
-    ]
-    given = pyplot.figure().add_subplot(projection="3d")
-    assert plot.pose(result(), ax=given) is given
-    with pytest.raises(nullpose.NullposeError, match="projection='3d'"):
-        plot.pose(result(), ax=pyplot.figure().add_subplot())
     pyplot.close("all")
 
 

@@ -1,7 +1,7 @@
 """Figures for notebooks: each function returns Matplotlib axes, new ones or those that it is given as ``ax``.
 
 Example:
-    ``nullpose.plot.pose(nullpose.solve(scenario))``
+    ``nullpose.plot.plan(nullpose.solve(scenario))``
 """
 
 from __future__ import annotations
@@ -11,9 +11,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from nullpose.errors import UsageError, checked, require_usage
+from nullpose.errors import checked, require_usage
 from nullpose.report.figures.dots import draw_dots
-from nullpose.report.figures.inset import draw_inset
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_field, draw_plan
 from nullpose.report.figures.stage import Stage
@@ -25,60 +24,32 @@ from nullpose.study import Field, ResultRow, ResultTable, value_map
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["comparison", "heat_map", "plan", "pose", "sweep"]
+__all__ = ["comparison", "heat_map", "plan", "sweep"]
 
 _CELLS = 121  # of a map, along its longer side
 
 
 @contextmanager
-def _axes(ax: Axes | None, size_inch: tuple[float, float], *, solid: bool = False) -> Iterator[Axes]:
+def _axes(ax: Axes | None, size_inch: tuple[float, float]) -> Iterator[Axes]:
     """Yield axes to draw on: the caller's in the caller's style, or new ones in the house's.
 
     Raises:
-        UsageError: the caller's axes are flat where an antenna is drawn in 3-D, or the reverse.
+        UsageError: the caller's axes are in 3-D.
     """
     if ax is not None:
-        if (getattr(ax, "name", "") == "3d") != solid:
-            wanted = "made with projection='3d'" if solid else "without a projection"
-            raise UsageError(f"ax: given axes of the other kind; allowed: axes {wanted}")
+        require_usage(
+            getattr(ax, "name", "") != "3d", "ax: given axes in 3-D; allowed: axes without a projection"
+        )
         yield ax
         return
     import matplotlib
     from matplotlib import pyplot
 
     with house_style():
-        figure = pyplot.figure(figsize=size_inch, layout=None if solid else "constrained")
+        figure = pyplot.figure(figsize=size_inch, layout="constrained")
         shows_by_itself = matplotlib.is_interactive()  # which a notebook turns on with its first figure
-        yield figure.add_subplot(projection="3d" if solid else None)
+        yield figure.add_subplot()
     matplotlib.interactive(shows_by_itself)
-
-
-@checked
-def pose(result: Result, ax: Axes | None = None) -> Axes:
-    """Draw the antenna at the best pose in 3-D: its pattern, its axis, and lines towards all points.
-
-    The drone is at 0 and the largest gain is 1 away from it; the lines end at the marks of :func:`plan`.
-
-    Args:
-        result: of a dipole or another antenna; of an array see ``solve --figure``.
-        ax: axes in 3-D to draw on; new ones if left out.
-
-    Raises:
-        UsageError: the axes are not in 3-D, or the result is of an array.
-
-    Example:
-        >>> import nullpose
-        >>> axes = nullpose.plot.pose(nullpose.solve(nullpose.load("examples/paper.toml")))
-        >>> axes.name
-        '3d'
-    """
-    require_usage(
-        not hasattr(result.details, "weights"),
-        "pose: given the result of an array; allowed: of one antenna. Try plot.plan(result)",
-    )
-    with _axes(ax, (4.0, 4.0), solid=True) as axes:
-        draw_inset(axes, Stage.of(result), result.pose)
-    return axes
 
 
 @checked

@@ -7,9 +7,7 @@ import pytest
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from nullpose import Pose, Scenario, solve
-from nullpose.antenna import SHORT_DIPOLE
-from nullpose.report.figures.pattern import pattern_surface
+from nullpose import Scenario, solve
 from nullpose.report.figures.style import CURVES
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.figures.vehicle import draw_least_tilt
@@ -85,19 +83,6 @@ def test_hopeless_bounds_leave_the_curves_readable(paper: Scenario) -> None:
     values = [row.min_sinr_db for row in rows]
     assert low < min(values)
     assert max(values) < high < max(values) + 10.0
-
-
-@pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (-0.9, 0.4, 0.2)])
-def test_pattern_is_sine_squared(axis: tuple[float, float, float]) -> None:
-    """In each direction the surface is as far from the drone as the gain there, and zero along the axis."""
-    pose = Pose.from_axis(np.array([1.0, -2.0, 8.0]), axis)
-    points = pattern_surface(SHORT_DIPOLE, pose, np.array([0.3, -0.5, 0.8])).reshape(3, -1).T
-    radii = np.linalg.norm(points, axis=1)
-    far = radii > 1e-6
-    cosines = points[far] @ pose.antenna_axis / radii[far]
-    assert radii[far] == pytest.approx(1.0 - cosines**2, abs=1e-9)
-    assert radii.max() == pytest.approx(1.0)
-    assert radii.min() == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.3, 0.9])

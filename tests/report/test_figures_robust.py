@@ -22,7 +22,7 @@ def test_both_poses_with_what_they_guarantee(solution: Result) -> None:
     """A plan for each, with its values in dB; the errors above them."""
     figure = draw_result(solution)
     for axes, one, name in zip(
-        figure.axes[::2],
+        figure.axes,
         (solution.details.robust, solution.details.nominal),
         ("robust pose", "best pose without errors"),
         strict=True,
@@ -38,7 +38,7 @@ def test_both_poses_with_what_they_guarantee(solution: Result) -> None:
 
 def test_both_plans_show_the_same_space(solution: Result) -> None:
     """Places can be compared: limits are the same, and both drones are inside."""
-    first, second = draw_result(solution).axes[::2]
+    first, second = draw_result(solution).axes
     assert first.get_xlim() == second.get_xlim()
     low, high = first.get_ylim()
     assert (low, high) == second.get_ylim()
@@ -49,7 +49,7 @@ def test_both_plans_show_the_same_space(solution: Result) -> None:
 def test_the_set_is_drawn_around_its_jammer(solution: Result) -> None:
     """In each plan a circle as wide as the jammer may be off, in its colour, and in the legend once."""
     figure = draw_result(solution)
-    for axes in figure.axes[::2]:
+    for axes in figure.axes:
         (outline,) = [line for line in axes.lines if line.get_label() == "where the jammer may be"]
         assert np.linalg.norm(outline.get_xydata() - [17.0, 15.0], axis=1) == pytest.approx(3.0)
         assert outline.get_color() == "#d55e00"

@@ -1,101 +1,26 @@
-"""Radiation patterns: as surfaces at a pose, and of a file in three cuts and as a surface."""
+"""The radiation pattern of a file, in three cuts and as a surface."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize, to_rgb
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
-from mpl_toolkits.mplot3d import Axes3D
-from numpy.typing import NDArray
 
-from nullpose.antenna import Antenna
 from nullpose.antenna.harmonics import directions
 from nullpose.antenna.table import PatternTable
-from nullpose.physics import Pose
-from nullpose.physics.array import steering_vectors
-from nullpose.physics.gain import antenna_gain
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import DRONE, GREY, INK, NODE, SURFACE, Look, house_style
+from nullpose.report.figures.style import GREY, INK, NODE, Look, house_style
 
-_RINGS, _CUT_STEPS, _BEAM_STEPS = 91, 97, 241  # and steps around: lobes of many elements are narrow
 _RANGE_DB, _TOP_STEP_DB, _RING_DB = 40.0, 5.0, 10.0
-_SHADE, _LIGHT = (
-    0.2,
-    np.array([-0.3, -0.6, 0.74]),
-)  # of half the darkest place; towards the light, of length 1
 _COLOURS = colormaps["viridis"]
 _SPOKES_DEG = np.arange(0, 360, 45)
 _LARGEST = 91  # rows and columns of the surface; finer ones look the same
-
-
-def pattern_surface(antenna: Antenna, pose: Pose, camera: FloatArray, open_rad: float = 0.0) -> FloatArray:
-    """Compute points on the antenna's pattern at a pose, ``(3, n, m)``: of a dipole, a doughnut.
-
-    In each direction the distance from the drone is the gain (paper eq. 1.2) over its largest.
-
-    Args:
-        antenna: whose pattern it is.
-        pose: of the drone.
-        camera: direction towards it, not along the antenna's axis, shape ``(3,)``.
-        open_rad: angle about the axis that is left out towards the camera, radians.
-    """
-    beside = np.cross(pose.antenna_axis, camera)
-    beside /= np.linalg.norm(beside)
-    frame = np.stack([np.cross(beside, pose.antenna_axis), beside, pose.antenna_axis], axis=1)
-    towards = np.tensordot(frame, _ball(_CUT_STEPS, open_rad), 1)
-    gain = antenna_gain(np.zeros(3), pose.orientation(antenna), towards.reshape(3, -1).T, antenna)
-    return np.asarray(gain.reshape(towards.shape[1:]) / antenna.peak * towards)
-
-
-def beam_surface(elements_wavelengths: FloatArray, weights: NDArray[np.complex128]) -> FloatArray:
-    """Compute points on the pattern of an array of upright dipoles, ``(3, n, m)``: rings from the zenith.
-
-    In each direction the distance from the array is proportional to ``sin^2(gamma) |w^H a|^2``, the gain of a
-    dipole times that of the combined elements, and 1 where it is largest.
-
-    Args:
-        elements_wavelengths: where the elements are, shape ``(K, 3)``.
-        weights: of the elements, complex, shape ``(K,)``.
-    """
-    towards = _ball(_BEAM_STEPS)
-    heard = steering_vectors(np.zeros(3), elements_wavelengths, towards.reshape(3, -1).T) @ np.conj(weights)
-    gain = (1.0 - towards[2] ** 2) * np.abs(heard).reshape(towards.shape[1:]) ** 2
-    return np.asarray(gain / max(gain.max(), 1e-300) * towards)
-
-
-def _ball(around: int, open_rad: float = 0.0) -> FloatArray:
-    """Compute unit vectors in rings about z from the zenith down, (3, n, m), with a gap about x."""
-    gamma, turn = np.meshgrid(
-        np.linspace(0.0, math.pi, _RINGS),
-        np.linspace(0.5 * open_rad, math.tau - 0.5 * open_rad, around),
-        indexing="ij",
-    )
-    return np.stack([np.sin(gamma) * np.cos(turn), np.sin(gamma) * np.sin(turn), np.cos(gamma)])
-
-
-def draw_surface(axes: Axes3D, surface: FloatArray, lines: Iterable[FloatArray]) -> None:
-    """Draw a pattern, ``(3, n, m)``, as a surface, darker below and inside, and lines on it, ``(3, k)``."""
-    normals = np.cross(np.gradient(surface, axis=1), np.gradient(surface, axis=2), axis=0)
-    normals /= np.maximum(np.linalg.norm(normals, axis=0), 1e-12)
-    shade = 1.0 - _SHADE * (1.0 - np.tensordot(_LIGHT, normals, 1))
-    look: Look = {
-        "facecolors": shade[..., None] * to_rgb(SURFACE),
-        "shade": False,
-        "linewidth": 0.0,
-        "antialiased": False,
-        "zorder": 5,
-        "rasterized": True,
-    }
-    axes.plot_surface(*surface, rcount=_BEAM_STEPS, ccount=_BEAM_STEPS, **look)
-    for line in lines:
-        axes.plot(*line, color=DRONE, linewidth=0.9, zorder=6)
 
 
 def draw_pattern(table: PatternTable) -> Figure:

@@ -8,16 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import distance_transform_edt
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_outlines, draw_shadows
-from nullpose.report.figures.inset import NULL_LINE
 from nullpose.report.figures.names import place_names, write_name
 from nullpose.report.figures.stage import Stage, set_outline_m
-from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, MARKS, Look, house_style, inches
+from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, INK, MARKS, NULL, Look, house_style, inches
 from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import MINUS, capitalised
 from nullpose.scenario import Scenario, Terminal
@@ -30,12 +30,17 @@ _FAR_M = 1e7  # of an airspace without an end
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # for labels and the colour bar
 _TALLEST_INCH = 8.0
 _SLIM = 0.75  # least width of a plan over its height
+_NULL_LINE: Look = {  # its rim is seen on any ground
+    "color": NULL,
+    "linewidth": 1.8,
+    "path_effects": [withStroke(linewidth=2.6, foreground=INK)],
+}
 
 
 def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = None) -> None:
     """Draw a scene from above, one metre being as long to the east as to the north.
 
-    The antenna's axis is drawn as it is seen from there: short if it is upright.
+    The antenna's axis is drawn as it is seen from there, short if it is upright; of an array the heading.
 
     Args:
         axes: where to draw, two-dimensional.
@@ -81,10 +86,13 @@ def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = N
         place, (colour, marker) = np.asarray(source.position_m[:2]), MARKS["source"]
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0, label="source", **rim)
         write_name(axes, source.name, place)
-    reach_m = stage.axis * stage.extent_m
-    ends = pose.position_m[:2] + np.outer((-reach_m, reach_m), pose.antenna_axis[:2])
-    is_null = stage.scenario.antenna_record.is_quadratic and stage.scenario.array is None
-    axes.plot(*ends.T, zorder=6.5, label="antenna axis (null)" if is_null else None, **NULL_LINE)
+    name = "antenna axis (null)" if stage.scenario.antenna_record.is_quadratic else "antenna's z axis"
+    start, ahead, look = -1.0, pose.antenna_axis[:2], _NULL_LINE | {"label": name}
+    if stage.scenario.array is not None:
+        start, ahead = 0.0, np.array([np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)])
+        look = {"color": INK, "label": "heading (yaw)"}
+    ends = pose.position_m[:2] + stage.axis * stage.extent_m * np.outer((start, 1.0), ahead)
+    axes.plot(*ends.T, zorder=6.5, **look)
     axes.scatter(x, y, color=DRONE, zorder=7, label=drone if stage.key else "drone", **rim)
 
 

@@ -1,4 +1,4 @@
-"""Poses from above, each with its antenna in 3-D: of one result, at several jamming levels, under errors."""
+"""Poses from above: of one result, at several jamming levels, under errors."""
 
 from __future__ import annotations
 
@@ -11,15 +11,13 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose
-from nullpose.report.figures.inset import draw_inset
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.stage import Stage
-from nullpose.report.figures.style import SURFACE, Look, house_style, inches, is_column
+from nullpose.report.figures.style import Look, house_style, inches, is_column
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
@@ -30,19 +28,18 @@ from nullpose.solver.array import ArrayDetails
 from nullpose.solver.robust import RobustDetails
 from nullpose.study import ResultRow
 
-_ALONE_INCH, _EACH_INCH = (8.6, 5.4), (4.0, 6.2)  # of one plan with its inset, and of each of several
-_PAGE_SHARES, _COLUMN_SHARES = (0.5, 0.6), (0.85, 1.0)  # heights over widths of one plan, and of several
-_BESIDE, _ABOVE = {"width_ratios": (1.65, 1.0)}, {"height_ratios": (1.5, 1.0)}  # of plans over insets
+_ALONE_INCH, _EACH_INCH = (6.6, 5.4), (4.0, 4.4)  # of one plan, and of each of several
+_PAGE_SHARES, _COLUMN_SHARES = (0.6, 0.5), (0.95, 0.75)  # heights over widths of one plan, and of several
 _COLUMNS, _WIDEST = (6, 3), 0.985  # of a legend and of a key at most; their width over the figure's
 _KEY_PT, _KEY_LETTERS = (6.5, 6.0), 48  # letters; in a line: a column holds so many in bold
-_PLAN_WIDTH, _AXIS_INCH = 0.5, 0.5  # of a plan with a key, over the figure's; name of the axis below it
+_PLAN_WIDTH, _AXIS_INCH = 0.8, 0.5  # of a plan with a key, over the figure's; name of the axis below it
 _LOWEST_INCH, _HIGHEST_INCH = 1.0, 75.0 / 25.4  # of such a plan, and of the figure if the key has space
 
 
 def draw_panels(
     stage: Stage, *, head: str = "", titles: Sequence[str] = ("",), width: str | None = None
 ) -> Figure:
-    """Draw each pose from above, and its antenna in 3-D: beside a single plan, below several.
+    """Draw each pose from above, several side by side.
 
     Args:
         stage: what is to be seen in each.
@@ -55,22 +52,18 @@ def draw_panels(
     share = (_COLUMN_SHARES if is_narrow else _PAGE_SHARES)[count > 1]
     with house_style(width), rc_context({"text.parse_math": False}):
         figure = Figure(figsize=inches(usual, width, share), layout="constrained")
-        grid = figure.add_gridspec(1, 2, **_BESIDE) if count == 1 else figure.add_gridspec(2, count, **_ABOVE)
-        for index, (pose, title) in enumerate(zip(stage.poses, titles, strict=True)):
-            axes = figure.add_subplot(grid[index])
+        plans = figure.subplots(1, count, squeeze=False)[0]
+        for axes, pose, title in zip(plans, stage.poses, titles, strict=True):
             axes.set_title(
                 title.replace(", ", "\n") if is_narrow else title,
                 fontsize="small" if is_narrow else "medium",
                 parse_math=True,
             )
             draw_plan(axes, stage, pose)
-            draw_inset(
-                figure.add_subplot(grid[count + index], projection="3d", facecolor="none"), stage, pose
-            )
         if width is None:
             figure.suptitle(head, fontsize=10, wrap=True)
         _draw_legend(figure, stage)
-        for axes in figure.axes[::2]:
+        for axes in figure.axes:
             place_names(axes)
     return figure
 
@@ -78,11 +71,9 @@ def draw_panels(
 def _draw_legend(figure: Figure, stage: Stage) -> None:
     """Draw the legend below all, with the key if there is one, in as many columns as there is space for."""
     marks: dict[str, dict[type, Any]] = {}
-    for axes in figure.axes[::-1]:  # what is in plans is as there
+    for axes in figure.axes:
         drawn = [*zip(*axes.get_legend_handles_labels(), strict=True)]
         marks |= {name: {type(mark): mark for mark, label in drawn if label == name} for _, name in drawn}
-    surface = f"gain of the beam for {stage.beam[0]}, horizontal cut" if stage.beam else "radiation pattern"
-    marks[surface] = {Patch: Patch(color=SURFACE)}
     keyed = stage.keyed if stage.key else []
     entries = keyed + [(name, "", name) for name in marks if name not in {kind for kind, _, _ in keyed}]
     handles: Any = [tuple(marks[kind].values()) for kind, _, _ in entries]
@@ -112,9 +103,9 @@ def draw_poses(scenario: Scenario, rows: Sequence[ResultRow]) -> Figure:
 
 
 def draw_result(result: Result, width: str | None = None) -> Figure:
-    """Draw the scene, its fence and its no-fly zones, the pose and the antenna's pattern.
+    """Draw the scene, its fence and its no-fly zones, and the pose.
 
-    Of an array the beam drawn is that of the node with the smallest value; with errors there are two poses.
+    With errors there are two poses.
 
     Args:
         result: of any kind.

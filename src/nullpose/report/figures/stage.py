@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from string import ascii_lowercase, ascii_uppercase
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
@@ -17,7 +16,6 @@ from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import capitalised, with_unit
 from nullpose.scenario import Destination, Eavesdropper, Jammer, Node, NoFlyZone, Scenario, Terminal
 from nullpose.solver import Result
-from nullpose.solver.array import ArrayDetails
 
 # Lengths drawn, as shares of the scene's extent.
 _MARGIN, _MARGIN_OF_ZONES = 0.12, 0.03  # free ground around the scene
@@ -36,7 +34,6 @@ class Stage:
         scenario: the scene.
         poses: one for each panel; all show the same space.
         axis: half-length drawn of the antenna's axis, as a share of the scene's extent.
-        beam: node of the beam of an array that is drawn, and weights of the elements, complex, (K,).
         uncertain: whether sets are drawn that jammers and eavesdroppers may be anywhere in.
         numbers: what each node gets, by its name.
         worst: nodes that get the least.
@@ -47,7 +44,6 @@ class Stage:
     scenario: Scenario
     poses: tuple[Pose, ...]
     axis: float = 0.165
-    beam: tuple[str, NDArray[np.complex128]] | None = None
     uncertain: bool = False
     numbers: Mapping[str, str] = field(default_factory=dict)
     worst: frozenset[str] = frozenset()
@@ -76,13 +72,9 @@ class Stage:
             value = with_unit(quantity.in_unit(result.objective.value), quantity)
             note = f"{capitalised(quantity.smallest)}: {value}{', at nodes in bold' if worst else ''}"
             numbers = {}
-        beam, weakest = None, result.binding_node
-        if weakest and isinstance(result.details, ArrayDetails):  # which has one for each node
-            beam = weakest, result.details.weights[[link.node for link in result.links].index(weakest)]
         return cls(
             scenario=result.scenario,
             poses=(result.pose,),
-            beam=beam,
             numbers=numbers,
             worst=worst,
             note=note,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 INK = "#1a1a1a"
 GREY = "#6b6b6b"
 NODE, JAMMER, EAVESDROPPER, NULL = "#0072b2", "#d55e00", "#b04e94", "#e69f00"
-DRONE, SURFACE = INK, "#dde2e8"
+DRONE = INK
 FORBIDDEN = "#8c3b3b"
 MARKS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
