@@ -178,24 +178,24 @@ def _solved(
     queue, pending = iter(to_do), dict[Future[bytes], Scenes]()
     while True:
         for scenes in islice(queue, max(0, crew.in_flight - len(pending))):
-            pending[crew.submit(solve_chunk, *study, *scenes)] = scenes
+            pending[crew.executor.submit(solve_chunk, *study, *scenes)] = scenes
         if not pending:
             return
         for future in wait(pending, LOOK_S, FIRST_COMPLETED).done:
             first, last = scenes = pending.pop(future)
             try:
-                content = crew.outcome(future)
+                content = crew.result(future)
             except WorkerDiedError:
                 tally.tell(f"workers died at scenes {first} to {last}: each is tried by itself")
                 deadly = [scene for scene in range(first, last + 1) if _is_deadly(crew, study, scene)]
-                content = crew.outcome(crew.submit(solve_chunk, *study, first, last, deadly))
+                content = crew.outcome(solve_chunk, *study, first, last, deadly)
             yield scenes, content
         crew.look()
 
 
 def _is_deadly(crew: Workers, study: tuple[str, str], scene: int) -> bool:
     try:
-        crew.outcome(crew.submit(solve_chunk, *study, scene, scene))
+        crew.outcome(solve_chunk, *study, scene, scene)
     except WorkerDiedError:
         return True
     return False
@@ -204,7 +204,7 @@ def _is_deadly(crew: Workers, study: tuple[str, str], scene: int) -> bool:
 def _size(spec: StudySpec, crew: Workers, study: tuple[str, str]) -> int:
     """Choose the scenes of a part, which takes about a second."""
     try:
-        seconds = crew.outcome(crew.submit(seconds_per_scene, *study))
+        seconds = crew.outcome(seconds_per_scene, *study)
     except WorkerDiedError:  # of a scene that will show again in its own part
         return 1
     return max(1, min(MOST_IN_A_PART, spec.n_scenes, int(_PART_S / max(seconds, 1e-9))))

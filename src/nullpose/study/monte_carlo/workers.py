@@ -32,7 +32,6 @@ OnLook = Callable[[int, str], None]  # called with the number of workers and a n
 
 LOOK_S = 0.5  # between two looks at the workers
 
-_IN_FLIGHT = 2  # parts for each worker: one that it solves, and the next
 _CONNECT_S = 5.0  # how long a scheduler has to answer
 
 # Libraries would start more threads in each worker.
@@ -45,29 +44,76 @@ class WorkerDiedError(Exception):
     """A worker that died of its work."""
 
 
+class _Here(Executor):
+    """This process alone, which works at once."""
+
+    def submit(self, function: Callable[..., Answer], /, *arguments: object) -> Future[Answer]:  # type: ignore[override]
+        future: Future[Answer] = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+class _Pool(Executor):
+    """Processes on this machine: new ones after one died; all end when the other end of a pipe is closed."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._watched, self._lifeline = get_context("spawn").Pipe(duplex=False)
+        self._processes = self._started()
+
+    def _started(self) -> Executor:
+        # forked processes would share the locks of numba's threads
+        return ProcessPoolExecutor(self._count, get_context("spawn"), end_with, (self._watched,))
+
+    def submit(self, function: Callable[..., Answer], /, *arguments: object) -> Future[Answer]:  # type: ignore[override]
+        # a process may be started by this; none of them hears Ctrl-C
+        with interrupts_put_off(), environment(_ONE_THREAD):
+            try:
+                return self._processes.submit(function, *arguments)
+            except BrokenExecutor:
+                self._processes.shutdown()
+                self._processes = self._started()
+                return self._processes.submit(function, *arguments)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End all processes at once, whatever they do."""
+        with interrupts_put_off():
+            self._lifeline.close()
+            self._processes.shutdown(cancel_futures=True)
+            self._watched.close()
+
+
 class Workers:
-    """An executor, and what may happen to it.
+    """An executor, and what may happen to those that work for it.
 
     Args:
+        executor: to which work is submitted.
         place: in messages.
-        on_look: called with the number of workers.
+        on_look: called with the number of workers and a note.
+        count: the number of workers.
+        ahead: parts that are with a worker at a time: one that it solves, and the next.
+        client: of a Dask cluster, whose workers come and go.
     """
 
-    deaths: tuple[type[Exception], ...] = ()
-    _executor: Executor
-
-    def __init__(self, place: str, on_look: OnLook) -> None:
-        self._place, self._on_look = place, on_look
-        self.count = 1
+    def __init__(
+        self,
+        executor: Executor,
+        place: str,
+        on_look: OnLook,
+        *,
+        count: int = 1,
+        ahead: int = 2,
+        client: Client | None = None,
+    ) -> None:
+        self.executor, self.count = executor, count
+        self._place, self._on_look, self._ahead = place, on_look, ahead
+        self._client, self._looked_s = client, -LOOK_S
+        self.look()
 
     @property
     def in_flight(self) -> int:
         """Number of parts that are submitted at a time."""
-        return _IN_FLIGHT * max(1, self.count)
-
-    def submit(self, function: Callable[..., Answer], *arguments: object) -> Future[Answer]:
-        """Submit work."""
-        return self._executor.submit(function, *arguments)
+        return self._ahead * max(1, self.count)
 
     def look(self) -> None:
         """Look whether the workers are there.
@@ -75,12 +121,30 @@ class Workers:
         Raises:
             ClusterError: they are not.
         """
-        self._on_look(self.count, "")
+        note = ""
+        if self._client is not None:
+            if self._client.status != "running":
+                raise self._lost()
+            if time.monotonic() - self._looked_s < LOOK_S:
+                return
+            try:
+                threads = self._client.nthreads()
+            except OSError as error:
+                raise self._lost() from error
+            before, self.count, self._looked_s = self.count, sum(threads.values()), time.monotonic()
+            if not threads:
+                note = f"no worker at {self._place} yet: waiting for one"
+            elif before != self.count:
+                crowded = max(threads.values()) > 1
+                hint = " (some have several threads; dask worker --nthreads 1 is faster)" if crowded else ""
+                note = f"{len(threads)} worker{'s' * (len(threads) > 1)}{hint}"
+        self._on_look(self.count, note)
 
-    def renew(self) -> None:
-        """Replace workers after one died."""
+    def outcome(self, function: Callable[..., Answer], *arguments: object) -> Answer:
+        """Submit work and wait for it, as :meth:`result` does."""
+        return self.result(self.executor.submit(function, *arguments))
 
-    def outcome(self, future: Future[Answer]) -> Answer:
+    def result(self, future: Future[Answer]) -> Answer:
         """Wait for work that was submitted.
 
         Raises:
@@ -93,106 +157,22 @@ class Workers:
             return future.result()
         except ClusterError:
             raise
-        except self.deaths as error:
-            self.renew()
-            raise WorkerDiedError from error
         except (CancelledError, OSError) as error:
-            raise self.lost() from error
+            raise self._lost() from error
         except Exception as error:
+            if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # that of Dask
+                raise WorkerDiedError from error
             raise ClusterError(
                 f"workers: those at {self._place} cannot do the work ({type(error).__name__}: {error}); they "
                 "need nullpose and its extra study as it is here: install it and start them again"
             ) from error
 
-    def lost(self) -> ClusterError:
+    def _lost(self) -> ClusterError:
         """Make the error of a scheduler that went away."""
         return ClusterError(
             f"scheduler: the one at {self._place} went away; the parts so far are kept, and the same command "
             "goes on from there once it is back (or without --scheduler, on this machine)"
         )
-
-
-class _Alone(Workers):
-    """This process alone, which works at once."""
-
-    in_flight = 1
-
-    def submit(self, function: Callable[..., Answer], *arguments: object) -> Future[Answer]:
-        future: Future[Answer] = Future()
-        try:
-            future.set_result(function(*arguments))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-
-class _Pool(Workers):
-    """Worker processes on this machine, which end when the other end of a pipe is closed."""
-
-    deaths = (BrokenExecutor,)
-
-    def __init__(self, count: int, on_look: OnLook) -> None:
-        self._size = count
-        self._watched, self._lifeline = get_context("spawn").Pipe(duplex=False)
-        super().__init__("this machine", on_look)
-        self._executor, self.count = self._started(), count
-
-    def _started(self) -> Executor:
-        # forked processes would share the locks of numba's threads
-        return ProcessPoolExecutor(self._size, get_context("spawn"), end_with, (self._watched,))
-
-    def submit(self, function: Callable[..., Answer], *arguments: object) -> Future[Answer]:
-        # a process may be started by this; none of them hears Ctrl-C
-        with interrupts_put_off(), environment(_ONE_THREAD):
-            try:
-                return super().submit(function, *arguments)
-            except BrokenExecutor:
-                self.renew()
-                return super().submit(function, *arguments)
-
-    def renew(self) -> None:
-        with interrupts_put_off():
-            self._executor.shutdown()
-            self._executor = self._started()
-
-    def end(self) -> None:
-        """End all processes at once, whatever they do."""
-        with interrupts_put_off():
-            self._lifeline.close()
-            self._executor.shutdown(cancel_futures=True)
-            self._watched.close()
-
-
-class _Cluster(Workers):
-    """The workers of a Dask cluster, which come and go."""
-
-    def __init__(self, client: Client, place: str, on_look: OnLook) -> None:
-        from distributed import KilledWorker
-
-        super().__init__(place, on_look)
-        self._executor = client.get_executor(pure=False)
-        self.deaths = (KilledWorker,)
-        self._client, self.count, self._looked_s = client, -1, -LOOK_S
-        self.look()
-
-    def look(self) -> None:
-        if self._client.status != "running":
-            raise self.lost()
-        if time.monotonic() - self._looked_s < LOOK_S:
-            return
-        try:
-            threads = self._client.nthreads()
-        except OSError as error:
-            raise self.lost() from error
-        before, self.count, self._looked_s = self.count, sum(threads.values()), time.monotonic()
-        note = ""
-        if not threads:
-            note = f"no worker at {self._place} yet: waiting for one"
-        elif before != self.count:
-            crowded = max(threads.values()) > 1
-            hint = " (some have several threads; dask worker --nthreads 1 is faster)" if crowded else ""
-            note = f"{len(threads)} worker{'s' * (len(threads) > 1)}{hint}"
-        self._on_look(self.count, note)
 
 
 @contextmanager
@@ -209,22 +189,22 @@ def workers_of(scheduler: str | None, workers: int | None, on_look: OnLook) -> I
     """
     if scheduler is not None:
         with _quiet(), _connected(scheduler) as client:
-            yield _Cluster(client, scheduler, on_look)
+            executor = client.get_executor(pure=False)
+            yield Workers(executor, scheduler, on_look, count=-1, client=client)
     elif workers == 0:
-        yield _Alone("this machine", on_look)
+        yield Workers(_Here(), "this machine", on_look, ahead=1)
     else:
-        pool = _Pool(workers or processors(), on_look)
-        try:
+        count = workers or processors()
+        with _Pool(count) as pool:
+            crew = Workers(pool, "this machine", on_look, count=count)
             try:
-                pool.outcome(pool.submit(fingerprint))
+                crew.outcome(fingerprint)
             except WorkerDiedError as error:
                 raise ClusterError(
                     "workers: no process can be started on this machine; in a script call run_study under "
                     'if __name__ == "__main__":, or give workers=0 (--workers 0)'
                 ) from error
-            yield pool
-        finally:
-            pool.end()
+            yield crew
 
 
 @contextmanager
