@@ -22,6 +22,25 @@ _VERDICTS = {
     Verdict.FALLS_SHORT: "is proved too little",
     Verdict.NOT_PROVED: "is proved neither enough nor too little",
 }
+# Of a kind of vehicle: whether some were found enough, and whether all that is said of them is proved.
+_LEAST = {
+    (True, True): "{vehicle} {reach}. Proved enough.{others}",
+    (True, False): "{vehicle} {reach}. Found enough, not proved.{others}",
+    (False, True): "No {kind} compared is enough (proved). The nearest, {phrase}, {reach}.",
+    (False, False): "No {kind} compared was found enough (not proved of all). "
+    "The nearest, {phrase}, {reach}.",
+}
+# Of stated antennas: whether every node is received at the best pose for the paper's.
+_ANTENNAS = {
+    True: "The best pose for the paper's antennas gives {change} if the antennas are the stated ones. "
+    "The best pose for the stated antennas gives {gain} more than that.",
+    False: "The best pose for the paper's antennas leaves a node without signal if the antennas are the "
+    "stated ones. The best pose for the stated antennas reaches {possible}.",
+}
+_KINDS = {
+    "dipole at the best mount": (BEST_MOUNT,),
+    "vertical or horizontal dipole": ("-vertical", "-horizontal"),
+}
 
 
 def answer_lines(comparison: ResultTable) -> list[str]:
@@ -29,24 +48,21 @@ def answer_lines(comparison: ResultTable) -> list[str]:
 
     Of each kind the least that suffices, or the nearest.
     """
-    if all(row.objective.value <= 0.0 for row in dipoles(comparison)):
+    single = dipoles(comparison)
+    if all(row.objective.value <= 0.0 for row in single):
         return ["No vehicle compared with one dipole was found to reach every node."]
-    ends = {
-        "dipole at the best mount": (BEST_MOUNT,),
-        "vertical or horizontal dipole": ("-vertical", "-horizontal"),
-    }
-    kinds = {
-        kind: [row for row in dipoles(comparison) if row.name.endswith(end)] for kind, end in ends.items()
-    }
+    kinds = {kind: [row for row in single if row.name.endswith(end)] for kind, end in _KINDS.items()}
     kinds["array"] = [row for row in comparison.rows if row.case.array is not None]
-    lines = [_least_line(comparison, kind, found) for kind, found in kinds.items() if found]
-    lines += [
-        f"{capitalised(row.case.phrase)} {_VERDICTS[verdict_on(comparison, row)]}: "
-        f"it {_reach(comparison, row)}."
-        for row in comparison.rows
-        if row.name == FILE_VEHICLE
+    stated = [row for row in comparison.rows if row.name == FILE_VEHICLE]
+    return [
+        *(_least_line(comparison, kind, found) for kind, found in kinds.items() if found),
+        *(
+            f"{capitalised(row.case.phrase)} {_VERDICTS[verdict_on(comparison, row)]}: "
+            f"it {_reach(comparison, row)}."
+            for row in stated
+        ),
+        "The least tilt for each mount of the dipole: nullpose vehicle FILE",
     ]
-    return [*lines, "The least tilt for each mount of the dipole: nullpose vehicle FILE"]
 
 
 def sufficing(quantity: Quantity) -> list[str]:
@@ -63,20 +79,22 @@ def _least_line(comparison: ResultTable, kind: str, found: Sequence[ResultRow]) 
     enough = (1.0 - TOLERANCE) * comparison.of(OMNIDIRECTIONAL)[0].objective.value
     close = [row for row in found if row.objective.value >= enough]
     proved = [row for row in close if verdict_on(comparison, row) is Verdict.SUFFICES]
-    if close:
-        row, how = (proved or close)[0], "Proved enough" if proved else "Found enough, not proved"
-        less, (size, least) = "less tilt", (_tilt_rad(row), _tilt_rad(found[0]))
-        if row.case.array and found[0].case.array:
-            less, size, least = "fewer elements", row.case.array.elements, found[0].case.array.elements
-        others = f" No {kind} with {less} was." if least < size else ""
-        return f"{capitalised(row.case.phrase)} {_reach(comparison, row)}. {how}.{others}"
-    nearest = max(found, key=lambda row: row.objective.value)
     are_short = all(verdict_on(comparison, row) is Verdict.FALLS_SHORT for row in found)
-    how = "is enough (proved)" if are_short else "was found enough (not proved of all)"
-    return f"No {kind} compared {how}. The nearest, {nearest.case.phrase}, {_reach(comparison, nearest)}."
+    row = (proved or close or [max(found, key=lambda row: row.objective.value)])[0]
+    less = "fewer elements" if row.case.array else "less tilt"
+    return _LEAST[bool(close), bool(proved) if close else are_short].format(
+        kind=kind,
+        phrase=row.case.phrase,
+        vehicle=capitalised(row.case.phrase),
+        reach=_reach(comparison, row),
+        others=f" No {kind} with {less} was." if _size(found[0]) < _size(row) else "",
+    )
 
 
-def _tilt_rad(row: ResultRow) -> float:
+def _size(row: ResultRow) -> float:
+    """Return what a vehicle takes: elements of an array, or else tilt [rad]."""
+    if row.case.array:
+        return row.case.array.elements
     return row.case.airframe.tilt_max_rad if row.case.airframe else 0.0
 
 
@@ -94,15 +112,10 @@ def antennas_answer(comparison: ResultTable) -> str:
     objectives = [comparison.of(name)[0].objective for name in ("promised", "received", "possible")]
     quantity = objectives[0].quantity
     promised, received, possible = (quantity.in_unit(objective.value) for objective in objectives)
-    pose, other = "The best pose for the paper's antennas", "The best pose for the stated antennas"
-    if not math.isfinite(received):
-        return (
-            f"{pose} leaves a node without signal if the antennas are the stated ones. "
-            f"{other} reaches {with_unit(possible, quantity)}."
-        )
-    return (
-        f"{pose} gives {_less_or_more(received - promised, quantity)} if the antennas are the stated ones. "
-        f"{other} gives {with_unit(abs(possible - received), quantity)} more than that."
+    return _ANTENNAS[math.isfinite(received)].format(
+        change=_less_or_more(received - promised, quantity),
+        gain=with_unit(abs(possible - received), quantity),
+        possible=with_unit(possible, quantity),
     )
 
 
