@@ -1,6 +1,6 @@
 # The public interface: each name stands here once, and is imported at its first use.
 
-from . import plot as plot
+from . import objective as objective, plot as plot
 from .certificate.verify import verify as verify
 from .errors import (
     Fault as Fault,
@@ -11,7 +11,6 @@ from .errors import (
     UsageError as UsageError,
     WrongTypeError as WrongTypeError,
 )
-from .objectives import objective as objective
 from .physics import (
     Link as Link,
     Pose as Pose,

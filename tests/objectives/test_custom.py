@@ -10,7 +10,7 @@ import pytest
 import nullpose
 from nullpose import Scenario
 from nullpose.errors import ScenarioError
-from nullpose.objectives import Custom
+from nullpose.objective import Custom
 
 FIELD: dict[str, Any] = {
     "nodes_m": [[0, 0, 0], [0, 50, 0], [30, 10, 0]],
@@ -21,7 +21,7 @@ FIELD: dict[str, Any] = {
 
 
 def test_it_stands_beside_the_other_names_of_the_package() -> None:
-    """As ``nullpose.objective.Custom``."""
+    """As ``nullpose.objective.Custom``, and imported from there."""
     assert nullpose.objective.Custom is Custom
 
 

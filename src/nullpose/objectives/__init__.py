@@ -6,7 +6,6 @@ in the line ``RECORDS`` below.
 
 from __future__ import annotations
 
-from nullpose.objectives import custom as objective
 from nullpose.objectives.custom import Custom
 from nullpose.objectives.downlink import DOWNLINK
 from nullpose.objectives.friendly_jamming import FRIENDLY_JAMMING
@@ -28,7 +27,6 @@ __all__ = [
     "ObjectiveRecord",
     "Quantity",
     "Ratios",
-    "objective",
 ]
 
 _ALL = (MIN_SINR, SUM_RATE, PROPORTIONAL_FAIR, SECRECY_RATE, DOWNLINK, RELAY, FRIENDLY_JAMMING)

@@ -1,0 +1,7 @@
+"""Objectives of the user's own: ``from nullpose.objective import Custom``."""
+
+from __future__ import annotations
+
+from nullpose.objectives.custom import Custom
+
+__all__ = ["Custom"]
