@@ -18,7 +18,7 @@ from twins import write
 import nullpose
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.stage import Stage
+from nullpose.report.figures.plan_scene import PlanScene
 from nullpose.report.figures.style import INK, VEHICLES, house_style
 from nullpose.solver import solve
 
@@ -54,7 +54,7 @@ def plan_of(name: str, title: str, **more: bool) -> Callable[[Figure], None]:
 
     def draw(figure: Figure) -> None:
         result = solve(nullpose.load(EXAMPLES / f"{name}.toml"), gap=1e-2, **more)
-        stage = Stage(scenario=result.scenario, poses=(result.pose,), axis=AXIS, uncertain=bool(more))
+        stage = PlanScene(scenario=result.scenario, poses=(result.pose,), axis=AXIS, uncertain=bool(more))
         axes = framed(figure, title)
         draw_plan(axes, stage, result.pose)
         axes.set(xlabel="", ylabel="", xticks=[], yticks=[])

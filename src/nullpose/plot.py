@@ -15,7 +15,7 @@ from nullpose.errors import checked, require_usage
 from nullpose.report.figures.dots import draw_dots
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_field, draw_plan
-from nullpose.report.figures.stage import Stage
+from nullpose.report.figures.plan_scene import PlanScene
 from nullpose.report.figures.style import house_style
 from nullpose.report.figures.sweep import draw_sweep_axes
 from nullpose.solver import Result
@@ -69,7 +69,7 @@ def plan(result: Result, ax: Axes | None = None) -> Axes:
         'East x (m)'
     """
     with _axes(ax, (5.0, 5.0)) as axes:
-        draw_plan(axes, Stage.of(result), result.pose)
+        draw_plan(axes, PlanScene.of(result), result.pose)
         place_names(axes)
     return axes
 

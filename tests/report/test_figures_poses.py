@@ -10,8 +10,8 @@ from nullpose import Pose, Scenario, load, solve, sweep
 from nullpose.errors import UsageError
 from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.plan import draw_value_map
+from nullpose.report.figures.plan_scene import PlanScene
 from nullpose.report.figures.poses import draw_result
-from nullpose.report.figures.stage import Stage
 from nullpose.report.figures.style import prepare_figure_file, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.geometry import outline_m
@@ -64,14 +64,14 @@ def test_buildings_are_drawn_with_their_shadows() -> None:
 def test_zones_far_away_are_left_out() -> None:
     """A zone or a fence that reaches far beyond the scene is not drawn; a cylinder encloses its circle."""
     scenario = load(EXAMPLES / "no-fly.toml")
-    stage = Stage(scenario=scenario, poses=(Pose(np.array([0.0, 25.0, 8.0]), 0.0, 0.0),))
+    stage = PlanScene(scenario=scenario, poses=(Pose(np.array([0.0, 25.0, 8.0]), 0.0, 0.0),))
     assert [zone and zone.name for zone, _ in stage.zones] == ["school", "mast", "road", None]
     nodes = tuple(
         node.model_copy(update={"position_m": (0.2 * node.position_m[0], 0.2 * node.position_m[1], 0.0)})
         for node in scenario.nodes
     )
     small = scenario.model_copy(update={"nodes": nodes, "jammers": ()})
-    stage = Stage(scenario=small, poses=(Pose(np.array([0.0, 5.0, 8.0]), 0.0, 0.0),))
+    stage = PlanScene(scenario=small, poses=(Pose(np.array([0.0, 5.0, 8.0]), 0.0, 0.0),))
     assert [zone and zone.name for zone, _ in stage.zones] == ["mast"]
     radii = np.linalg.norm(outline_m(scenario.airspace.no_fly[0]) - [-2.0, 24.0], axis=1)
     assert np.all(radii >= 12.0)

@@ -14,8 +14,8 @@ from nullpose import Pose, Result, Scenario, compare_airframes, load, solve, swe
 from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan, draw_value_map
+from nullpose.report.figures.plan_scene import PlanScene
 from nullpose.report.figures.poses import draw_result
-from nullpose.report.figures.stage import Stage
 from nullpose.report.figures.style import WIDTHS_MM, house_style, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.study import compare_schemes, value_map
@@ -162,7 +162,7 @@ def test_names_keep_apart_in_crowds(seed: int, nodes: int, zones: int) -> None:
     pose = Pose.from_axis([*generator.uniform(0.0, 300.0, size=2), 50.0], [1.0, 0.0, 0.0])
     axes = Figure(figsize=(1.8, 2.0)).add_axes((0.2, 0.2, 0.78, 0.78))
     with house_style("column"):
-        draw_plan(axes, Stage(scenario=scenario, poses=(pose,)), pose)
+        draw_plan(axes, PlanScene(scenario=scenario, poses=(pose,)), pose)
         place_names(axes)
     boxes = [text.get_window_extent() for text in axes.texts if text.get_visible()]
     assert len(boxes) >= 1

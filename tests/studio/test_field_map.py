@@ -11,14 +11,14 @@ from nullpose.physics import evaluate, objective_value, to_db
 from nullpose.scenario import Node, NoFlyZone, Scenario
 from nullpose.solver import best_axis, solve
 from nullpose.studio.answer import answer_of
-from nullpose.studio.case import OPTIMUM, Case, case_named, cases_of
+from nullpose.studio.case import OPTIMUM, PoseCase, case_named, cases_of
 from nullpose.studio.field_map import field_map
 from nullpose.studio.look import scale_range
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def _map(scenario: Scenario, case: Case):  # type: ignore[no-untyped-def]
+def _map(scenario: Scenario, case: PoseCase):  # type: ignore[no-untyped-def]
     answer = answer_of(1, case, solve(case.on(scenario), case.scheme, certify=False))
     return answer, field_map(answer)
 

@@ -14,7 +14,7 @@ from nullpose.files import json_text
 from nullpose.scenario import apply_overrides
 from nullpose.study import AIRFRAME_CASES
 from nullpose.study.vehicles import (
-    Verdict,
+    Sufficiency,
     least_sufficient,
     verdict_on,
     verdicts,
@@ -73,17 +73,17 @@ def test_the_least_vehicle_that_suffices(paper: Scenario) -> None:
     assert least_sufficient(found).name == "tilt-10-horizontal"
     weak = compare_airframes(apply_overrides(paper, ["jammers.M.power_w=0.01"]), cases=AIRFRAME_CASES)
     assert least_sufficient(weak).name == "level-horizontal"
-    assert verdict_on(found, found.of("omnidirectional")[0]) is Verdict.SUFFICES
+    assert verdict_on(found, found.of("omnidirectional")[0]) is Sufficiency.SUFFICES
     (level,) = found.of("level-vertical")
-    assert verdict_on(found, level) is Verdict.FALLS_SHORT
-    assert verdict_on(found, level, tolerance=0.6) is Verdict.SUFFICES
+    assert verdict_on(found, level) is Sufficiency.FALLS_SHORT
+    assert verdict_on(found, level, tolerance=0.6) is Sufficiency.SUFFICES
 
 
 def test_an_upright_dipole_can_need_the_least_tilt() -> None:
     """With whips on the ground the dipole has to stand: with it flat no tilt compared suffices."""
     found = compare_airframes(load(ROOT / "examples" / "whips.toml"), cases=AIRFRAME_CASES)
     assert least_sufficient(found).name == "tilt-30-vertical"
-    assert verdict_on(found, found.of("tilt-30-horizontal")[0]) is Verdict.FALLS_SHORT
+    assert verdict_on(found, found.of("tilt-30-horizontal")[0]) is Sufficiency.FALLS_SHORT
 
 
 @pytest.mark.parametrize("name", ["paper", "whips", "eavesdropper"])
@@ -93,7 +93,7 @@ def test_the_best_mount_leaves_nothing_to_tilt_for(name: str) -> None:
     (whole,) = found.of("omnidirectional")
     for level in ("level", "tilt-10", "tilt-20", "tilt-30"):
         (row,) = found.of(f"{level}-best")
-        assert verdict_on(found, row) is Verdict.SUFFICES
+        assert verdict_on(found, row) is Sufficiency.SUFFICES
         assert row.label == f"{level.replace('-', ' ')}, best ({row.case.airframe.mount_deg:.4g}°)"
         assert row.pose.tilt_rad <= row.case.airframe.tilt_max_rad + 1e-9
         assert row.pose.mount_rad == row.case.airframe.mount_rad
@@ -111,7 +111,7 @@ def test_proofs_are_as_near_as_the_verdict_needs(paper: Scenario) -> None:
         assert wide.objective.value == pytest.approx(row.objective.value, rel=1e-5)
         assert row.objective.value <= wide.objective.upper_bound
         assert wide.objective.upper_bound <= quick.of("omnidirectional")[0].objective.upper_bound
-        assert verdict_on(near, row) is verdict_on(quick, wide) is not Verdict.NOT_PROVED
+        assert verdict_on(near, row) is verdict_on(quick, wide) is not Sufficiency.NOT_PROVED
     boxes = [sum(row.stats.boxes for row in table.rows) for table in (near, quick)]
     assert boxes[1] < 0.5 * boxes[0]
 
@@ -121,22 +121,22 @@ def test_a_verdict_is_proved_or_left_open(paper: Scenario) -> None:
     found = compare_airframes(paper, cases=AIRFRAME_CASES)
     (row,), (whole,) = found.of("tilt-10-horizontal"), found.of("omnidirectional")
 
-    def verdict(value: float, bound: float | None, ceiling: float | None) -> Verdict:
+    def verdict(value: float, bound: float | None, ceiling: float | None) -> Sufficiency:
         bounded = replace(whole, objective=replace(whole.objective, value=1.0, upper_bound=ceiling))
         table = replace(found, rows=(row, bounded))
         return verdict_on(
             table, replace(row, objective=replace(row.objective, value=value, upper_bound=bound))
         )
 
-    assert verdict(0.995, 0.996, 1.001) is Verdict.SUFFICES
-    assert verdict(0.985, 0.988, 1.001) is Verdict.FALLS_SHORT
+    assert verdict(0.995, 0.996, 1.001) is Sufficiency.SUFFICES
+    assert verdict(0.985, 0.988, 1.001) is Sufficiency.FALLS_SHORT
     for value, bound, ceiling in [
         (0.985, 0.995, 1.001),
         (0.995, 0.996, 1.2),
         (0.5, None, None),
         (1.0, 1.0, None),
     ]:
-        assert verdict(value, bound, ceiling) is Verdict.NOT_PROVED
+        assert verdict(value, bound, ceiling) is Sufficiency.NOT_PROVED
 
 
 def test_arrays_are_tried_on_a_level_vehicle(paper: Scenario) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from nullpose.antenna.from_file import PATTERN, PROFILE
 from nullpose.antenna.ground import GROUND_ANTENNAS, GroundAntennas, unit_axis
 from nullpose.antenna.half_wave import HALF_WAVE
-from nullpose.antenna.kind import Antenna, AntennaKind
+from nullpose.antenna.kind import AntennaKind, AnyAntenna
 from nullpose.antenna.pattern import PatternAntenna
 from nullpose.antenna.quadratic import QuadraticAntenna
 from nullpose.antenna.short_dipole import DIPOLE, SHORT_DIPOLE, short_dipole
@@ -17,8 +17,8 @@ __all__ = [
     "ANTENNAS",
     "GROUND_ANTENNAS",
     "SHORT_DIPOLE",
-    "Antenna",
     "AntennaKind",
+    "AnyAntenna",
     "GroundAntennas",
     "PatternAntenna",
     "QuadraticAntenna",

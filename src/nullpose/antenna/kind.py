@@ -10,7 +10,7 @@ from nullpose.antenna.pattern import PatternAntenna
 from nullpose.antenna.quadratic import QuadraticAntenna
 from nullpose.files import PlainTable
 
-Antenna: TypeAlias = QuadraticAntenna | PatternAntenna
+AnyAntenna: TypeAlias = QuadraticAntenna | PatternAntenna
 """An antenna of the drone."""
 
 
@@ -26,6 +26,6 @@ class AntennaKind(NamedTuple):
     """
 
     summary: str
-    make: Callable[..., Antenna]
+    make: Callable[..., AnyAntenna]
     keys: tuple[str, ...] = ()
     read: Callable[[Path, PlainTable], tuple[PlainTable, tuple[str, ...]]] | None = None

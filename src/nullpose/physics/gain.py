@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas, QuadraticAntenna
+from nullpose.antenna import SHORT_DIPOLE, AnyAntenna, GroundAntennas, QuadraticAntenna
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import GroundPoint, Scenario, Terminal
 
@@ -36,7 +36,7 @@ def elevation_cosine(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike
 
 
 def antenna_gain(
-    position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: Antenna = SHORT_DIPOLE
+    position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: AnyAntenna = SHORT_DIPOLE
 ) -> FloatArray:
     """Evaluate the antenna's power gain towards each point, 1 broadside; of a short dipole, 0 along its axis.
 
@@ -105,7 +105,7 @@ def link_gain(
     position_m: ArrayLike,
     axis: ArrayLike,
     points_m: ArrayLike,
-    antenna: Antenna = SHORT_DIPOLE,
+    antenna: AnyAntenna = SHORT_DIPOLE,
     ground: GroundAntennas | None = None,
 ) -> FloatArray:
     """Evaluate the power gain between the drone's antenna and that at each point, polarisation included.

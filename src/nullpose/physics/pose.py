@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import Antenna
+from nullpose.antenna import AnyAntenna
 from nullpose.errors import UsageError, checked, require_usage
 from nullpose.physics.rotation import (
     antenna_axis,
@@ -132,7 +132,7 @@ class Pose:
         """Unit vector along the dipole, shape ``(3,)``, world frame (paper eq. 1.1)."""
         return antenna_axis(self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad)
 
-    def orientation(self, antenna: Antenna) -> FloatArray:
+    def orientation(self, antenna: AnyAntenna) -> FloatArray:
         """Orient an antenna, as its gain needs it.
 
         Returns:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import Antenna
+from nullpose.antenna import AnyAntenna
 from nullpose.errors import checked, require_usage
 from nullpose.physics.pose import FARTHEST_M, Pose
 from nullpose.physics.rotation import antenna_axis, attitude_from_axis, rotation_world_from_body
@@ -102,7 +102,7 @@ class Poses:
         )
         return Pose(self.position_m[index], roll, pitch, yaw, self.mount_rad)
 
-    def orientation(self, antenna: Antenna) -> FloatArray:
+    def orientation(self, antenna: AnyAntenna) -> FloatArray:
         """Orient an antenna at every pose, as :meth:`Pose.orientation` does.
 
         Returns:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.antenna import SHORT_DIPOLE, Antenna, GroundAntennas
+from nullpose.antenna import SHORT_DIPOLE, AnyAntenna, GroundAntennas
 from nullpose.channel import PointChannels, excess_gain
 from nullpose.physics.gain import link_gain
 from nullpose.physics.types import FloatArray
@@ -18,7 +18,7 @@ def received_power_w(
     points_m: ArrayLike,
     powers_w: ArrayLike,
     reference_gain: ArrayLike,
-    antenna: Antenna = SHORT_DIPOLE,
+    antenna: AnyAntenna = SHORT_DIPOLE,
     ground: GroundAntennas | None = None,
     channels: PointChannels | None = None,
 ) -> FloatArray:

@@ -55,7 +55,7 @@ class Axes(NamedTuple):
     matrix: FloatArray
 
 
-class Reach(NamedTuple):
+class AttitudeReach(NamedTuple):
     """Which attitudes of an antenna with a pattern the airframe reaches.
 
     Args:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from nullpose.objectives import Quantity
 from nullpose.report.numbers import capitalised, with_unit
-from nullpose.study import ResultRow, ResultTable, Verdict
+from nullpose.study import ResultRow, ResultTable, Sufficiency
 from nullpose.study.case import FILE_VEHICLE, OMNIDIRECTIONAL
 from nullpose.study.vehicles import (
     BEST_MOUNT,
@@ -18,9 +18,9 @@ from nullpose.study.vehicles import (
 )
 
 _VERDICTS = {
-    Verdict.SUFFICES: "is proved enough",
-    Verdict.FALLS_SHORT: "is proved too little",
-    Verdict.NOT_PROVED: "is proved neither enough nor too little",
+    Sufficiency.SUFFICES: "is proved enough",
+    Sufficiency.FALLS_SHORT: "is proved too little",
+    Sufficiency.NOT_PROVED: "is proved neither enough nor too little",
 }
 # Of a kind of vehicle: whether some were found enough, and whether all that is said of them is proved.
 _LEAST = {
@@ -78,8 +78,8 @@ def _least_line(comparison: ResultTable, kind: str, found: Sequence[ResultRow]) 
     """Name the least of a kind's vehicles, in the order of what they take, that suffices or is nearest."""
     enough = (1.0 - TOLERANCE) * comparison.of(OMNIDIRECTIONAL)[0].objective.value
     close = [row for row in found if row.objective.value >= enough]
-    proved = [row for row in close if verdict_on(comparison, row) is Verdict.SUFFICES]
-    are_short = all(verdict_on(comparison, row) is Verdict.FALLS_SHORT for row in found)
+    proved = [row for row in close if verdict_on(comparison, row) is Sufficiency.SUFFICES]
+    are_short = all(verdict_on(comparison, row) is Sufficiency.FALLS_SHORT for row in found)
     row = (proved or close or [max(found, key=lambda row: row.objective.value)])[0]
     less = "fewer elements" if row.case.array else "less tilt"
     return _LEAST[bool(close), bool(proved) if close else are_short].format(

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.rules import ByName, Choice, Quantity
+from nullpose.scenario.rules import ByName, Choice, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.ways import Ways, exactly_one
 
@@ -46,14 +46,12 @@ class Airframe(Section):
     tilt_max_deg: (
         Annotated[
             float,
-            Quantity(
-                "an angle in degrees", 0.0, 180.0, "a tilt below 0 reaches no axis; 180 is any attitude"
-            ),
+            Limits("an angle in degrees", 0.0, 180.0, "a tilt below 0 reaches no axis; 180 is any attitude"),
         ]
         | None
     ) = optional("Largest tilt of the vehicle from the horizontal, in degrees. Either this or preset.", 10.0)
     mount_deg: Annotated[
-        float, Quantity("an angle in degrees", 0.0, 90.0, "0 is along the body's vertical, 90 across it")
+        float, Limits("an angle in degrees", 0.0, 90.0, "0 is along the body's vertical, 90 across it")
     ] = Field(
         default=0.0,
         description="Angle between the dipole and the body's vertical, in degrees: 0 upright, 90 flat.",

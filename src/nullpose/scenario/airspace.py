@@ -24,7 +24,7 @@ from nullpose.scenario.polygon import (
     largest_margin_m,
     offset_outlines_m,
 )
-from nullpose.scenario.rules import Quantity, list_of_tables
+from nullpose.scenario.rules import Limits, list_of_tables
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label, MarginMetres, Range
 from nullpose.scenario.ways import Ways
@@ -89,7 +89,7 @@ class Airspace(Section):
         [-100.0, 150.0],
     )
     keep_out_m: Annotated[
-        float, Quantity("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
+        float, Limits("a radius in m", 1e-3, 1e7, "the model has no limit at a ground point")
     ] = Field(
         default=1.0,
         description="Smallest distance in metres between the vehicle and any point on the ground.",

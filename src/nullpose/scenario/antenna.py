@@ -9,19 +9,19 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from nullpose.antenna import ANTENNAS, Antenna as AnyAntenna
+from nullpose.antenna import ANTENNAS, AnyAntenna
 from nullpose.antenna.harmonics import HIGHEST_DEGREE
 from nullpose.errors import ScenarioError
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults
-from nullpose.scenario.rules import Choice, Count, ListOf, Quantity
+from nullpose.scenario.rules import Choice, Count, Limits, ListOf
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import DecibelsIsotropic, Hertz, NullDepthDecibels
 
 _MOST_ROWS = HIGHEST_DEGREE + 1
 
 _Row = Annotated[
-    tuple[Annotated[float, Quantity("a coefficient", -1e9, 1e9, "gains are linear here")], ...],
+    tuple[Annotated[float, Limits("a coefficient", -1e9, 1e9, "gains are linear here")], ...],
     ListOf("a list of 2 n + 1 numbers for degree n", 1, 2 * _MOST_ROWS - 1),
 ]
 
@@ -170,7 +170,7 @@ class Array(Section):
         examples=["linear"],
     )
     spacing_wavelengths: Annotated[
-        float, Quantity("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")
+        float, Limits("a length in wavelengths", 1e-3, 1e3, "half a wavelength is 0.5")
     ] = Field(description="Distance between neighbours, in wavelengths.", examples=[0.5])
     combining: Annotated[Literal["digital"], Choice(_DIGITAL, ("digital",))] = Field(
         default="digital",

@@ -92,12 +92,15 @@ def height_of(feature: Feature, rules: Building, state: str = "") -> BuildingHei
         return by, (end_m, end_m)
 
     levels = _LEVELS if rules.storey_height_m else ()
-    ways: list[tuple[Any, ...]] = [
+    readings: list[tuple[Any, ...]] = [
         (BY_ROOF, rules.roof_property, rules.ground_property),
         (BY_HEIGHT, "height"),
     ]
-    ways += [(BY_LEVELS, key) for key in levels]
-    found, faults = call_each(lambda way: roof_m(*way), [w for w in ways if properties.keys() >= {*w[1:]}])
+    readings += [(BY_LEVELS, key) for key in levels]
+    found, faults = call_each(
+        lambda reading: roof_m(*reading),
+        [reading for reading in readings if properties.keys() >= {*reading[1:]}],
+    )
     if missing_m is not None:
         low_m, high_m = missing_m if isinstance(missing_m, tuple) else (missing_m, missing_m)
         found.append((ASSUMED, (max(low_m, base_m), base_m + high_m)))

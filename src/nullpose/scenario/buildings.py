@@ -16,7 +16,7 @@ from nullpose.scenario.faults import Place, key_faults, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone, unplaced
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
-from nullpose.scenario.rules import Choice, ListOf, NumberOr, Quantity, ascending
+from nullpose.scenario.rules import Choice, Limits, ListOf, NumberOr, ascending
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label, MarginMetres
 from nullpose.scenario.ways import Ways
@@ -26,12 +26,12 @@ MOST_BUILDINGS = 2000
 DEEP_M = -1e4
 """Where a building on the ground ends, for the ground may lie below that at the origin [m]."""
 
-_ABOVE_GROUND = Quantity(
+_ABOVE_GROUND = Limits(
     "a height in m above the ground", 0.0, 1000.0, "heights count upwards from z = 0, in metres"
 )
 HIGHEST_M = _ABOVE_GROUND.high
 """The highest roof [m]."""
-_STOREY = Quantity("a height of a storey in m", 1.0, 20.0, "3 m is common")
+_STOREY = Limits("a height of a storey in m", 1.0, 20.0, "3 m is common")
 _COURTYARDS = ListOf("a list of at most 1000 polygons, each a list of vertices", 0, 1000)
 _Height = Annotated[float, _ABOVE_GROUND]
 _BOTH_ENDS = Annotated[

@@ -11,7 +11,7 @@ from nullpose.channel import CHANNELS, ENVIRONMENTS, Custom, LinkChannel
 from nullpose.channel.elevation import AVERAGES
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import Place
-from nullpose.scenario.rules import ByName, Choice, Quantity
+from nullpose.scenario.rules import ByName, Choice, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import LossDecibels, ratio_from_db
 from nullpose.scenario.ways import Ways
@@ -54,7 +54,7 @@ class Channel(Section):
     exponent: (
         Annotated[
             float,
-            Quantity(
+            Limits(
                 "a path-loss exponent", 1.6, 6.0, "2 is that of free space; the loss is 10 x it dB/decade"
             ),
         ]
@@ -65,7 +65,7 @@ class Channel(Section):
         2.4,
     )
     reference_distance_m: (
-        Annotated[float, Quantity("a distance in m", 1e-3, 1e7, "where the reference gain holds; mostly 1")]
+        Annotated[float, Limits("a distance in m", 1e-3, 1e7, "where the reference gain holds; mostly 1")]
         | None
     ) = optional(
         "The distance in metres at which a power law has the reference gain of [receiver]; at most the "
@@ -78,16 +78,14 @@ class Channel(Section):
         "urban",
     )
     a: (
-        Annotated[float, Quantity("an angle in degrees", 0.1, 90.0, "4.88 is suburban, 27.23 high-rise")]
-        | None
+        Annotated[float, Limits("an angle in degrees", 0.1, 90.0, "4.88 is suburban, 27.23 high-rise")] | None
     ) = optional(
         "Of the probability of line of sight 1 / (1 + a exp(-b (theta - a))), theta the elevation angle: a, "
         "in degrees.",
         9.61,
     )
     b: (
-        Annotated[float, Quantity("a number per degree", 1e-3, 5.0, "0.43 is suburban, 0.08 high-rise")]
-        | None
+        Annotated[float, Limits("a number per degree", 1e-3, 5.0, "0.43 is suburban, 0.08 high-rise")] | None
     ) = optional("The same: b, per degree.", 0.16)
     los_loss_db: LossDecibels | None = optional("Loss over free space with line of sight, in dB.", 1.0)
     nlos_loss_db: LossDecibels | None = optional("Loss over free space without line of sight, in dB.", 20.0)
@@ -98,16 +96,14 @@ class Channel(Section):
         "power",
     )
     blocked_loss_db: (
-        Annotated[float, Quantity("a loss in dB", 1e-3, 200.0, "20 dB leave a hundredth")] | None
+        Annotated[float, Limits("a loss in dB", 1e-3, 200.0, "20 dB leave a hundredth")] | None
     ) = optional(
         f"Loss in dB where a building blocks the line of sight. Left out: {BLOCKED_DB:g}. By elevation the "
         "losses with and without line of sight count.",
         BLOCKED_DB,
     )
     shadow_margin_m: (
-        Annotated[
-            float, Quantity("a length in m", 0.0, 1000.0, "0 counts the line of sight of the pose alone")
-        ]
+        Annotated[float, Limits("a length in m", 0.0, 1000.0, "0 counts the line of sight of the pose alone")]
         | None
     ) = optional(
         "Distance in metres: a link to a node counts as clear of buildings only if it is so for the drone "

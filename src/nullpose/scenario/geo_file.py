@@ -128,8 +128,11 @@ def _beside(table: object) -> PlainTable:
 
 
 def _feature(place: str, shape: object, properties: PlainTable, where: str) -> Feature:
-    stated = {key: value for key, value in properties.items() if value is not None}
-    return Feature(place, _shape(shapely.geometry.shape, shape, where), stated)
+    return Feature(
+        place,
+        _shape(shapely.geometry.shape, shape, where),
+        {key: value for key, value in properties.items() if value is not None},
+    )
 
 
 def _shape(read: Callable[[Any], BaseGeometry], geometry: object, place: str) -> BaseGeometry | None:

@@ -15,7 +15,7 @@ from nullpose.files import PlainTable
 from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place
 from nullpose.scenario.radio import NOISE, POWER, Noisy, Powered
-from nullpose.scenario.rules import Choice, ListOf, Quantity
+from nullpose.scenario.rules import Choice, Limits, ListOf
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
@@ -117,7 +117,7 @@ class GroundPoint(Section):
     )
     alt_agl_m: (
         Annotated[
-            float, Quantity("a height in m above the ground at the origin", -1e4, 1e5, "not over the sea")
+            float, Limits("a height in m above the ground at the origin", -1e4, 1e5, "not over the sea")
         ]
         | None
     ) = optional(

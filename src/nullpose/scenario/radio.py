@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.rules import Quantity
+from nullpose.scenario.rules import Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
     SPEED_OF_LIGHT_M_PER_S,
@@ -45,14 +45,14 @@ class Noisy(Section):
     )
     noise_dbm: DecibelMilliwatts | None = optional("The same in dBm, in place of noise_w.", -97.0)
     bandwidth_hz: (
-        Annotated[float, Quantity("a bandwidth in Hz", 1.0, 1e13, "20 MHz is written 20e6")] | None
+        Annotated[float, Limits("a bandwidth in Hz", 1.0, 1e13, "20 MHz is written 20e6")] | None
     ) = optional(
         "Bandwidth of the receiver in Hz, that of one node's channel: with noise_figure_db in place of "
         "noise_dbm. The noise is k T B F at 290 K: -174 dBm/Hz + 10 log10(bandwidth) + noise figure.",
         20e6,
     )
     noise_figure_db: (
-        Annotated[float, Quantity("a noise figure in dB", 0.0, 100.0, "3 to 10 is usual; it is not negative")]
+        Annotated[float, Limits("a noise figure in dB", 0.0, 100.0, "3 to 10 is usual; it is not negative")]
         | None
     ) = optional("Noise figure of the receiver in dB, with bandwidth_hz.", 6.0)
 
@@ -90,7 +90,7 @@ class Receiver(Noisy):
         2.4e9,
     )
     attitude_error_deg: Annotated[
-        float, Quantity("an angle in degrees", 0.0, 90.0, "an error is a size, never negative; 0 means none")
+        float, Limits("an angle in degrees", 0.0, 90.0, "an error is a size, never negative; 0 means none")
     ] = Field(
         default=0.0,
         description="Largest angle between the true antenna axis and the commanded one, in degrees. Used by "

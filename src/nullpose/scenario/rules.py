@@ -41,7 +41,7 @@ class Rule:
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity(Rule):
+class Limits(Rule):
     """A finite number with a unit, between two limits; used as the metadata of an annotated float.
 
     The limits are wide enough for any radio scene and narrow enough that no product of such numbers in
@@ -80,7 +80,7 @@ class Quantity(Rule):
         return {"type": inner["type"], "minimum": self.low, "maximum": self.high}
 
 
-class Count(Quantity):
+class Count(Limits):
     """A whole number between two limits; used as the metadata of an annotated int."""
 
     def read(self, value: object) -> int:
@@ -179,7 +179,7 @@ class NumberOr(Rule):
         several: the type of the list.
     """
 
-    number: Quantity
+    number: Limits
     several: TypeAdapter[Any]
 
     def read(self, value: object) -> Any:

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar
 from numpy.typing import ArrayLike
 from pydantic import Field, PlainSerializer
 
-from nullpose.antenna import SHORT_DIPOLE, Antenna as AnyAntenna
+from nullpose.antenna import SHORT_DIPOLE, AnyAntenna
 from nullpose.antenna.from_file import ESTIMATE
 from nullpose.channel.buildings import Prisms, prisms_of
 from nullpose.errors import WrongTypeError

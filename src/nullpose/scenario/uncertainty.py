@@ -6,12 +6,12 @@ import math
 from typing import Annotated
 
 from nullpose.scenario.faults import rejection
-from nullpose.scenario.rules import Quantity
+from nullpose.scenario.rules import Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.wording import plain
 
 
-class _Radius(Quantity):
+class _Radius(Limits):
     """The radius of a ball; the three semi-axes of an ellipsoid are refused with the ball that holds it."""
 
     def read(self, value: object) -> float:

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator, WithJsonSchema
 
 from nullpose.scenario.faults import EXCHANGED, rejection, require_value
-from nullpose.scenario.rules import ListOf, Quantity, ascending
+from nullpose.scenario.rules import Limits, ListOf, ascending
 from nullpose.scenario.wording import described
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
@@ -45,7 +45,7 @@ SPEED_OF_LIGHT_M_PER_S = 299_792_458.0
 
 Watts = Annotated[
     float,
-    Quantity(
+    Limits(
         "a power in W",
         1e-30,
         1e30,
@@ -53,61 +53,57 @@ Watts = Annotated[
     ),
 ]
 DecibelMilliwatts = Annotated[
-    float, Quantity("a power in dBm", -270.0, 330.0, "a value in W belongs to the key that ends in _w")
+    float, Limits("a power in dBm", -270.0, 330.0, "a value in W belongs to the key that ends in _w")
 ]
-Decibels = Annotated[float, Quantity("a gain in dB", -300.0, 300.0, "0 dB is a gain of 1, 10 dB one of 10")]
+Decibels = Annotated[float, Limits("a gain in dB", -300.0, 300.0, "0 dB is a gain of 1, 10 dB one of 10")]
 DecibelsIsotropic = Annotated[
     float,
-    Quantity(
+    Limits(
         "a gain in dBi", -100.0, 100.0, "1.76 for a short dipole, 2.15 for a half-wave dipole; 0 is isotropic"
     ),
 ]
 ElevationDegrees = Annotated[
-    float, Quantity("an elevation in degrees", -90.0, 90.0, "0 is the horizon, 90 right above")
+    float, Limits("an elevation in degrees", -90.0, 90.0, "0 is the horizon, 90 right above")
 ]
 NullDepthDecibels = Annotated[
     float,
-    Quantity("a depth in dB", 0.0, 200.0, "30 is a null 30 dB below the broadside gain; it is not negative"),
+    Limits("a depth in dB", 0.0, 200.0, "30 is a null 30 dB below the broadside gain; it is not negative"),
 ]
 LossDecibels = Annotated[
-    float, Quantity("a loss in dB", 0.0, 200.0, "a loss is never negative; 20 dB leave a hundredth")
+    float, Limits("a loss in dB", 0.0, 200.0, "a loss is never negative; 20 dB leave a hundredth")
 ]
-Hertz = Annotated[float, Quantity("a frequency in Hz", 1e3, 1e13, "2.4 GHz is written 2.4e9")]
+Hertz = Annotated[float, Limits("a frequency in Hz", 1e3, 1e13, "2.4 GHz is written 2.4e9")]
 Metres = Annotated[
-    float, Quantity("a length in m", -1e7, 1e7, "use metres from a nearby local origin: east, north and up")
+    float, Limits("a length in m", -1e7, 1e7, "use metres from a nearby local origin: east, north and up")
 ]
-MarginMetres = Annotated[
-    float, Quantity("a length in m", 0.0, 1e7, "a margin is never negative; 0 means none")
-]
-RadiusMetres = Annotated[float, Quantity("a radius in m", 1e-3, 1e7, "a shape has an inside")]
+MarginMetres = Annotated[float, Limits("a length in m", 0.0, 1e7, "a margin is never negative; 0 means none")]
+RadiusMetres = Annotated[float, Limits("a radius in m", 1e-3, 1e7, "a shape has an inside")]
 ErrorMetres = Annotated[
-    float, Quantity("a length in m", 0.0, 1e7, "an error is a size, never negative; 0 means none")
+    float, Limits("a length in m", 0.0, 1e7, "an error is a size, never negative; 0 means none")
 ]
 AttitudeDegrees = Annotated[
-    float, Quantity("an angle in degrees", -360.0, 360.0, "angles in files are in degrees")
+    float, Limits("an angle in degrees", -360.0, 360.0, "angles in files are in degrees")
 ]
 RatioDecibels = Annotated[
-    float, Quantity("a ratio in dB", -300.0, 300.0, "0 dB is a ratio of 1, 10 dB one of 10")
+    float, Limits("a ratio in dB", -300.0, 300.0, "0 dB is a ratio of 1, 10 dB one of 10")
 ]
 Weight = Annotated[
-    float, Quantity("a weight", 1e-30, 1e30, "a weight is never zero or negative; 1 is the one of the others")
+    float, Limits("a weight", 1e-30, 1e30, "a weight is never zero or negative; 1 is the one of the others")
 ]
 Component = Annotated[
-    float, Quantity("a component of a direction", -1e9, 1e9, "[0, 0, 1] is upright, [1, 0, 0] points east")
+    float, Limits("a component of a direction", -1e9, 1e9, "[0, 0, 1] is upright, [1, 0, 0] points east")
 ]
 
 Latitude = Annotated[
-    float, Quantity("a latitude in degrees", -90.0, 90.0, f"north of the equator is positive; {EXCHANGED}")
+    float, Limits("a latitude in degrees", -90.0, 90.0, f"north of the equator is positive; {EXCHANGED}")
 ]
-Longitude = Annotated[
-    float, Quantity("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")
-]
+Longitude = Annotated[float, Limits("a longitude in degrees", -180.0, 180.0, "east of Greenwich is positive")]
 Altitude = Annotated[
     float,
-    Quantity("an altitude in m over the WGS-84 ellipsoid", -1e4, 1e5, "not the height above the ground"),
+    Limits("an altitude in m over the WGS-84 ellipsoid", -1e4, 1e5, "not the height above the ground"),
 ]
 SeaAltitude = Annotated[
-    float, Quantity("an altitude in m over the sea", -1e4, 1e5, "not the height above the ground")
+    float, Limits("an altitude in m over the sea", -1e4, 1e5, "not the height above the ground")
 ]
 
 

@@ -13,7 +13,7 @@ from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
 from nullpose.physics.rotation import rotation_world_from_body
 from nullpose.problem.family import Family
-from nullpose.problem.records import Reach
+from nullpose.problem.records import AttitudeReach
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INSIDE, INTERRUPT, MOST_LEAVES, BranchAndBound
 from nullpose.solver.compiling import limit_clock
@@ -51,7 +51,7 @@ def solve_pattern(scenario: Scenario, family: Family, options: SolveOptions) -> 
     return PatternRun(family, antenna, reach, options).outcome()
 
 
-def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
+def reach_of(scenario: Scenario, antenna: PatternAntenna) -> AttitudeReach:
     """Return the attitudes of an antenna that the scenario's airframe reaches.
 
     Args:
@@ -61,7 +61,7 @@ def reach_of(scenario: Scenario, antenna: PatternAntenna) -> Reach:
     airframe = scenario.airframe
     tilt, mount = (math.pi, 0.0) if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
     up = rotation_world_from_body(0.0, mount, 0.0).T[:, 2].copy()
-    return Reach(tilt, mount, up, antenna.is_axisymmetric, antenna.harmonics.is_even)
+    return AttitudeReach(tilt, mount, up, antenna.is_axisymmetric, antenna.harmonics.is_even)
 
 
 class PatternRun(BranchAndBound):
@@ -76,7 +76,9 @@ class PatternRun(BranchAndBound):
 
     chunk, nodes_of_search = 5_000, 60_000
 
-    def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, options: SolveOptions) -> None:
+    def __init__(
+        self, family: Family, antenna: PatternAntenna, reach: AttitudeReach, options: SolveOptions
+    ) -> None:
         super().__init__(options, limit_clock())
         self.family, self.antenna, self.reach = family, antenna, reach
         self.search = PatternSearch(family, antenna, reach, options.seed)

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from nullpose.antenna import PatternAntenna
 from nullpose.objectives import FloatArray
 from nullpose.problem.family import Family
-from nullpose.problem.records import Reach
+from nullpose.problem.records import AttitudeReach
 from nullpose.solver.local_search import EpigraphSearch
 
 _THOROUGH = 10_000, 60  # states drawn and climbed from, where no proof follows
@@ -31,7 +31,7 @@ class PatternSearch(EpigraphSearch):
 
     angles = 3
 
-    def __init__(self, family: Family, antenna: PatternAntenna, reach: Reach, seed: int) -> None:
+    def __init__(self, family: Family, antenna: PatternAntenna, reach: AttitudeReach, seed: int) -> None:
         super().__init__(family, antenna.peak, seed)
         self.pattern, self.lowest, self.reach = antenna.arrays, antenna.lowest, reach
 

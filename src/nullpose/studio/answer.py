@@ -11,7 +11,7 @@ from nullpose.report.numbers import MINUS, rounded_up
 from nullpose.report.sensitivity import sensitivity_words, sizes_words
 from nullpose.solver import Result, Rigour, Status
 from nullpose.solver.robust import GuardedPose, RobustDetails
-from nullpose.studio.case import Case
+from nullpose.studio.case import PoseCase
 from nullpose.study import MountTilt, ResultTable
 
 
@@ -39,7 +39,7 @@ class Answer(Event):
             before it is worked out.
     """
 
-    case: Case
+    case: PoseCase
     result: Result
     worst_nodes: frozenset[str]
     note: str
@@ -72,7 +72,7 @@ class Notice(Event):
         words: what to show.
     """
 
-    case: Case | None
+    case: PoseCase | None
     words: str
 
 
@@ -103,7 +103,7 @@ class Progress(Event):
         boxes: how many were examined.
     """
 
-    case: Case
+    case: PoseCase
     gap: float
     boxes: int
 
@@ -118,7 +118,7 @@ def signed(number: float, digits: int = 2) -> str:
     return f"{number:z.{digits}f}".replace("-", MINUS).replace("inf", "\N{INFINITY}")
 
 
-def answer_of(version: int, case: Case, result: Result) -> Answer:
+def answer_of(version: int, case: PoseCase, result: Result) -> Answer:
     """Return the answer that a result is.
 
     Args:

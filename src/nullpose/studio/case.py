@@ -9,11 +9,11 @@ from nullpose.errors import ScenarioError
 from nullpose.scenario import Airspace, Node, Receiver, Scenario
 from nullpose.solver import Scheme
 from nullpose.solver.refusal import refusal
-from nullpose.study import AIRFRAME_CASES, Case as Vehicle
+from nullpose.study import AIRFRAME_CASES, Case
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
+class PoseCase:
     """One way to choose the pose.
 
     Args:
@@ -25,7 +25,7 @@ class Case:
 
     label: str
     scheme: Scheme = Scheme.OPTIMUM
-    vehicle: Vehicle | None = None
+    vehicle: Case | None = None
     robust: bool = False
 
     def on(self, scenario: Scenario) -> Scenario:
@@ -69,25 +69,25 @@ class Case:
         return " ".join(sentences)
 
 
-OPTIMUM = Case(label="Optimum pose")
+OPTIMUM = PoseCase(label="Optimum pose")
 """The case that the studio opens with."""
 
-ROBUST = Case(label="Robust pose", robust=True)
+ROBUST = PoseCase(label="Robust pose", robust=True)
 """The case that counts on the scenario's errors."""
 
 CASES = (
     OPTIMUM,
-    *(Case(label=scheme.label, scheme=scheme) for scheme in Scheme if scheme is not Scheme.OPTIMUM),
+    *(PoseCase(label=scheme.label, scheme=scheme) for scheme in Scheme if scheme is not Scheme.OPTIMUM),
     ROBUST,
-    *(Case(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
+    *(PoseCase(label=f"Vehicle: {vehicle.label}", vehicle=vehicle) for vehicle in AIRFRAME_CASES),
 )
 """Every case, in the order in which they are offered."""
 
 
-_offered: dict[tuple[object, ...], tuple[Case, ...]] = {}
+_offered: dict[tuple[object, ...], tuple[PoseCase, ...]] = {}
 
 
-def cases_of(scenario: Scenario) -> tuple[Case, ...]:
+def cases_of(scenario: Scenario) -> tuple[PoseCase, ...]:
     """Return the cases that the solver takes for a scenario; the optimum, if it takes none.
 
     Args:
@@ -112,7 +112,7 @@ def cases_of(scenario: Scenario) -> tuple[Case, ...]:
     return _offered[traits]
 
 
-def case_named(label: str) -> Case:
+def case_named(label: str) -> PoseCase:
     """Return the case of a label.
 
     Args:

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nullpose.antenna import Antenna
+from nullpose.antenna import AnyAntenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.solver import Result
@@ -86,7 +86,7 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
 
 
 @lru_cache(8)
-def _pattern(antenna: Antenna, towards_rad: float) -> Shape:
+def _pattern(antenna: AnyAntenna, towards_rad: float) -> Shape:
     """Draw a pattern of size one, open towards the camera."""
     degree = 0 if antenna.is_quadratic else antenna.harmonics.degree
     rings = min(_MOST_RINGS, _RINGS + 3 * degree)  # more where it may have more lobes
@@ -158,7 +158,7 @@ def _coincides(pose: Pose, first: Pose, size_m: float) -> bool:
     return bool(away_m < _SAME * size_m and abs(pose.antenna_axis @ first.antenna_axis) > math.cos(_SAME))
 
 
-def _has_null(antenna: Antenna) -> bool:
+def _has_null(antenna: AnyAntenna) -> bool:
     """Tell whether an antenna has next to no gain along its axis, both ways."""
     poles = np.outer([1.0, -1.0], [0.0, 0.0, 1.0])
     return antenna.is_axisymmetric and bool(np.all(relative_gain(antenna, poles) < _FAINT))

@@ -12,7 +12,7 @@ import trimesh
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
-from nullpose.antenna import Antenna
+from nullpose.antenna import AnyAntenna
 from nullpose.physics import rotation_world_from_body
 
 _SAME_AXES = np.eye(3)
@@ -77,7 +77,7 @@ def sphere_mesh(rings: int = 16, around: int = 24, open_rad: float = 0.0) -> Mes
 
 
 def pattern_mesh(
-    antenna: Antenna, rings: int, around: int, open_rad: float = 0.0, towards_rad: float = 0.0
+    antenna: AnyAntenna, rings: int, around: int, open_rad: float = 0.0, towards_rad: float = 0.0
 ) -> tuple[Mesh, NDArray[np.float64]]:
     """Return the surface of a pattern in the antenna's axes, and each vertex's gain over the largest.
 
@@ -97,7 +97,7 @@ def pattern_mesh(
     return Mesh(gain[:, None] * directions, faces), gain
 
 
-def relative_gain(antenna: Antenna, directions: NDArray[np.float64]) -> NDArray[np.float64]:
+def relative_gain(antenna: AnyAntenna, directions: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the gain over its largest, shape (n,).
 
     Args:

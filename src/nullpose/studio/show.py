@@ -13,7 +13,7 @@ from nullpose.scenario import Scenario
 from nullpose.solver import Result, Scheme, solve
 from nullpose.solver.robust import RobustDetails
 from nullpose.studio.answer import answer_of, with_errors
-from nullpose.studio.case import OPTIMUM, Case
+from nullpose.studio.case import OPTIMUM, PoseCase
 from nullpose.studio.field_map import field_map
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.opening import require_viser
@@ -66,7 +66,7 @@ def _page(result: Result, *, dark: bool) -> str:
         not hasattr(result.details, "weights"),
         "show: given the result of an array; allowed: of one antenna. Try plot.plan(result)",
     )
-    case = Case(
+    case = PoseCase(
         label=result.label,
         scheme=result.scheme if isinstance(result.scheme, Scheme) else Scheme.OPTIMUM,
         robust=isinstance(result.details, RobustDetails),

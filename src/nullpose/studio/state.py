@@ -16,7 +16,7 @@ from nullpose.physics import from_db, to_db
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import GroundPoint, NoFlyZone, Scenario
 from nullpose.studio.answer import Answer, Event, Notice, status_words
-from nullpose.studio.case import OPTIMUM, Case, cases_of
+from nullpose.studio.case import OPTIMUM, PoseCase, cases_of
 from nullpose.studio.field_map import MAPS, FieldMap, Scale
 from nullpose.studio.look import scale_range
 from nullpose.studio.toml_like import toml_like
@@ -62,12 +62,12 @@ class State:
     """
 
     scenario: Scenario
-    case: Case = OPTIMUM
-    compared: Case | None = None
+    case: PoseCase = OPTIMUM
+    compared: PoseCase | None = None
     text: str = ""
     opened: int = 0
     version: int = 1
-    events: Mapping[tuple[type, Case | None], Event] = field(default_factory=dict)
+    events: Mapping[tuple[type, PoseCase | None], Event] = field(default_factory=dict)
     selected: Key | None = None
     pointed: Key | None = None
     dragged: Key | None = None
@@ -95,25 +95,25 @@ class State:
             events.pop((Notice, None), None)
         return replace(self, events=events)
 
-    def latest(self, kind: type[AnyEvent], case: Case | None = None) -> AnyEvent | None:
+    def latest(self, kind: type[AnyEvent], case: PoseCase | None = None) -> AnyEvent | None:
         """Look up the latest event of a kind, of whatever version; None without one."""
         event = self.events.get((kind, case))
         return event if isinstance(event, kind) else None
 
-    def present(self, kind: type[AnyEvent], case: Case | None = None) -> AnyEvent | None:
+    def present(self, kind: type[AnyEvent], case: PoseCase | None = None) -> AnyEvent | None:
         """Look up the event of a kind for the present version of the scene; None without one."""
         event = self.latest(kind, case)
         return event if event is not None and event.version == self.version else None
 
-    def answer(self, case: Case) -> Answer | None:
+    def answer(self, case: PoseCase) -> Answer | None:
         """Return the latest answer for a case, of whatever version; see :meth:`current`."""
         return self.latest(Answer, case)
 
-    def current(self, case: Case) -> Answer | None:
+    def current(self, case: PoseCase) -> Answer | None:
         """Return the answer for a case to the present version of the scene, or None."""
         return self.present(Answer, case)
 
-    def status(self, case: Case) -> str:
+    def status(self, case: PoseCase) -> str:
         """Say how far the solve of a case has come."""
         answer = self.current(case)
         compiling = self.latest(Notice) if answer is None else None
@@ -145,7 +145,7 @@ class State:
         return scale_range([link.sinr_db for answer in answers for link in answer.result.links])
 
     @property
-    def cases(self) -> tuple[Case, ...]:
+    def cases(self) -> tuple[PoseCase, ...]:
         """The cases to solve, the chosen one first."""
         return (self.case,) if self.compared is None else (self.case, self.compared)
 
@@ -257,6 +257,6 @@ class State:
         """The state with the text of its file, if it has one, brought up to date."""
         return replace(self, text=self.text and toml_like(self.text, self.scenario))
 
-    def with_case(self, case: Case) -> State:
+    def with_case(self, case: PoseCase) -> State:
         """Return the state with another case chosen."""
         return replace(self, case=case, compared=None if self.compared == case else self.compared)

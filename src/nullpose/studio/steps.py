@@ -9,7 +9,7 @@ import numpy as np
 
 from nullpose.solver import Scheme, SolveKeywords, solve
 from nullpose.studio.answer import Answer, LeastTilt, PowerCurve, answer_of, tilt_words, with_errors
-from nullpose.studio.case import OPTIMUM, Case
+from nullpose.studio.case import OPTIMUM, PoseCase
 from nullpose.studio.state import POWER_DB, State
 from nullpose.study import ResultRow, ResultTable
 from nullpose.study.least_tilt import tilt_search
@@ -31,7 +31,7 @@ class _Watched(SolveKeywords, total=False):
     on_progress: Callable[..., None]
 
 
-def quick_answers(state: State, case: Case) -> Iterator[Answer]:
+def quick_answers(state: State, case: PoseCase) -> Iterator[Answer]:
     """Yield the best pose that is found in a moment, for as long as the hand moves.
 
     For the robust case it is the pose that is best without errors. How far any is proved is for the proof to
@@ -48,7 +48,9 @@ def quick_answers(state: State, case: Case) -> Iterator[Answer]:
     yield replace(answer, note=_QUICK_ROBUST) if case.robust else answer
 
 
-def proved_answers(state: State, case: Case, on_progress: Callable[[float, int], None]) -> Iterator[Answer]:
+def proved_answers(
+    state: State, case: PoseCase, on_progress: Callable[[float, int], None]
+) -> Iterator[Answer]:
     """Yield the answers that a proof leads to, each better known than the one before.
 
     Args:

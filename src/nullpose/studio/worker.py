@@ -13,7 +13,7 @@ from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
 from nullpose.solver import announce_compiling
 from nullpose.studio.answer import Event, Notice, Progress
-from nullpose.studio.case import Case
+from nullpose.studio.case import PoseCase
 from nullpose.studio.field_map import field_map, map_compiler
 from nullpose.studio.state import AnyEvent, State
 from nullpose.studio.steps import least_tilts, power_curves, proved_answers, quick_answers
@@ -108,7 +108,7 @@ class Worker:
             self._publish_all(state, best.case, least_tilts(state, self._go_on))
 
     def _publish_all(
-        self, state: State, case: Case, events: Iterable[AnyEvent], *, late: bool = False
+        self, state: State, case: PoseCase, events: Iterable[AnyEvent], *, late: bool = False
     ) -> AnyEvent | None:
         """Publish events and return the last; a failure is published in their place, and None returned."""
         last = None
@@ -123,7 +123,7 @@ class Worker:
             return None
         return last
 
-    def _progress(self, state: State, case: Case) -> Callable[[float, int], None]:
+    def _progress(self, state: State, case: PoseCase) -> Callable[[float, int], None]:
         """Return a callback for a proof, which publishes its progress ten times a second at most."""
         # the proof of a rate tells the gap of the ratio
         published_at, is_rate = time.monotonic(), Quantity.of(state.scenario).is_rate

@@ -9,7 +9,7 @@ from nullpose.study.poses_csv import poses_from_csv
 from nullpose.study.sweep import spaced, sweep
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.value_map import value_map
-from nullpose.study.vehicle_search import Verdict
+from nullpose.study.vehicle_search import Sufficiency
 from nullpose.study.vehicles import (
     cases_of,
     compare_airframes,
@@ -30,7 +30,7 @@ __all__ = [
     "MountTilt",
     "ResultRow",
     "ResultTable",
-    "Verdict",
+    "Sufficiency",
     "cases_of",
     "compare_airframes",
     "compare_antennas",

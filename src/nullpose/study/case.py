@@ -13,7 +13,7 @@ from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, key_faults, rejection
-from nullpose.scenario.rules import ByName, Choice, Count, Quantity
+from nullpose.scenario.rules import ByName, Choice, Count, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
@@ -35,8 +35,8 @@ LEVEL = "level-vertical"  # the case that studies compare others with
 
 SHARE = 0.99
 """Of the omnidirectional value: what suffices for the least tilt, unless another share is stated."""
-Gap = Annotated[float, Quantity("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
-Seconds = Annotated[float, Quantity("a time in s", 1e-3, 1e7, "of one solve")]
+Gap = Annotated[float, Limits("a relative gap", 1e-8, 10.0, "1e-3 is a tenth of a per cent")]
+Seconds = Annotated[float, Limits("a time in s", 1e-3, 1e7, "of one solve")]
 NodeLimit = Annotated[int, Count("a number of boxes", 1, 1e15, "of one proof")]
 
 
@@ -99,7 +99,7 @@ class Case(Section):
     mount_scenes: Annotated[int, Count("a number of scenes", 1, 1e6, "more take longer")] | None = optional(
         'With mount_deg = "best": number of scenes that choose the mount. Left out: 64.', 64
     )
-    reach: Annotated[float, Quantity("a share", 1e-6, 1.0, "0.99 is all but a hundredth")] | None = optional(
+    reach: Annotated[float, Limits("a share", 1e-6, 1.0, "0.99 is all but a hundredth")] | None = optional(
         'With tilt_max_deg = "least": the share of the omnidirectional vehicle\'s bound that '
         f"suffices. Left out: {SHARE}.",
         SHARE,

@@ -24,7 +24,7 @@ from nullpose.solver import Result, SolveKeywords, Status, solve
 from nullpose.solver.rigour import Rigour
 from nullpose.study.case import SHARE
 from nullpose.study.progress import OnProgress, report_steps
-from nullpose.study.vehicle_search import AS_NEEDED, LEAST_GAP, VehicleSearch, Verdict, required
+from nullpose.study.vehicle_search import AS_NEEDED, LEAST_GAP, Sufficiency, VehicleSearch, required
 
 MOUNTS_DEG = (0.0, 45.0, 90.0)
 """The mounts that are looked at unless others are stated."""
@@ -264,7 +264,7 @@ class TiltSearch(VehicleSearch):
                 continue
             if (other := self._at_least_tilt(result, mount_deg)) is not None:
                 least, good = min(_steps(other), steps), other
-            elif self.judge(result) is Verdict.FALLS_SHORT:
+            elif self.judge(result) is Sufficiency.FALLS_SHORT:
                 most, bad = steps, result
             else:
                 reason = self.whole.reason or result.reason.replace(AS_NEEDED, "") or "proofs come no nearer"
@@ -281,7 +281,7 @@ class TiltSearch(VehicleSearch):
     def _at_least_tilt(self, result: Result, mount_deg: float) -> Result | None:
         """Fly a result's pose by the least tilt; None where it does not suffice."""
         flown = self.flown(result, Airframe(tilt_max_deg=180.0, mount_deg=mount_deg))
-        return flown if self.judge(flown) is Verdict.SUFFICES else None
+        return flown if self.judge(flown) is Sufficiency.SUFFICES else None
 
     def result_of(self, mount: MountTilt) -> Result:
         """Fly a mount's pose, certified where both sides are proved; the best of all without a tilt."""

@@ -27,7 +27,7 @@ _WIDEST_GAP, _SHARES = 10.0, (0.9, 0.5, 0.1)  # of what is missing to the target
 _ROUNDING_RAD = 1e-9
 
 
-class Verdict(StrEnum):
+class Sufficiency(StrEnum):
     """Whether a vehicle suffices in place of the omnidirectional one, so far as the bounds prove it."""
 
     SUFFICES = "yes"
@@ -45,7 +45,7 @@ def required(whole: Objective, share: float) -> float:
     return math.inf if whole.upper_bound is None else min(share, _ALL) * whole.upper_bound
 
 
-def judged(vehicle: Objective, whole: Objective, share: float) -> Verdict:
+def judged(vehicle: Objective, whole: Objective, share: float) -> Sufficiency:
     """Decide whether a vehicle reaches a share of what any pose can, so far as the bounds prove it.
 
     Args:
@@ -54,10 +54,10 @@ def judged(vehicle: Objective, whole: Objective, share: float) -> Verdict:
         share: above 0, at most 1.
     """
     if whole.value > 0.0 and vehicle.value >= required(whole, share):
-        return Verdict.SUFFICES
+        return Sufficiency.SUFFICES
     if vehicle.upper_bound is not None and vehicle.upper_bound < share * whole.value:
-        return Verdict.FALLS_SHORT
-    return Verdict.NOT_PROVED
+        return Sufficiency.FALLS_SHORT
+    return Sufficiency.NOT_PROVED
 
 
 class VehicleSearch:
@@ -78,7 +78,7 @@ class VehicleSearch:
         self.whole = solve(scenario, **options)
         self.rigour = self.whole.rigour
 
-    def judge(self, result: Result) -> Verdict:
+    def judge(self, result: Result) -> Sufficiency:
         """Decide whether a result suffices."""
         return judged(result.objective, self.whole.objective, self.share)
 
@@ -91,7 +91,7 @@ class VehicleSearch:
             SolveError: no pose was found that reaches every node, which proves nothing.
         """
         result = self._proved(airframe)
-        while self.judge(result) is Verdict.NOT_PROVED and self._improves_bound(result):
+        while self.judge(result) is Sufficiency.NOT_PROVED and self._improves_bound(result):
             result = self._proved(airframe)
         return result
 
@@ -115,7 +115,7 @@ class VehicleSearch:
         for share in _SHARES:
             value = best.objective.value
             missing = self.share * whole.value / value - 1.0 if value > 0.0 else math.inf
-            is_open = whole.upper_bound is not None and self.judge(best) is Verdict.NOT_PROVED
+            is_open = whole.upper_bound is not None and self.judge(best) is Sufficiency.NOT_PROVED
             if not is_open or missing <= 0.0:  # no bound of its own could show that it falls short
                 break
             gap = min(max(share * missing, LEAST_GAP), _WIDEST_GAP)

@@ -20,7 +20,7 @@ from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, T
 from nullpose.study.least_tilt import TiltSearch
 from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
-from nullpose.study.vehicle_search import Verdict, judged
+from nullpose.study.vehicle_search import Sufficiency, judged
 
 BEST_MOUNT = "-best"  # how the names of vehicles with the best mount end
 TOLERANCE = 0.01  # a vehicle suffices if it reaches what the omnidirectional one can, but for this share
@@ -192,17 +192,17 @@ def difference(table: ResultTable, row: ResultRow) -> float:
     return quantity.in_unit(row.objective.value) - quantity.in_unit(whole.objective.value)
 
 
-def verdict_on(table: ResultTable, row: ResultRow, tolerance: float = TOLERANCE) -> Verdict:
+def verdict_on(table: ResultTable, row: ResultRow, tolerance: float = TOLERANCE) -> Sufficiency:
     """Decide whether a vehicle reaches what the omnidirectional one can, but for a relative tolerance."""
     whole = table.of(OMNIDIRECTIONAL)[0]
     if row is whole and row.objective.value > 0.0 and row.objective.upper_bound is not None:
-        return Verdict.SUFFICES
+        return Sufficiency.SUFFICES
     return judged(row.objective, whole.objective, 1.0 - tolerance)
 
 
 def least_sufficient(table: ResultTable) -> ResultRow | None:
     """Find the vehicle with one dipole and the least tilt that is proved to suffice; None if none is."""
-    return next((row for row in dipoles(table) if verdict_on(table, row) is Verdict.SUFFICES), None)
+    return next((row for row in dipoles(table) if verdict_on(table, row) is Sufficiency.SUFFICES), None)
 
 
 def verdicts(table: ResultTable) -> PlainTable:

@@ -7,13 +7,13 @@ from hypothesis import given, settings, strategies as st
 from nullpose.antenna.caps import pattern_arrays
 from nullpose.antenna.harmonics import Harmonics
 from nullpose.problem.family import Family
-from nullpose.problem.records import Reach
+from nullpose.problem.records import AttitudeReach
 from nullpose.solver.kernels.bounds.attitude import ANCHOR, CHART, FACE, HALF, WARM
 from nullpose.solver.kernels.bounds.branch import BETTER, DONE
 from nullpose.solver.kernels.bounds.pattern_branch import branch_pattern
 from nullpose.solver.kernels.search.pattern_search import judge
 
-ANY = Reach(np.pi, 0.0, np.array([0.0, 0.0, 1.0]), False, False)
+ANY = AttitudeReach(np.pi, 0.0, np.array([0.0, 0.0, 1.0]), False, False)
 
 
 def random_pattern(rng: np.random.Generator, degree: int) -> Harmonics:

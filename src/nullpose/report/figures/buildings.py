@@ -11,7 +11,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.stage import Stage
+from nullpose.report.figures.plan_scene import PlanScene
 from nullpose.report.figures.style import GREY, MARKS, Look
 from nullpose.report.geometry import shadow_outlines_m
 from nullpose.scenario import Scenario
@@ -35,16 +35,16 @@ def draw_outlines(axes: Axes, scenario: Scenario, *, is_filled: bool) -> None:
     _add(axes, rings, linewidth=0.7, zorder=1.2, label="building", **look)
 
 
-def draw_shadows(axes: Axes, stage: Stage, altitude_m: float, frame_m: FloatArray) -> None:
+def draw_shadows(axes: Axes, scene: PlanScene, altitude_m: float, frame_m: FloatArray) -> None:
     """Draw where the line of sight to each point is blocked at an altitude, within a frame, (2, 2), metres.
 
     It is filled for nodes, the darker the more are blocked, and hatched for all others.
     """
-    for kind, point in stage.points:
+    for kind, point in scene.points:
         colour = MARKS[kind][0]
         hatched: Look = {"facecolor": "none", "hatch": "////", "alpha": 0.5}
         look = {"facecolor": colour, "alpha": 0.14} if kind == "node" else hatched
-        outlines = shadow_outlines_m(stage.scenario, point, altitude_m, frame_m)
+        outlines = shadow_outlines_m(scene.scenario, point, altitude_m, frame_m)
         _add(axes, outlines, edgecolor=colour, linewidth=0.0, label=f"{kind} blocked", **look)
 
 

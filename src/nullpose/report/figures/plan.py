@@ -16,7 +16,7 @@ from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.buildings import draw_outlines, draw_shadows
 from nullpose.report.figures.names import place_names, write_name
-from nullpose.report.figures.stage import Stage, set_outline_m
+from nullpose.report.figures.plan_scene import PlanScene, set_outline_m
 from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, INK, MARKS, NULL, Look, house_style, inches
 from nullpose.report.geometry import outline_m
 from nullpose.report.numbers import MINUS, capitalised
@@ -37,63 +37,63 @@ _NULL_LINE: Look = {  # its rim is seen on any ground
 }
 
 
-def draw_plan(axes: Axes, stage: Stage, pose: Pose, box_m: FloatArray | None = None) -> None:
+def draw_plan(axes: Axes, scene: PlanScene, pose: Pose, box_m: FloatArray | None = None) -> None:
     """Draw a scene from above, one metre being as long to the east as to the north.
 
     The antenna's axis is drawn as it is seen from there, short if it is upright; of an array the heading.
 
     Args:
         axes: where to draw, two-dimensional.
-        stage: what is to be seen.
+        scene: what is to be seen.
         pose: of the drone.
-        box_m: low and high corner of what is shown, (2, 2), metres; the whole stage if left out.
+        box_m: low and high corner of what is shown, (2, 2), metres; the whole scene if left out.
     """
-    low, high = box_m if box_m is not None else stage.box_m if stage.key else _filled(axes, stage.box_m)
+    low, high = box_m if box_m is not None else scene.box_m if scene.key else _filled(axes, scene.box_m)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     axes.set(xlabel="East x (m)", ylabel="North y (m)")
     if box_m is None:  # a map has its own colours
-        draw_shadows(axes, stage, float(pose.position_m[2]), np.stack([low, high]))
-    draw_outlines(axes, stage.scenario, is_filled=box_m is None)
-    for zone, corners_m in stage.zones:
+        draw_shadows(axes, scene, float(pose.position_m[2]), np.stack([low, high]))
+    draw_outlines(axes, scene.scenario, is_filled=box_m is None)
+    for zone, corners_m in scene.zones:
         look: Look = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}
         if zone is not None:
             look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
-            name = stage.key.get((True, zone.name), zone.name)
+            name = scene.key.get((True, zone.name), zone.name)
             write_name(axes, name, corners_m.mean(axis=0), is_area=True)
         axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
     x, y = pose.position_m[:2]
     drone = f"drone {pose.position_m[2]:.3g} m up"
-    if not stage.key:
+    if not scene.key:
         write_name(axes, drone, pose.position_m)
     rim: Look = {"edgecolors": "white", "linewidths": 0.5, "s": 30}
-    for kind, point in stage.points:
+    for kind, point in scene.points:
         place, (colour, marker) = np.asarray(point.position_m[:2]), MARKS[kind]
         is_node = kind == "node"
         line: Look = {"linewidth": 0.8} if is_node else {"linewidth": 1.2, "linestyle": (0, (3, 1.5))}
         axes.plot([x, place[0]], [y, place[1]], color=colour, zorder=1.5, label=kind, **line)
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0 if is_node else 6.8, label=kind, **rim)
-        name = stage.key.get((False, point.name), point.name)
+        name = scene.key.get((False, point.name), point.name)
         write_name(
             axes,
             name,
             place,
-            number="" if stage.key else stage.numbers.get(point.name, ""),
-            is_bold=point.name in stage.worst,
+            number="" if scene.key else scene.numbers.get(point.name, ""),
+            is_bold=point.name in scene.worst,
         )
-        if stage.uncertain and not isinstance(point, Terminal):
+        if scene.uncertain and not isinstance(point, Terminal):
             axes.plot(*set_outline_m(point).T, color=colour, linewidth=0.8, label=f"where the {kind} may be")
-    for source in stage.scenario.sources:  # which the drone has no link with
+    for source in scene.scenario.sources:  # which the drone has no link with
         place, (colour, marker) = np.asarray(source.position_m[:2]), MARKS["source"]
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0, label="source", **rim)
         write_name(axes, source.name, place)
-    name = "antenna axis (null)" if stage.scenario.antenna_record.is_quadratic else "antenna's z axis"
+    name = "antenna axis (null)" if scene.scenario.antenna_record.is_quadratic else "antenna's z axis"
     start, ahead, look = -1.0, pose.antenna_axis[:2], _NULL_LINE | {"label": name}
-    if stage.scenario.array is not None:
+    if scene.scenario.array is not None:
         start, ahead = 0.0, np.array([np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)])
         look = {"color": INK, "label": "heading (yaw)"}
-    ends = pose.position_m[:2] + stage.axis * stage.extent_m * np.outer((start, 1.0), ahead)
+    ends = pose.position_m[:2] + scene.axis * scene.extent_m * np.outer((start, 1.0), ahead)
     axes.plot(*ends.T, zorder=6.5, **look)
-    axes.scatter(x, y, color=DRONE, zorder=7, label=drone if stage.key else "drone", **rim)
+    axes.scatter(x, y, color=DRONE, zorder=7, label=drone if scene.key else "drone", **rim)
 
 
 def _filled(axes: Axes, box_m: FloatArray) -> FloatArray:
@@ -177,7 +177,7 @@ def draw_field(axes: Axes, result: Result, field: Field) -> None:
         label.set_visible(bool(shapely.contains_xy(inner, *label.get_position())))
     axes.grid(visible=False)
     box_m = np.array([[east[0], north[0]], [east[-1], north[-1]]])
-    draw_plan(axes, Stage(scenario=result.scenario, poses=(result.pose,)), result.pose, box_m)
+    draw_plan(axes, PlanScene(scenario=result.scenario, poses=(result.pose,)), result.pose, box_m)
     words = f"{capitalised(result.objective.quantity.smallest)} {field.altitude_m:.3g} m up ({field.unit})"
     bar = axes.inset_axes((1.03, 0.0, 0.045, 1.0))  # as high as the map, whatever its shape
     axes.figure.colorbar(mesh, cax=bar, label=words, extend="min" if values.min() < low else "neither")

@@ -16,7 +16,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics import Pose
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan
-from nullpose.report.figures.stage import Stage
+from nullpose.report.figures.plan_scene import PlanScene
 from nullpose.report.figures.style import Look, house_style, inches, is_column
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, with_unit
@@ -37,69 +37,69 @@ _LOWEST_INCH, _HIGHEST_INCH = 1.0, 75.0 / 25.4  # of such a plan, and of the fig
 
 
 def draw_panels(
-    stage: Stage, *, head: str = "", titles: Sequence[str] = ("",), width: str | None = None
+    scene: PlanScene, *, head: str = "", titles: Sequence[str] = ("",), width: str | None = None
 ) -> Figure:
     """Draw each pose from above, several side by side.
 
     Args:
-        stage: what is to be seen in each.
+        scene: what is to be seen in each.
         head: title of the figure; empty for none. In print there is none.
         titles: of the plans.
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
     """
-    count, is_narrow = len(stage.poses), is_column(width)
+    count, is_narrow = len(scene.poses), is_column(width)
     usual = _ALONE_INCH if count == 1 else (_EACH_INCH[0] * count, _EACH_INCH[1])
     share = (_COLUMN_SHARES if is_narrow else _PAGE_SHARES)[count > 1]
     with house_style(width), rc_context({"text.parse_math": False}):
         figure = Figure(figsize=inches(usual, width, share), layout="constrained")
         plans = figure.subplots(1, count, squeeze=False)[0]
-        for axes, pose, title in zip(plans, stage.poses, titles, strict=True):
+        for axes, pose, title in zip(plans, scene.poses, titles, strict=True):
             axes.set_title(
                 title.replace(", ", "\n") if is_narrow else title,
                 fontsize="small" if is_narrow else "medium",
                 parse_math=True,
             )
-            draw_plan(axes, stage, pose)
+            draw_plan(axes, scene, pose)
         if width is None:
             figure.suptitle(head, fontsize=10, wrap=True)
-        _draw_legend(figure, stage)
+        _draw_legend(figure, scene)
         for axes in figure.axes:
             place_names(axes)
     return figure
 
 
-def _draw_legend(figure: Figure, stage: Stage) -> None:
+def _draw_legend(figure: Figure, scene: PlanScene) -> None:
     """Draw the legend below all, with the key if there is one, in as many columns as there is space for."""
     marks: dict[str, dict[type, Any]] = {}
     for axes in figure.axes:
         drawn = [*zip(*axes.get_legend_handles_labels(), strict=True)]
         marks |= {name: {type(mark): mark for mark, label in drawn if label == name} for _, name in drawn}
-    keyed = stage.keyed if stage.key else []
+    keyed = scene.keyed if scene.key else []
     entries = keyed + [(name, "", name) for name in marks if name not in {kind for kind, _, _ in keyed}]
     handles: Any = [tuple(marks[kind].values()) for kind, _, _ in entries]
     lines = [textwrap.fill(words, _KEY_LETTERS) for _, _, words in entries]
-    look: Look = {"loc": "outside lower center", "title": stage.note, "alignment": "left"}
+    look: Look = {"loc": "outside lower center", "title": scene.note, "alignment": "left"}
     look |= {"borderaxespad": 0.1, "labelspacing": 0.25, "handlelength": 1.3, "columnspacing": 0.8}
     sizes = _KEY_PT if keyed else (None,)
     for count, points in product(range(_COLUMNS[bool(keyed)], 0, -1), sizes):
         legend = figure.legend(handles, lines, ncols=count, fontsize=points, **look)
         for text, (_, name, _) in zip(legend.get_texts(), entries, strict=True):
-            text.set_fontweight("bold" if name in stage.worst else "normal")
+            text.set_fontweight("bold" if name in scene.worst else "normal")
         width_px, height_px = legend.get_window_extent().size
         if width_px <= _WIDEST * figure.bbox.width or (count, points) == (1, sizes[-1]):
             break
         legend.remove()
     if keyed:
-        below_inch, (across_m, along_m) = height_px / figure.dpi + _AXIS_INCH, np.ptp(stage.box_m, axis=0)
+        below_inch, (across_m, along_m) = height_px / figure.dpi + _AXIS_INCH, np.ptp(scene.box_m, axis=0)
         high_inch = _PLAN_WIDTH * figure.get_figwidth() * along_m / across_m
         most_inch = max(_LOWEST_INCH, _HIGHEST_INCH - below_inch)
         figure.set_figheight(below_inch + float(np.clip(high_inch, _LOWEST_INCH, most_inch)))
 
 
 def draw_poses(scenario: Scenario, rows: Sequence[ResultRow]) -> Figure:
-    """Draw several best poses side by side, each at its own jamming level, in a scene with a jammer."""
+    """Draw several best poses side by side, each at its own jamming level, in a scenario with a jammer."""
     titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
-    return draw_panels(Stage(scenario=scenario, poses=tuple(row.pose for row in rows)), titles=titles)
+    return draw_panels(PlanScene(scenario=scenario, poses=tuple(row.pose for row in rows)), titles=titles)
 
 
 def draw_result(result: Result, width: str | None = None) -> Figure:
@@ -118,8 +118,8 @@ def draw_result(result: Result, width: str | None = None) -> Figure:
         yaw = f"{math.degrees(result.pose.yaw_rad):.1f}°".replace("-", MINUS)
         words = f"{result.label}: {words}, yaw {yaw}"
     words = "; ".join(filter(None, (words, sensitivity_caption(result))))
-    stage = Stage.of(result, is_narrow=is_column(width))
-    return draw_panels(stage, head=f"{result.scenario.name}\n{words}", width=width)
+    scene = PlanScene.of(result, is_narrow=is_column(width))
+    return draw_panels(scene, head=f"{result.scenario.name}\n{words}", width=width)
 
 
 def _draw_robust(result: Result, details: RobustDetails, width: str | None) -> Figure:
@@ -139,8 +139,8 @@ def _draw_robust(result: Result, details: RobustDetails, width: str | None) -> F
         )
     ]
     head = f"{scenario.name}\n{quantity.smallest}; errors: {error_words(scenario)}"
-    stage = Stage(scenario=scenario, poses=(details.robust.pose, details.nominal.pose), uncertain=True)
-    return draw_panels(stage, head=head, titles=titles, width=width)
+    scene = PlanScene(scenario=scenario, poses=(details.robust.pose, details.nominal.pose), uncertain=True)
+    return draw_panels(scene, head=head, titles=titles, width=width)
 
 
 def _words(scenario: Scenario, objective: Objective, pose: Pose) -> str:

@@ -13,7 +13,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.scenario.buildings import MOST_BUILDINGS
 from nullpose.scenario.channel import EnvironmentName
 from nullpose.scenario.faults import require
-from nullpose.scenario.rules import Quantity
+from nullpose.scenario.rules import Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Range
 from nullpose.scenario.ways import Ways
@@ -77,15 +77,15 @@ class Blocks(Section):
         "urban",
     )
     alpha: (
-        Annotated[float, Quantity("a share of the ground", 1e-3, 0.99, "0.3 is urban: streets remain")] | None
+        Annotated[float, Limits("a share of the ground", 1e-3, 0.99, "0.3 is urban: streets remain")] | None
     ) = optional("The share of the ground that is built up.", 0.3)
     beta_per_km2: (
-        Annotated[float, Quantity("a number of buildings per km^2", 1e-3, 1e6, "500 is urban")] | None
+        Annotated[float, Limits("a number of buildings per km^2", 1e-3, 1e6, "500 is urban")] | None
     ) = optional("The mean number of buildings per square kilometre.", 500.0)
-    gamma_m: (
-        Annotated[float, Quantity("a height in m", 0.1, 100.0, "15 m is urban, 50 m high-rise")] | None
-    ) = optional(
-        "Scale of the Rayleigh distribution of the heights, in metres; their mean is 1.25 times it.", 15.0
+    gamma_m: Annotated[float, Limits("a height in m", 0.1, 100.0, "15 m is urban, 50 m high-rise")] | None = (
+        optional(
+            "Scale of the Rayleigh distribution of the heights, in metres; their mean is 1.25 times it.", 15.0
+        )
     )
     x_m: Range | None = optional(
         "Western and eastern end of the area in which centres of buildings are. Left out: the smallest "

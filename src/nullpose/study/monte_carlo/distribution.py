@@ -12,12 +12,12 @@ from pydantic_core import CoreSchema, core_schema
 
 from nullpose.physics.types import FloatArray
 from nullpose.scenario.faults import collected
-from nullpose.scenario.rules import MOST_MEMBERS, ListOf, Quantity, Rule
+from nullpose.scenario.rules import MOST_MEMBERS, Limits, ListOf, Rule
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.ways import Ways, exactly_one
 from nullpose.scenario.wording import plain
 
-_Number = Annotated[float, Quantity("a number", -1e30, 1e30, "in the unit that the key ends in")]
+_Number = Annotated[float, Limits("a number", -1e30, 1e30, "in the unit that the key ends in")]
 _Two = tuple[_Number, _Number]
 _Ends = Annotated[_Two, ListOf("a list of two numbers, the lower first", 2, 2)]
 
@@ -77,7 +77,7 @@ class Drawn(Rule):
         quantity: its unit and limits.
     """
 
-    quantity: Quantity
+    quantity: Limits
 
     @classmethod
     def of(cls, kind: object) -> Self:
@@ -87,7 +87,7 @@ class Drawn(Rule):
             kind: an annotated float, or that or None.
         """
         inner = [*get_args(kind), *(each for part in get_args(kind) for each in get_args(part))]
-        return cls(next(each for each in inner if isinstance(each, Quantity)))
+        return cls(next(each for each in inner if isinstance(each, Limits)))
 
     def read(self, value: object) -> object:
         """Make the distribution of a number; leave the raw table of one."""

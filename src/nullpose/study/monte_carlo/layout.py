@@ -12,7 +12,7 @@ from pydantic import AfterValidator, Field
 from nullpose.physics.types import FloatArray
 from nullpose.scenario.faults import Place, key_faults
 from nullpose.scenario.ground_points import GroundAntennaKind, GroundPoint
-from nullpose.scenario.rules import Choice, Count, ListOf, Quantity, ascending
+from nullpose.scenario.rules import Choice, Count, Limits, ListOf, ascending
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
@@ -109,7 +109,7 @@ class Points(Section):
     x_m: Range | None = optional("Western and eastern end of the rectangle.", [-50.0, 50.0])
     y_m: Range | None = optional("Southern and northern end of the rectangle.", [0.0, 80.0])
     density_per_m2: (
-        Annotated[float, Quantity("a density per square metre", 1e-12, 1e6, "the mean number over the area")]
+        Annotated[float, Limits("a density per square metre", 1e-12, 1e6, "the mean number over the area")]
         | None
     ) = optional("Of poisson: the mean number over the area.", 1e-3)
     parents: (

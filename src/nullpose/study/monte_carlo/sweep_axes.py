@@ -10,14 +10,14 @@ from pydantic_core import PydanticCustomError
 
 from nullpose.errors import UsageError
 from nullpose.scenario.faults import Place, collected, path_of, rejection, require_value
-from nullpose.scenario.rules import Choice, Count, Quantity, Rule
+from nullpose.scenario.rules import Choice, Count, Limits, Rule
 from nullpose.scenario.wording import described, plain, unknown
 from nullpose.study.sweep import spaced
 
 MOST_POINTS = 1_000_000  # combinations of swept values
 
 _DEEPEST = 16  # parts of a path: no value of a scene is deeper
-_VALUE = Quantity("a number", -1e30, 1e30, "in the unit that the path ends in")
+_VALUE = Limits("a number", -1e30, 1e30, "in the unit that the path ends in")
 _POINTS = Count("a number of values", 2, 100_000, "both ends included")
 _SPACING = Choice("a spacing", ("linear", "log"))
 _KEYS: dict[str, Rule] = {"from": _VALUE, "to": _VALUE, "points": _POINTS, "spacing": _SPACING}

@@ -27,7 +27,7 @@ _SHORT, _LONG, _MOST_KEYS = 3, 8, 26  # letters of a name that is its own key, a
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stage:
+class PlanScene:
     """What a figure has to show.
 
     Args:
@@ -51,8 +51,8 @@ class Stage:
     key: Mapping[tuple[bool, str], str] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, result: Result, *, is_narrow: bool = False) -> Stage:
-        """Set the stage of a result: with what each node gets, or of many with the names of the worst.
+    def of(cls, result: Result, *, is_narrow: bool = False) -> PlanScene:
+        """Set the scene of a result: with what each node gets, or of many with the names of the worst.
 
         Args:
             result: the result.
