@@ -115,7 +115,7 @@ def make_robust_scene(number: int) -> Scenario:
     nodes = rng.uniform(0.0, [60.0, 60.0, 3.0], size=(int(rng.integers(1, 5)), 3))
     jammers = rng.uniform(0.0, [60.0, 60.0, 3.0], size=(int(rng.integers(1, 3)), 3))
     extent = float(rng.uniform(0.5, 3.5))
-    sets = [extent, [extent, 0.5 * extent, 0.3 * extent]]
+    sets = [extent, 0.5 * extent]
     receiver = {
         "noise_w": 1e-3,
         "reference_gain_db": 0.0,

@@ -54,9 +54,9 @@ def plan_of(name: str, title: str, **more: bool) -> Callable[[Figure], None]:
 
     def draw(figure: Figure) -> None:
         result = solve(nullpose.load(EXAMPLES / f"{name}.toml"), gap=1e-2, **more)
-        stage = PlanScene(scenario=result.scenario, poses=(result.pose,), axis=AXIS, uncertain=bool(more))
+        scene = PlanScene(scenario=result.scenario, poses=(result.pose,), axis=AXIS, uncertain=bool(more))
         axes = framed(figure, title)
-        draw_plan(axes, stage, result.pose)
+        draw_plan(axes, scene, result.pose)
         axes.set(xlabel="", ylabel="", xticks=[], yticks=[])
         for text in [text for text in axes.texts if text.get_text().startswith(("drone", "mast"))]:
             text.remove()  # a card has space for few names
