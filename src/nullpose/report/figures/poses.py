@@ -28,7 +28,7 @@ from nullpose.solver.array import ArrayDetails
 from nullpose.solver.robust import RobustDetails
 from nullpose.study import ResultRow
 
-_ALONE_INCH, _EACH_INCH = (6.6, 5.4), (4.0, 4.4)  # of one plan, and of each of several
+_ALONE_INCH, _EACH_INCH = (7.0, 5.4), (4.0, 4.4)  # of one plan, and of each of several
 _PAGE_SHARES, _COLUMN_SHARES = (0.6, 0.5), (0.95, 0.75)  # heights over widths of one plan, and of several
 _COLUMNS, _WIDEST = (6, 3), 0.985  # of a legend and of a key at most; their width over the figure's
 _KEY_PT, _KEY_LETTERS = (6.5, 6.0), 48  # letters; in a line: a column holds so many in bold
@@ -117,7 +117,7 @@ def draw_result(result: Result, width: str | None = None) -> Figure:
     if isinstance(result.details, ArrayDetails):
         yaw = f"{math.degrees(result.pose.yaw_rad):.1f}°".replace("-", MINUS)
         words = f"{result.label}: {words}, yaw {yaw}"
-    words = "; ".join(filter(None, (words, sensitivity_caption(result))))
+    words = "\n".join(filter(None, (words, sensitivity_caption(result))))
     scene = PlanScene.of(result, is_narrow=is_column(width))
     return draw_panels(scene, head=f"{result.scenario.name}\n{words}", width=width)
 
