@@ -131,20 +131,18 @@ def elevation(q: Taylor) -> tuple[Taylor, Interval]:
     """
     z, square = q[2], q.squared().total()
     level = q[:2].squared().total().of(root)
-    slopes, steep = (
-        (z_i * height - up * l_i) / s
-        for z_i, height, up, l_i, s in (
-            (z.slopes, level.value, z.value, level.slopes, square.value),
-            (z.steep, level.over, z.over, level.steep, square.over),
-        )
-    )
-    bends = -(level.bends * z.over) - outer(steep, square.steep) * 0.5
+    parts: list[tuple[Interval, Interval]] = []
+    for up, height, whole in zip(z.orders, level.orders, square.orders, strict=True):
+        slopes = (up[1] * height[0] - height[1] * up[0]) / whole[0]
+        bends = -(height[2] * up[0]) - outer(slopes, whole[1]) * 0.5
+        parts.append((slopes, bends / whole[0]))
     # where a box is over the point, or under it, one end is infinite
     low = Interval(z.over.low) / np.where(z.over.low > 0.0, level.over.high, level.over.low)
     high = Interval(z.over.high) / np.where(z.over.high > 0.0, level.over.low, level.over.high)
     tangent = Interval(low.low, high.high)
     at_centre = arctan(z.value / level.value)
-    return Taylor(q.half, at_centre, slopes, arctan(tangent), steep, bends / square.over).tightened(), tangent
+    angle = Taylor(q.half, at_centre, *parts[0], arctan(tangent), *parts[1])
+    return angle.tightened(), tangent
 
 
 @dataclass(frozen=True, slots=True, eq=False)

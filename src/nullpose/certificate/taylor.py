@@ -40,9 +40,10 @@ class Taylor:
         half: (n, b) bounds on the distance of each coordinate from its value at the centre.
         value: (..., b) at the centres.
         slopes: (..., n, b) first derivatives there.
+        curve: (..., n (n + 1) / 2, b) second derivatives there, by :func:`pairs`.
         over: (..., b) what they are all over the boxes.
         steep: (..., n, b) first derivatives all over the boxes.
-        bends: (..., n (n + 1) / 2, b) second derivatives all over the boxes, by :func:`pairs`.
+        bends: (..., n (n + 1) / 2, b) second derivatives all over the boxes.
     """
 
     __array_ufunc__ = None  # numpy must leave mixed expressions to the operators below
@@ -50,13 +51,19 @@ class Taylor:
     half: FloatArray
     value: Interval
     slopes: Interval
+    curve: Interval
     over: Interval
     steep: Interval
     bends: Interval
 
     @property
     def _parts(self) -> tuple[Interval, ...]:
-        return self.value, self.slopes, self.over, self.steep, self.bends
+        return self.value, self.slopes, self.curve, self.over, self.steep, self.bends
+
+    @property
+    def orders(self) -> tuple[tuple[Interval, ...], tuple[Interval, ...]]:
+        """What is known at the centres and all over the boxes: value, first and second derivatives."""
+        return self._parts[:3], self._parts[3:]
 
     def __getitem__(self, index: Any) -> Taylor:
         return Taylor(self.half, *(part[index] for part in self._parts))
@@ -80,18 +87,15 @@ class Taylor:
     def __mul__(self, other: Taylor | Interval | FloatArray | float) -> Taylor:
         if not isinstance(other, Taylor):
             scale = as_interval(other)
-            scales = scale, _each(scale), scale, _each(scale), _each(scale)
+            scales = (scale, _each(scale), _each(scale)) * 2
             return Taylor(self.half, *(part * by for part, by in zip(self._parts, scales, strict=True)))
-        (i, j, _), a, b = pairs(len(self.half)), self.steep, other.steep
-        mixed = a[..., i, :] * b[..., j, :] + a[..., j, :] * b[..., i, :]
-        return Taylor(
-            self.half,
-            self.value * other.value,
-            self.slopes * _each(other.value) + other.slopes * _each(self.value),
-            self.over * other.over,
-            a * _each(other.over) + b * _each(self.over),
-            self.bends * _each(other.over) + other.bends * _each(self.over) + mixed,
-        ).tightened()
+        i, j, _ = pairs(len(self.half))
+        parts: list[Interval] = []
+        for (x, dx, ddx), (y, dy, ddy) in zip(self.orders, other.orders, strict=True):
+            mixed = dx[..., i, :] * dy[..., j, :] + dx[..., j, :] * dy[..., i, :]
+            slopes = dx * _each(y) + dy * _each(x)
+            parts += [x * y, slopes, ddx * _each(y) + ddy * _each(x) + mixed]
+        return Taylor(self.half, *parts).tightened()
 
     __rmul__ = __mul__
 
@@ -105,16 +109,13 @@ class Taylor:
     def composed(self, at: Rule, over: Rule) -> Taylor:
         """Return a function of these numbers, from its rule at the centres and all over the boxes."""
         i, j, _ = pairs(len(self.half))
-        square = self.steep[..., i, :] * self.steep[..., j, :]
-        square = Interval(np.where((i == j)[:, None], np.maximum(square.low, 0.0), square.low), square.high)
-        return Taylor(
-            self.half,
-            at[0],
-            self.slopes * _each(at[1]),
-            over[0],
-            self.steep * _each(over[1]),
-            self.bends * _each(over[1]) + square * _each(over[2]),
-        ).tightened()
+        parts: list[Interval] = []
+        for (_, dx, ddx), (value, first, second) in zip(self.orders, (at, over), strict=True):
+            square = dx[..., i, :] * dx[..., j, :]
+            low = np.where((i == j)[:, None], np.maximum(square.low, 0.0), square.low)
+            bends = ddx * _each(first) + Interval(low, square.high) * _each(second)
+            parts += [value, dx * _each(first), bends]
+        return Taylor(self.half, *parts).tightened()
 
     def squared(self) -> Taylor:
         """Return the squares."""
@@ -153,6 +154,11 @@ class Taylor:
             total = total + where(before, top, end).most()
         return total
 
+    def narrowed(self, third: Interval) -> Taylor:
+        """Return the same functions, whose third derivatives along any unit direction are bounded, (b,)."""
+        reach = (third * Interval(self.half).squared().total().sqrt()).most().high
+        return replace(self, bends=common(self.bends, self.curve + Interval(-reach, reach))).tightened()
+
     def within(self, low: float, high: Interval) -> Taylor:
         """Return the same functions, which are between a number and others."""
         return replace(self, over=common(self.over, Interval(low, high.high)))
@@ -160,15 +166,15 @@ class Taylor:
     def alike(self, number: Interval | FloatArray | float) -> Taylor:
         """Return constants over the same boxes."""
         n = len(self.half)
-        zero, constant = Interval(np.zeros((n, 1))), as_interval(number)
-        return Taylor(self.half, constant, zero, constant, zero, Interval(np.zeros((n * (n + 1) // 2, 1))))
+        zero = Interval(np.zeros((n, 1))), Interval(np.zeros((n * (n + 1) // 2, 1)))
+        return Taylor(self.half, *(as_interval(number), *zero) * 2)
 
 
 def coordinates(value: Interval, over: Interval) -> Taylor:
     """Return the coordinates themselves, (n, b), from what they are at the centres and over the boxes."""
     n = len(value.low)
     unit, zero = Interval(np.eye(n)[:, :, None]), Interval(np.zeros((n, n * (n + 1) // 2, 1)))
-    return Taylor((over - value).magnitude(), value, unit, over, unit, zero)
+    return Taylor((over - value).magnitude(), value, unit, zero, over, unit, zero)
 
 
 def chosen(mask: np.ndarray, a: Taylor, b: Taylor) -> Taylor:
