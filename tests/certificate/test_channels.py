@@ -7,9 +7,18 @@ import pytest
 from tests.certificate.plain import boxes_at, excess_over, random_family, value_at
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.channels import amplitude, excess, excess_at, most_excess
+from nullpose.certificate.channels import (
+    _KINDS,
+    _by_distance,
+    _by_elevation,
+    amplitude,
+    excess,
+    excess_at,
+    most_excess,
+)
 from nullpose.certificate.forms import COLUMN, ROW
 from nullpose.certificate.pose_value import exact
+from nullpose.certificate.taylor import Taylor
 from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel
 from nullpose.channel.free_space import constant_channel
@@ -166,3 +175,34 @@ def test_gains_fall_with_the_distance(alpha: float) -> None:
     city = over_one_point(elevation_channel(*ENVIRONMENTS["urban"], average="power"))
     assert np.all(most_excess(city, none, least).high == 1.0)
     assert np.all(most_excess(city.changed(channels=city.channels[:0]), none, least) == 1.0)
+
+
+def test_a_new_kind_of_channel_is_one_formula(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sight by elevation with an exponent of the distance: gain and amplitude are those of both together."""
+    law, city = power_law(2.6, 2.0), elevation_channel(*ENVIRONMENTS["urban"], average="power")
+    both = max(_KINDS) + 1
+
+    def formula(rows: np.ndarray, distance: Taylor, angle: Taylor) -> Taylor:
+        exponent = np.repeat(np.array(law.row)[:, None], rows.shape[1], axis=1)
+        return _by_elevation(rows, distance, angle) + _by_distance(exponent, distance, angle)
+
+    monkeypatch.setitem(_KINDS, both, formula)
+    rng, family = np.random.default_rng(14), over_one_point(city)
+    rows = family.channels.copy()
+    rows[:, 0] = both
+    family = family.changed(channels=rows)
+    boxes, first = boxes_about(rng, family.points_m[0]), np.zeros(BOXES, dtype=np.int64)
+    steps, places = samples_of(rng, boxes)
+    alone = (excess_over(over_one_point(each), places)[..., 0] for each in (law, city))
+    g = np.prod(list(alone), axis=0)
+    size = np.linalg.norm(steps, axis=2)
+    for is_above, sign in ((True, 1.0), (False, -1.0)):
+        gain, field = (f(family, boxes, first, is_above) for f in (excess, amplitude))
+        assert gain is not None
+        assert field is not None
+        end = gain.over.high if is_above else gain.over.low
+        assert np.all(sign * g <= sign * end[:, None] + SLACK * g)
+        value = field.value.high if is_above else field.value.low
+        rest = field.slope.high[:, None] * size
+        assert np.all(sign * np.sqrt(g) <= sign * value[:, None] + rest + SLACK * np.sqrt(g))
+        assert np.count_nonzero(field.slope.high > 0.0) > BOXES // 8

@@ -118,7 +118,7 @@ def _sight(points_m: FloatArray, boxes: Boxes, rows: FloatArray) -> tuple[Taylor
     """
     q = coordinates(Interval(boxes.centre.T), boxes.hull) - points_m.T
     distance, none = q.squared().total().of(root), Interval(np.zeros(len(boxes)))
-    if not np.any(mask := rows[0] == BY_ELEVATION):
+    if not np.any(mask := np.isin(rows[0], [*_KINDS]) & (rows[0] != BY_DISTANCE)):
         return distance, q.alike(none), none
     angle, tangent = elevation(q)
     return distance, chosen(mask, angle, q.alike(none)), where(mask, tangent, none)
