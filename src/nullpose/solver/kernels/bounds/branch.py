@@ -240,48 +240,57 @@ def worst_pair(family, axis_field, row, workspace, axis):
 
 
 @rare_kernel
+def tangents_exclude(family, domain, axis_field, goal, row, workspace, axis, total):
+    """Check whether tangents of a mean, or of pairs, exclude a box: those at the axis of its centre."""
+    if family.pairs.shape[0] > 0:
+        worst_pair(family, axis_field, row, workspace, axis)
+        if excludes_curved(family, domain, axis_field, row, workspace, total):
+            return True
+        copy_into(goal.multipliers[COUNT:TOUCH], row[COUNT:TOUCH])
+        return excludes_curved(family, domain, axis_field, row, workspace, total)
+    missed = misses_one(family, axis_field, row, workspace, axis)
+    if missed and excludes_curved(family, domain, axis_field, row, workspace, total):
+        return True
+    copy_into(goal.multipliers[COUNT:TOUCH], row[COUNT:TOUCH])  # those of requirements
+    touch(row, axis)
+    excluded = excludes_curved(family, domain, axis_field, row, workspace, total)
+    if row[COUNT] > 0.0 and not excluded:
+        row[COUNT] = 0.0
+        return excludes_curved(family, domain, axis_field, row, workspace, total)
+    return excluded
+
+
+@rare_kernel
 def examine_affine(whole, domain, axis_field, goal, seen, row, workspace, axis):
     """Return (what becomes of a node, the side to split, 1) where the position gives the axis."""
     half, family = row[HALF:LEVEL], in_sight(whole, domain, seen, row, workspace)
-    total = scratch(JET)
+    total, reached = scratch(JET), math.inf
     workspace.expanded_side[:] = 0.0
     for j in family.denominator_point:
         fill_jet(family, j, False, axis_field, row, workspace)
-    row[KIND], is_mean, has_pairs = AFFINE, family.shares.shape[0] > 0, family.pairs.shape[0] > 0
-    if has_pairs:
-        is_mean = True  # multipliers of an axis that is there need no search
-        worst_pair(family, axis_field, row, workspace, axis)
-    elif is_mean:
-        missed = misses_one(family, axis_field, row, workspace, axis)
-        if missed and excludes_curved(family, domain, axis_field, row, workspace, total):
-            return EXCLUDED, 0, 0
-        copy_into(goal.multipliers[COUNT:TOUCH], row[COUNT:TOUCH])  # those of requirements
-        touch(row, axis)
-    elif lone_ratio(family, row, workspace):
+    row[KIND] = AFFINE
+    has_tangents = family.shares.shape[0] + family.pairs.shape[0] > 0
+    if has_tangents and tangents_exclude(family, domain, axis_field, goal, row, workspace, axis, total):
         return EXCLUDED, 0, 0
-    for attempt in range(3):  # the row's multipliers, the incumbent's, and those that are sought
-        if attempt == 1:
-            if has_pairs:
-                copy_into(goal.multipliers[COUNT:TOUCH], row[COUNT:TOUCH])
-            elif is_mean:  # whose multipliers are those of the axis
-                if row[COUNT] == 0.0:
-                    continue
-                row[COUNT] = 0.0
-            else:
+    if not has_tangents:
+        if lone_ratio(family, row, workspace):
+            return EXCLUDED, 0, 0
+        for attempt in range(2):  # the row's multipliers, then the incumbent's
+            if attempt == 1:
                 copy_into(goal.multipliers[COUNT:BALL], row[COUNT:BALL])
-        if attempt == 2:
-            reached = math.inf if is_mean else curved_multipliers(family, axis_field, row, workspace)
-            if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
-                fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
-                copy_into(row[CENTRE:HALF], workspace.place)
-                logs = workspace.log_denominators, workspace.values
-                value = math.exp(log_objective(whole, workspace.place, axis, logs[0], logs[1]))
-                if value > goal.best * (1.0 + _BEATS):
-                    return BETTER, 0, 1
-            if is_mean:
-                break
-        if excludes_curved(family, domain, axis_field, row, workspace, total):
-            return EXCLUDED, 0, 1 if attempt == 2 else 0
+            if excludes_curved(family, domain, axis_field, row, workspace, total):
+                return EXCLUDED, 0, 0
+        reached = curved_multipliers(family, axis_field, row, workspace)
+    if reached * row[LEVEL] > goal.best * (1.0 + _BEATS) and contains(domain, row[CENTRE:HALF]):
+        fill_affine(axis_field.offset, axis_field.matrix, row[CENTRE:HALF], axis)
+        copy_into(row[CENTRE:HALF], workspace.place)
+        logs = workspace.log_denominators, workspace.values
+        if math.exp(log_objective(whole, workspace.place, axis, logs[0], logs[1])) > goal.best * (
+            1.0 + _BEATS
+        ):
+            return BETTER, 0, 1
+    if not has_tangents and excludes_curved(family, domain, axis_field, row, workspace, total):
+        return EXCLUDED, 0, 1
     return BY_POSITION, impact(total, half), 1
 
 
