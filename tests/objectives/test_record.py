@@ -81,6 +81,16 @@ def test_smallest_or_mean_ratio_is_the_value_of_the_physics(name: str, seed: int
     assert objective_of_links(scenario, evaluate(scenario, pose)) == pytest.approx(value, rel=1e-12)
 
 
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_proof_knows_all_points_and_a_mean_one_denominator(name: str) -> None:
+    """The drone keeps clear of every point, of those in no ratio, too; no mean is proved with more."""
+    scenario = _scenario(name, np.random.default_rng(7))
+    ratios = RECORDS[name].ratios(scenario)
+    assert {*map(tuple, ratios.points_m)} == {point.position_m for point in scenario.points}
+    if RECORDS[name].mean_offset is not None:
+        assert len(ratios.denominator_isotropic) == 1
+
+
 def test_names_are_told_apart() -> None:
     """No two quantities share a name."""
     quantities = {one for record in RECORDS.values() for one in record.quantities}

@@ -29,7 +29,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_start=np.zeros(2, dtype=np.int64),
         denominator_point=nobody,
         denominator_weight=np.zeros(0),
-        **points_of(scenario, "node", others=("jammer",)),
+        **points_of(scenario, "node"),
     )
 
 

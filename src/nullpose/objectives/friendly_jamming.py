@@ -44,7 +44,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_point=point,
         denominator_weight=jamming,
         pairs=np.column_stack([node, n_nodes + heard_by * len(used) + of_node[node]]).astype(np.int64),
-        **points_of(scenario, "node", "eavesdropper", others=("jammer", "sender")),
+        **points_of(scenario, "node", "eavesdropper"),
     )
 
 

@@ -82,17 +82,22 @@ class Ratios(NamedTuple):
     pairs: IntArray = np.zeros((0, 2), dtype=np.int64)
 
 
-def points_of(scenario: Scenario, *kinds: str, others: tuple[str, ...] = ()) -> dict[str, Any]:
+_KINDS = ("node", "eavesdropper", "jammer", "destination", "sender")
+
+
+def points_of(scenario: Scenario, *kinds: str) -> dict[str, Any]:
     """Return the fields of ratios about their points: places, dipoles, channels and shadows.
+
+    All other points of the scenario follow, which are in no ratio, but to be kept clear of.
 
     There are none of dipoles without one, and none of channels where no link's gain over free space changes
     with the position, functions in Python left aside.
 
     Args:
         scenario: with its points.
-        kinds: of the points, in order, as in ``"node"``.
-        others: kinds of the points after them that are in no ratio, but to be kept clear of.
+        kinds: of the points in the ratios, in order, as in ``"node"``.
     """
+    others = [kind for kind in _KINDS if kind not in kinds]
     every = [(kind, getattr(scenario, f"{kind}_positions_m")) for kind in (*kinds, *others)]
     groups = [(getattr(scenario, f"{kind}_antennas"), len(points_m)) for kind, points_m in every]
     antennas = [(each.axes, each.leaks) if each else (np.zeros((n, 3)), np.ones(n)) for each, n in groups]

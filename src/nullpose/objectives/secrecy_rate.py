@@ -34,7 +34,7 @@ def _ratios(scenario: Scenario) -> Ratios:
         denominator_start=np.arange(n_eavesdroppers + 1, dtype=np.int64),
         denominator_point=np.arange(n_nodes, n_nodes + n_eavesdroppers, dtype=np.int64),
         denominator_weight=snr_weights(scenario, "eavesdropper"),
-        **points_of(scenario, "node", "eavesdropper", others=("jammer",)),
+        **points_of(scenario, "node", "eavesdropper"),
     )
 
 

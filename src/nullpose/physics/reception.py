@@ -128,10 +128,11 @@ def allowed_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) ->
         axis: likewise.
     """
     reception, record = Reception(scenario, position_m, axis), scenario.objective_record
-    value = record.value(scenario, record.evaluate(reception))
+    numbers = record.evaluate(reception)
+    value = record.value(scenario, numbers)
     if record.mean_offset is None:
         return value
-    is_met = np.all(reception.sinr >= scenario.node_requirements, axis=-1)
+    is_met = np.all(numbers["sinr"] >= scenario.node_requirements, axis=-1)
     return np.asarray(np.where(is_met, value, -np.inf))
 
 

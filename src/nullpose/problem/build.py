@@ -69,6 +69,11 @@ def build_family(
     ratios = ratios._replace(leak=scenario.antenna_record.leak)
     if record.mean_offset is not None:
         required = scenario.node_requirements
+        require_usage(
+            len(ratios.denominator_isotropic) == 1,
+            f'objective: the ratios of "{record.name}" have several denominators; '
+            "a mean is proved with one alone; put what differs, such as a node's noise, into the numerators",
+        )
         ratios = ratios._replace(
             shares=scenario.node_shares,
             offset=record.mean_offset,
