@@ -40,10 +40,8 @@ def dipole_sum(
     family, identity, parts = weighted_sum(family, leaves)
     whole, lean2 = shear.identity(), shear.most[0].squared()
     # E^T E, which the identity leaves out, is not negative, and at most so much
-    rest, links = (
-        whole * identity + shear.gram * (lean2 * where(identity.high > 0.0, identity, 0.0)).most(),
-        [],
-    )
+    rest = whole * identity + shear.gram * (lean2 * where(identity.high > 0.0, identity, 0.0)).most()
+    links: list[tuple[Taylor, Interval, Interval, float]] = []
     for q, weight in constants:
         if np.any(weight != 0.0):
             rest = rest + shear.form(q) * weight

@@ -8,17 +8,15 @@ from itertools import product
 import numpy as np
 
 from nullpose.certificate.interval import Interval, dot, stack
+from nullpose.certificate.taylor import pairs
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 
 IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 IDENTITIES = IDENTITY[:, None]
 """The same for any number of boxes."""
-ROW, COLUMN = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
-"""Row and column of each of the six."""
-
-# Where among the six a row and a column are.
-PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
+ROW, COLUMN, PLACE = pairs(3)
+"""Row and column of each of the six, and, (3, 3), where among the six a row and a column are."""
 
 NEXT, LAST = [1, 2, 0], [2, 0, 1]
 """The two axes other than each."""
