@@ -14,7 +14,7 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, Leaves
-from nullpose.certificate.forms import COLUMN, COUNTED, PLACE, ROW, gram
+from nullpose.certificate.forms import COLUMN, PLACE, ROW, gram
 from nullpose.certificate.frames import UNIT, axes_across
 from nullpose.certificate.interval import Interval, dot, stack, swapped, where
 from nullpose.certificate.lemmas import DIRECTION_THIRD, ROUNDING, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
@@ -103,7 +103,7 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
     # (a0 - a) / (a.d0) of a dipole's link vector a, r / (r.d0) - d0 of the way to another point
     w = chosen(is_dipole, -(a - a.value), a) / along - where(is_dipole, 0.0, d0)
     w = chosen(on, w, w.alike(Interval(np.zeros((3, len(on))))))
-    most = where(on, _sizes(a, w, along.over, near.over, is_dipole), 0.0)
+    most = where(on, _sizes(w, along.over, near.over, is_dipole), 0.0)
     w = w.narrowed(most[3])
     basis, upright = _basis(on, is_dipole, d0)
     one_row, one_column = (w[:, None] * basis).total() * d0[:, None], w[:, None] * dot(basis, d0[:, None])
@@ -115,41 +115,26 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
     return Shear(on, anchor, most, basis, products, turned + basis, chosen(is_dipole, still, flat))
 
 
-def _sizes(a: Taylor, w: Taylor, along: Interval, near: Interval, is_dipole: np.ndarray) -> Interval:
+def _sizes(w: Taylor, along: Interval, near: Interval, is_dipole: np.ndarray) -> Interval:
     """Return bounds on w and its first three derivatives along a unit direction, by the quotient rule."""
-    y, lean, (slope, bend, third) = Interval(along.low), size_of(w.over), vector_sizes(near)
-    slope = where(is_dipole, smaller(slope, size_of(a.steep)), 1.0)
-    bend = where(is_dipole, smaller(bend, size_of(a.bends)), 0.0)
+    y, lean = Interval(along.low), w.over.squared().total().sqrt().most()
+    # of a link vector, or of the way to a point
+    sizes = zip(vector_sizes(near), (1.0, 0.0, 0.0), strict=True)
+    slope, bend, third = (where(is_dipole, *pair) for pair in sizes)
     rate = slope / y
     grown = where(is_dipole, lean + 1.0, (lean.squared() + 1.0).sqrt())
     twice, thrice = np.where(is_dipole, [[2.0], [6.0]], [[1.0], [DIRECTION_THIRD]])
     second = grown * bend / y + (lean * 2.0 + twice) * rate.squared()
-    most = grown * (where(is_dipole, third, 0.0) + bend * rate * 6.0) / y
+    most = grown * (third + bend * rate * 6.0) / y
     most = most + (lean * 6.0 + thrice) * rate.squared() * rate
     return stack([lean, grown * rate, second, most]).most()
 
 
 def vector_sizes(near: Interval) -> tuple[Interval, ...]:
-    """Return bounds on the first three derivatives of a link vector, given ``1 / |r|``: lemma 5.
-
-    No Taylor number has the third, and those of the others know no directions.
-    """
+    """Return bounds on the first three derivatives of a link vector, given ``1 / |r|``: lemma 5."""
     square = near.squared()
     sizes = square * VECTOR_SLOPE, square * near * VECTOR_BEND, square.squared() * VECTOR_THIRD
     return tuple(size.most() for size in sizes)
-
-
-def size_of(vectors: Interval) -> Interval:
-    """Return upper bounds on vectors, (3, b), or on their derivatives along a unit direction, (3, n, b)."""
-    square = vectors.squared().total()
-    if square.low.ndim > 1:
-        square = (square * (COUNTED[:, None] if len(square.low) == 6 else 1.0)).total()
-    return square.sqrt().most()
-
-
-def smaller(first: Interval, second: Interval) -> Interval:
-    """Take the smaller of two upper bounds."""
-    return Interval(np.fmin(first.high, second.high))
 
 
 def _basis(on: np.ndarray, is_dipole: np.ndarray, d0: Interval) -> tuple[Interval, Interval]:
