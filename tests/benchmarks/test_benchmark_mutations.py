@@ -31,7 +31,8 @@ def test_no_false_certificate_is_accepted(mutations: Mutations, count: int) -> N
     assert {outcome for _, outcome in tally.counts} == {REFUSED, REJECTED, TRUE}
     assert {change for change, _ in tally.counts} >= {*CLASSES, *MORE} - {
         "null_jammer", "airframe, claim redone", "no_fly, claim redone", "antenna, claim redone",
-        "channel, claim redone", "band", "cell halved", "cell moved", *(["sides"] if count == COUNT else []),
+        "channel, claim redone", "band", "objective, claim redone",
+            "cell halved", "cell moved", *(["sides"] if count == COUNT else []),
     }  # fmt: skip
 
 

@@ -144,7 +144,7 @@ def _shape(read: Callable[[Any], BaseGeometry], geometry: object, place: str) ->
     except (AttributeError, IndexError, KeyError, TypeError, ValueError, ShapelyError) as error:
         got = described(geometry["type"] if isinstance(geometry, dict) and "type" in geometry else geometry)
         raise refusal(
-            place, f"got {got}, must be a geometry with [longitude, latitude] in degrees ({error})"
+            place, f"got {got}, must be a geometry with [longitude, latitude] in degrees ({str(error)[:200]})"
         ) from None
     places = shapely.get_coordinates(shape)
     wrong = ~(np.abs(places) <= [360.0, 90.0]).all(axis=1)  # NaN too
