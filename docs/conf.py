@@ -46,7 +46,7 @@ nitpick_ignore_regex = [
     ),
     (
         r"py:.*",
-        r".*(ArrayLike|NDArray|FloatArray|IntArray|PlainTable|float64|Axes|Details|Path|PathLike|Callable|Sequence|Mapping|Iterable|_Called|_Numbers)",
+        r".*(ArrayLike|NDArray|FloatArray|IntArray|PlainTable|AnyAntenna|float64|Axes|Details|Path|PathLike|Callable|Sequence|Mapping|Iterable|_Called|_Numbers)",
     ),
 ]
 
