@@ -8,6 +8,7 @@ import pytest
 import shapely
 from benchmarks.soundness.check import check_scene
 from benchmarks.soundness.features import make_feature_scene
+from benchmarks.soundness.search import best_value
 from hypothesis import given, strategies as st
 from scipy.optimize import minimize
 
@@ -254,3 +255,27 @@ def test_what_does_not_know_pairs_refuses_them() -> None:
     ):
         with pytest.raises(UsageError, match='"friendly-jamming"'):
             solve(scenario, robust=scenario.is_uncertain)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_pose_among_buildings_beats_the_bound(seed: int) -> None:
+    """A search of the physics finds nothing above the bound, nor better than what is certified."""
+    rng = np.random.default_rng(seed)
+    west, south = map(float, rng.uniform([-50.0, -45.0], [20.0, -25.0]))
+    east, north = west + float(rng.uniform(8.0, 30.0)), south + float(rng.uniform(8.0, 20.0))
+    block = {"polygon_m": [[west, south], [east, south], [east, north], [west, north]]}
+    listeners = [
+        {"position_m": [x, y, 0.0]} for x, y in rng.uniform([-60.0, -15.0], [60.0, 60.0], (2, 2)).tolist()
+    ]
+    scenario = jammed(
+        (0.0, 0.0),
+        float(10.0 ** rng.uniform(-1.0, 1.0)),
+        buildings=[block | {"height_m": float(rng.uniform(8.0, 25.0))}],
+        channel={"model": "power-law", "exponent": 2.0, "blocked_loss_db": 20.0},
+        eavesdroppers=listeners,
+    )
+    found = solve(scenario, gap=1e-2, time_limit_s=60.0)
+    near = found.pose.position_m, found.pose.antenna_axis
+    best = best_value(scenario, "optimum", starts=100, seed=seed, near=near)
+    assert found.objective.value <= best <= found.objective.upper_bound * (1.0 + 1e-9)
+    assert found.status == "certified"

@@ -110,8 +110,8 @@ def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Linear:
     seen = np.abs(np.where(larger, top[i], top[j]))
     e = np.fmax(radius.high, _SHARE * np.maximum(sizes[i], sizes[j]))
     e = np.fmin(e, radius.high / np.maximum(seen, 1e-300)) + _TINY
-    given, taken = Interval(e), (radius.squared() / e).most()
-    first, second = where(larger, given, taken), where(larger, taken, given)
+    share, rest = Interval(e), (radius.squared() / e).most()
+    first, second = where(larger, share, rest), where(larger, rest, share)
     diagonal = [Interval(bent.high[0]) + first[0] + first[1], Interval(bent.high[1]) + second[0] + first[2]]
     diagonal.append(Interval(bent.high[2]) + second[1] + second[2])
     value = form.value + stack(diagonal + [Interval(entry) for entry in middle[3:]])

@@ -36,7 +36,7 @@ _ASSUMED = (
     "Your file states no errors, so these count (change: --off), "
     "balls no larger than the airspace allows: {}."
 )
-_SHRINKING, _SMALLEST_M = 0.8, 1e-3  # of balls that are assumed
+_CLEAR = 0.99  # of the way to where the vehicle may be, which balls that are assumed may take
 
 
 @expanded
@@ -153,25 +153,23 @@ def solve(
 
 
 def _with_errors(scenario: Scenario, sizes: ErrorSizes) -> Scenario:
-    """Give a scenario the errors of the sizes; shrink balls until none reaches into the airspace."""
-    from nullpose.errors import ScenarioError
+    """Give a scenario the errors of the sizes; balls are smaller that the vehicle might meet."""
+    import numpy as np
+
+    from nullpose.problem.build import distances_m
     from nullpose.scenario import apply_overrides
     from nullpose.scenario.overrides import Override
 
-    kind, count = scenario.objective_record.interferers, len(scenario.interferers)
-    radii_m = {f"{kind}[{i}].uncertainty_m": sizes.jammers_m for i in range(count)}
-    pose = {
+    airspace, kind = scenario.airspace, scenario.objective_record.interferers
+    apart_m = distances_m(scenario.of_interferers("positions_m"), airspace.lower_m, airspace.upper_m)
+    free_m = _CLEAR * np.maximum(apart_m, airspace.keep_out_m) - sizes.position_m
+    radii_m = np.clip(free_m, 0.0, sizes.jammers_m).tolist()
+    errors = {
         "receiver.attitude_error_deg": sizes.attitude_deg,
         "receiver.position_error_m": sizes.position_m,
+        **{f"{kind}[{i}].uncertainty_m": radius_m for i, radius_m in enumerate(radii_m)},
     }
-    while True:
-        try:
-            return apply_overrides(scenario, [Override(*error) for error in (pose | radii_m).items()])
-        except ScenarioError as refused:
-            reaching = {fault.path for fault in refused.faults} & radii_m.keys()
-            if not reaching or min(radii_m.values()) < _SMALLEST_M:
-                raise
-            radii_m |= {path: _SHRINKING * radii_m[path] for path in reaching}
+    return apply_overrides(scenario, [Override(path, size) for path, size in errors.items()])
 
 
 def _write(

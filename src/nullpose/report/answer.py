@@ -53,13 +53,13 @@ def answer_lines(comparison: ResultTable) -> list[str]:
         return ["No vehicle compared with one dipole was found to reach every node."]
     kinds = {kind: [row for row in single if row.name.endswith(end)] for kind, end in _KINDS.items()}
     kinds["array"] = [row for row in comparison.rows if row.case.array is not None]
-    stated = [row for row in comparison.rows if row.name == FILE_VEHICLE]
+    of_file = [row for row in comparison.rows if row.name == FILE_VEHICLE]
     return [
         *(_least_line(comparison, kind, found) for kind, found in kinds.items() if found),
         *(
             f"{capitalised(row.case.phrase)} {_VERDICTS[verdict_on(comparison, row)]}: "
             f"it {_reach(comparison, row)}."
-            for row in stated
+            for row in of_file
         ),
         "The least tilt for each mount of the dipole: nullpose vehicle FILE",
     ]

@@ -49,7 +49,10 @@ class _Here(Executor):
 
     def submit(self, function: Callable[..., Answer], /, *arguments: object) -> Future[Answer]:  # type: ignore[override]
         future: Future[Answer] = Future()
-        future.set_result(function(*arguments))
+        try:
+            future.set_result(function(*arguments))
+        except Exception as error:
+            future.set_exception(error)
         return future
 
 

@@ -62,7 +62,7 @@ EXCLUDED, BY_POSITION, BY_AXIS, BETTER, FORESEEN = 0, 1, 2, 3, 4  # what becomes
 _HALVINGS = 3
 
 _COARSENESS = 5.0  # how far a duality gap must outweigh a box's size before axes are split
-_OF_MEANS = 0.1  # of that, for means: their bounds are of second order in a box's size
+_OF_MEANS = 0.1  # of that, for means: with 1 random fields took three times as long
 _FINEST = 0.05  # side of a cell, over a box's size, below which smaller cells tell nothing more
 _FAINT = 1e-6  # what multipliers leave over that is too little for smaller boxes to be sure to exclude
 _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split unseen

@@ -332,6 +332,22 @@ def pair_form(family, axis_field, basis, row, whitening, pool, sides, places, co
 
 
 @inner_kernel
+def tangent_form(family, axis_field, basis, row, whitening, pool, sides, places, coarseness, v):
+    """Fill the form at which tangents of a mean, or of pairs, are best; return its value, and if it is met.
+
+    Over the level. It is infinite if no axis was met inside the row's cell and band.
+    """
+    if family.pairs.shape[0] > 0:
+        primal = pair_form(family, axis_field, basis, row, whitening, pool, sides, places, coarseness, v)
+        return primal, primal < math.inf
+    found, is_met = touching_form(family, axis_field, basis, row, whitening, pool, sides, coarseness, v)
+    if found == -math.inf:
+        return math.inf, False
+    fill_constraints(pool.shares, sides, places, row)
+    return math.exp(found) / row[LEVEL], is_met
+
+
+@inner_kernel
 def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis):
     """Fill new multipliers for a free axis into the row; return (primal, rank-one value, whether known).
 
@@ -349,36 +365,23 @@ def free_multipliers(family, axis_field, basis, row, coarseness, workspace, axis
     mean, back, v, places = scratch(6), scratch(3, 3), scratch(3), scratch_int(4)
     whitening = (workspace.denominators, mean, back)
     whiten(family, basis, row, workspace.denominators, mean, back)
-    has_pairs = family.pairs.shape[0] > 0
-    if has_pairs:  # their sums are of unit axes
+    if family.pairs.shape[0] > 0:  # their sums are of unit axes
         fill_identity(back)
     sides = constraint_forms(axis_field, basis, row, coarseness, back, pool.forms, places)
-    if has_pairs:
-        primal = pair_form(family, axis_field, basis, row, whitening, pool, sides, places, coarseness, v)
-        if primal == math.inf:
-            return math.inf, 0.0, False
-        axis_of(basis, back, v, axis)
-        if axis_field.kind >= BAND_AXIS:
-            clamp_axis(axis_field, axis)
-        logs = workspace.log_denominators, every
-        reached = log_objective(family, row[CENTRE:HALF], axis, logs[0], logs[1])
-        return primal, math.exp(reached) / level, True
     for c in range(sides):
         pool.shares[c] = max(0.0, math.copysign(1.0, places[c]) * row[abs(places[c])])
     tolerance = max(_FINE, _LOOSE * coarseness)
-    if family.shares.shape[0] > 0:
-        found, is_met = touching_form(family, axis_field, basis, row, whitening, pool, sides, coarseness, v)
-        if found == -math.inf:
-            return math.inf, 0.0, False
-        fill_constraints(pool.shares, sides, places, row)
-        if not is_met:
-            return math.exp(found) / level, 0.0, False
+    if family.shares.shape[0] + family.pairs.shape[0] > 0:
+        primal, followed = tangent_form(
+            family, axis_field, basis, row, whitening, pool, sides, places, coarseness, v
+        )
+        if not followed:
+            return primal, 0.0, False
         axis_of(basis, back, v, axis)
         if axis_field.kind >= BAND_AXIS:
             clamp_axis(axis_field, axis)
-        logs = workspace.log_denominators, every
-        reached = log_objective(family, row[CENTRE:HALF], axis, logs[0], logs[1])
-        return math.exp(found) / level, math.exp(reached) / level, True
+        reached = log_objective(family, row[CENTRE:HALF], axis, workspace.log_denominators, every)
+        return primal, math.exp(reached) / level, True
     primal, followed, total = ascend(
         family,
         has_horizontal_axes(axis_field),
