@@ -128,7 +128,7 @@ def test_a_power_is_solved_as_it_was_typed(hand: Hand, delay_ms: float) -> None:
 
 FIELDS: dict[Key | None, dict[str, str]] = {
     ("nodes", 0): {"east (m)": "-12.25", "north (m)": "31", "up (m)": "1.5", "power (dBm)": "27.5"},
-    ("jammers", 0): {"east (m)": "21", "power (W)": "1e-05", "position error (m)": "[2, 3, 0.5]"},
+    ("jammers", 0): {"east (m)": "21", "power (W)": "1e-05", "position error (m)": "2.5"},
     ("no_fly", 0): {"centre (m)": "[35, -12.5]", "radius (m)": "11", "altitudes (m)": "[0, 25]"},
     ("no_fly", 1): {"west, east (m)": "[50, 61]", "south, north (m)": "[10, 20.5]"},
     None: {
