@@ -62,7 +62,7 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.
     rng = np.random.default_rng(seed)
     boxes, j = one_box(rng), int(rng.integers(4))
     jet = link_over(field, boxes, POINTS[j][None], leak, dipole)
-    value, slopes, hessian, ranged = jet.value, jet.slopes, jet.bends, jet.over
+    (value, slopes, _), (ranged, _, hessian) = jet.at, jet.over
     if not np.all(np.isfinite(hessian.low) & np.isfinite(hessian.high)):
         return
     centre, half = exact(boxes.centre[0]), exact(boxes.half[0])
@@ -87,16 +87,17 @@ def test_expansions_bound_the_links_of_channels(
     family, boxes, dipole = random_family(rng, 1, 1, channel=channel), one_box(rng), DIPOLES[seed % 3]
     gain = excess(family, boxes, np.zeros(1, dtype=np.int64), is_above)
     jet = link_over(field, boxes, family.points_m[:1], family.leak, dipole, gain)
-    assume(np.all(np.isfinite(jet.bends.low) & np.isfinite(jet.bends.high)))
+    bends = jet.over.bends
+    assume(np.all(np.isfinite(bends.low) & np.isfinite(bends.high)))
     x = rng.uniform(-1.0, 1.0, (50, 3)) * boxes.half[0]
     there = [
         float(exact_link(field, family.points_m[0], exact(boxes.centre[0] + step), family.leak, dipole))
         for step in x
     ] * excess_over(family, boxes.centre[0] + x)[:, 0]
     weights = np.array([x[:, i] * x[:, k] * (0.5 if i == k else 1.0) for i, k in SIX])
-    taylor = jet.value + (jet.slopes * x.T).total() + (jet.bends * weights).total()
+    taylor = jet.at.value + (jet.at.slopes * x.T).total() + (bends * weights).total()
     slack = 1e-12 * np.abs(there)
-    for bound in (taylor, jet.over):
+    for bound in (taylor, jet.over.value):
         assert np.all(there <= bound.high + slack if is_above else there >= bound.low - slack)
 
 

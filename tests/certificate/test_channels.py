@@ -103,20 +103,19 @@ def test_excess_gains_enclose_the_models(is_above: bool, channel: LinkChannel | 
         return
     steps, places = samples_of(rng, boxes)
     g = excess_over(family, places)[..., 0]
-    ends = np.all(gain.bends.high == 0.0, axis=0)
-    low, high = gain.over.low[:, None], gain.over.high[:, None]
+    (value, slopes, _), (over, steep, bends) = gain.at, gain.over
+    ends = np.all(bends.high == 0.0, axis=0)
+    low, high = over.low[:, None], over.high[:, None]
     slack = SLACK * g
     fine = g <= high + slack if is_above else g >= low - slack
     assert np.all(fine)
-    inner = np.flatnonzero(~ends & np.all(np.isfinite(gain.bends.high), axis=0))
+    inner = np.flatnonzero(~ends & np.all(np.isfinite(bends.high), axis=0))
     assert len(inner) > BOXES // 8
     steps, g, slack = steps[inner], g[inner].T, slack[inner].T
     assert np.all((low[inner].T - slack <= g) & (g <= high[inner].T + slack))
     x = np.moveaxis(steps, 2, 0).swapaxes(1, 2)  # (3, samples, boxes)
     weights = np.where((ROW == COLUMN)[:, None, None], 0.5, 1.0) * x[ROW] * x[COLUMN]
-    value, slopes, steep, bends = (
-        part[..., inner] for part in (gain.value, gain.slopes, gain.steep, gain.bends)
-    )
+    value, slopes, steep, bends = (part[..., inner] for part in (value, slopes, steep, bends))
     first_order = (steep[:, None] * x).total() + value
     taylor = (slopes[:, None] * x).total() + (bends[:, None] * weights).total() + value
     for bound in (first_order, taylor):
@@ -148,7 +147,8 @@ def test_points_have_channels_of_their_own() -> None:
         for j in range(4):
             alone = excess(family, boxes.chosen([j]), np.array([j]), is_above)
             assert alone is not None
-            assert (together.over.low[j], together.over.high[j]) == (alone.over.low[0], alone.over.high[0])
+            many, one = together.over.value[j], alone.over.value[0]
+            assert (many.low, many.high) == (one.low, one.high)
 
 
 def test_the_value_with_channels_is_a_lower_bound() -> None:
@@ -200,7 +200,7 @@ def test_a_new_kind_of_channel_is_one_formula(monkeypatch: pytest.MonkeyPatch) -
         gain, field = (f(family, boxes, first, is_above) for f in (excess, amplitude))
         assert gain is not None
         assert field is not None
-        end = gain.over.high if is_above else gain.over.low
+        end = gain.over.value.high if is_above else gain.over.value.low
         assert np.all(sign * g <= sign * end[:, None] + SLACK * g)
         value = field.value.high if is_above else field.value.low
         rest = field.slope.high[:, None] * size

@@ -75,9 +75,9 @@ def enclosures(f: Taylor, x: np.ndarray, y: np.ndarray, centre: np.ndarray) -> l
     """Return f at x by its range and by its expansion, and what its slopes say of f at x less f at y."""
     i, j, _ = pairs(3)
     step = x - centre
-    taylor = f.value[0] + (f.slopes[:, 0] * step).total()
-    taylor = taylor + (f.bends[:, 0] * (step[i] * step[j] * np.where(i == j, 0.5, 1.0))).total()
-    return [f.over[0], taylor, (f.steep[:, 0] * (x - y)).total()]
+    taylor = f.at.value[0] + (f.at.slopes[:, 0] * step).total()
+    taylor = taylor + (f.over.bends[:, 0] * (step[i] * step[j] * np.where(i == j, 0.5, 1.0))).total()
+    return [f.over.value[0], taylor, (f.over.slopes[:, 0] * (x - y)).total()]
 
 
 @pytest.mark.parametrize("name", FORMULAS)
@@ -96,10 +96,12 @@ def test_formulas_enclose_their_exact_values(name: str, seed: int) -> None:
             return formula([Decimal(float(e)) for e in place])
 
         def inside(bound: Interval, exact: Decimal) -> bool:
-            slack = Decimal("1e-14") * (abs(exact) + Decimal(float(f.over.magnitude()[0])))  # of the steps
+            slack = Decimal("1e-14") * (
+                abs(exact) + Decimal(float(f.over.value.magnitude()[0]))
+            )  # of the steps
             return Decimal(float(bound.low)) - slack <= exact <= Decimal(float(bound.high)) + slack
 
-        assert Decimal(float(f.value.low[0])) <= at(centre) <= Decimal(float(f.value.high[0]))
+        assert Decimal(float(f.at.value.low[0])) <= at(centre) <= Decimal(float(f.at.value.high[0]))
         for _ in range(4):
             x, y = centre + rng.uniform(-1.0, 1.0, (2, 3)) * half
             over, taylor, change = enclosures(f, x, y, centre)
@@ -115,15 +117,16 @@ def test_small_boxes_leave_little_unknown(seed: int) -> None:
     centre = one_box(rng).centre[0]
     p = position(centre, np.full(3, 1e-6))
     f = FORMULAS["link"](p)
+    slopes, curve, bends = f.at.slopes, f.at.bends, f.over.bends
     for i, step in enumerate(1e-4 * np.eye(3)):
         ends = (position(place, np.zeros(3)) for place in (centre + step, centre - step))
-        above, below = map(FORMULAS["link"], ends)
-        size = f.slopes.magnitude().max()
-        assert abs((above.value - below.value).middle()[0] / 2e-4 - f.slopes.middle()[i, 0]) <= 1e-5 * size
+        above, below = (FORMULAS["link"](end).at for end in ends)
+        size = slopes.magnitude().max()
+        assert abs((above.value - below.value).middle()[0] / 2e-4 - slopes.middle()[i, 0]) <= 1e-5 * size
         bend = (above.slopes[i] - below.slopes[i]).middle()[0] / 2e-4
-        assert abs(bend - f.curve.middle()[i, 0]) <= 1e-5 * f.curve.magnitude().max()
-    assert np.all((f.bends.low <= f.curve.low) & (f.curve.high <= f.bends.high))
-    assert np.all(f.bends.high - f.bends.low <= 1e-4 * f.bends.magnitude().max())
+        assert abs(bend - curve.middle()[i, 0]) <= 1e-5 * curve.magnitude().max()
+    assert np.all((bends.low <= curve.low) & (curve.high <= bends.high))
+    assert np.all(bends.high - bends.low <= 1e-4 * bends.magnitude().max())
 
 
 @given(seed=seeds)
@@ -134,11 +137,11 @@ def test_vectors_have_the_formulas_of_their_components(seed: int) -> None:
     p = position(boxes.centre[0], boxes.half[0])
     q = p - OFFSET
     product = (cross(p, q) * q).total()
-    for part in (product.value, product.over, product.slopes, product.steep, product.bends):
+    for part in (*product.at, *product.over):
         assert np.all(part.low <= 0.0)
         assert np.all(part.high >= 0.0)
     either = chosen(np.array([rng.random() < 0.5]), p[0], p[0].alike(np.array([2.0])))
-    assert either.value.low[0] in (p.value.low[0, 0], 2.0)
+    assert either.at.value.low[0] in (p.at.value.low[0, 0], 2.0)
 
 
 @given(seed=seeds)

@@ -58,7 +58,7 @@ def link(
         if leak > 0.0:
             of_dipole = of_dipole + beside.squared().total() * leak
         f = chosen(has, of_dipole * near * near, f)
-    f = f.within(0.0, near.over)  # the gain is at most 1
+    f = f.within(0.0, near.over.value)  # the gain is at most 1
     return f if gain is None else f * gain
 
 
@@ -79,14 +79,16 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         f = link(field, boxes, family.points_m[point], family.leak, dipoles[point], gain)
         total = total + f * (scale * sign)
 
+    at, over = total.at, total.over
+
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
-        middle, steep, bent = total.value[rows], total.slopes[:, rows], total.bends[:, rows]
+        middle, steep, bent = at.value[rows], at.slopes[:, rows], over.bends[:, rows]
         for nu, bound in constraints:
             middle, steep = middle + bound.value * nu, steep + bound.slopes * nu
             bent = bent + (2.0 * nu * bound.bend)[ROW] * IDENTITIES
         return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
-    holds = (total.over.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, total.slopes.middle)
+    holds = (over.value.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, at.slopes.middle)
     return np.asarray(np.any([scale.high > 0.0 for _, scale, sign in terms if sign > 0.0], axis=0) & holds)
 
 

@@ -90,33 +90,46 @@ def uncovered(leaves: Leaves) -> str:
     """Find a region of the root that the leaves do not cover; an empty string if there is none.
 
     A region is covered if one leaf holds it, or if it can be halved across a direction in which every leaf
-    in it is finer, and both halves are covered.
+    in it is finer, and both halves are covered. The regions of as many cuts are looked at together.
 
     Args:
         leaves: to be checked; depths and indices in range. Those for an antenna that is the same all round
             hold all axes in any one chart; those of a dipole on three faces.
     """
-    face, depths, indices = leaves.face, leaves.depths, leaves.indices
-    depths[face < 0, 3:] = 0  # without a cell it is whole
-    everything, is_profile = np.arange(len(leaves)), bool(np.all(leaves.test == PROFILE))
-    todo: list[tuple[IntArray, tuple[int, ...], int, str]] = [(everything, (0,) * 5, -1, "root")]
-    while todo:
-        members, depth, on_face, path = todo.pop()
-        if not len(members):
-            return f"the leaves do not cover the root: nothing covers {path}"
-        least = depths[members].min(axis=0)
-        if on_face < 0 and np.all(face[members] >= 0):
-            charts = set(face[members].tolist()) if is_profile else {0, 1, 2}
-            if not is_profile or len(charts) == 1:
-                todo += [(members[face[members] == f], depth, f, f"{path}/face{f}") for f in charts]
-                continue
-        if not (finer := [i for i in range(5 if on_face >= 0 else 3) if least[i] > depth[i]]):
-            as_large = np.all(depths[members] <= depth, axis=1)
-            if not np.any(as_large & ((face[members] < 0) | (on_face >= 0))):
-                return f"the leaves do not cover the root: no leaf holds {path}, and no cut parts those in it"
-            continue
-        side = finer[0]
-        bit = indices[members, side] >> (depths[members, side] - depth[side] - 1) & 1
-        deeper = (*depth[:side], depth[side] + 1, *depth[side + 1 :])
-        todo += [(members[bit == half], deeper, on_face, f"{path}/{'xyzab'[side]}{half}") for half in (0, 1)]
+    faces, depths, indices = leaves.face, leaves.depths, leaves.indices
+    depths[faces < 0, 3:] = 0  # without a cell it is whole
+    is_profile = bool(np.all(leaves.test == PROFILE))
+    # of each leaf that is left: its number, its region, and that one's depths and face, -1 for all of them
+    leaf, region, depth = np.arange(len(leaves)), np.zeros(len(leaves), dtype=np.int64), np.zeros_like(depths)
+    on_face = np.full(len(leaves), -1)
+    if not len(leaves):
+        return "the leaves do not cover the root: there are none"
+    while len(leaf):
+        begins = np.diff(region, prepend=-1) > 0
+        start, group = np.flatnonzero(begins), np.cumsum(begins) - 1
+        least = np.minimum.reduceat(depths[leaf], start)
+        first, last = (end.reduceat(faces[leaf], start) for end in (np.minimum, np.maximum))
+        by_face = (on_face[start] < 0) & (first >= 0) & ((first == last) | (not is_profile))
+        finer = (least > depth[start]) & ((np.arange(5) < 3) | (on_face[start] >= 0)[:, None])
+        parted = by_face | np.any(finer, axis=1)
+        holds = np.all(depths[leaf] <= depth, axis=1) & ((faces[leaf] < 0) | (on_face >= 0))
+        side = np.argmax(finer, axis=1)[group]
+        rows = np.arange(len(leaf))
+        beyond = depths[leaf, side] - depth[rows, side] - 1
+        half = indices[leaf, side] >> np.maximum(beyond, 0) & 1
+        key = 3 * group + np.where(by_face[group], faces[leaf], half)
+        found = np.bincount(np.unique(key) // 3, minlength=len(start))
+        enough = found >= np.where(by_face, 1 if is_profile else 3, 2)
+        covered = np.where(parted, enough, np.logical_or.reduceat(holds, start))
+        if not np.all(covered):
+            row = start[np.argmin(covered)]
+            index = indices[leaf[row]] >> depths[leaf[row]] - depth[row]
+            parts = zip("xyzab", index, 1 << depth[row], strict=True)
+            place = ", ".join(f"{name} {i + 1} of {count}" for name, i, count in parts if count > 1)
+            return f"the leaves do not cover the root: they leave out some of its part {place or 'all'}"
+        depth[rows, side] += np.where(by_face[group], 0, 1)
+        on_face = np.where(by_face[group], faces[leaf], on_face)
+        order = np.argsort(key, kind="stable")
+        order = order[parted[group[order]]]
+        leaf, region, depth, on_face = leaf[order], key[order], depth[order], on_face[order]
     return ""

@@ -17,7 +17,16 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.elementary import arctan, exp, log
 from nullpose.certificate.forms import COLUMN, IDENTITY, ROW, outer
 from nullpose.certificate.interval import Interval, stack, where
-from nullpose.certificate.taylor import Rule, Taylor, chosen, coordinates, exponential, logarithm, root
+from nullpose.certificate.taylor import (
+    Rule,
+    Taylor,
+    chosen,
+    coordinates,
+    exponential,
+    joined,
+    logarithm,
+    root,
+)
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, KNOTS
 from nullpose.objectives.ratios import IntArray
@@ -72,10 +81,12 @@ def _logistic(x: Interval) -> Rule:
 
 
 def _profiles(rows: FloatArray, angle: Interval) -> Rule:
-    """Return bounds on ``ln g`` of profiles between two elevations by its rule, (b,) each."""
-    knots = rows[KNOTS + 1 :].reshape(-1, 3, rows.shape[1])
+    """Return bounds on ``ln g`` of profiles between two elevations by its rule, (..., b) each."""
+    knots = rows[KNOTS + 1 :].reshape(-1, 3, 1, rows.shape[1])
     (start, level, slope), (end, _, last) = knots[:-1].swapaxes(0, 1), knots[1:].swapaxes(0, 1)
-    inside = (np.arange(1, len(knots))[:, None] < rows[KNOTS]) & (start <= angle.high) & (end >= angle.low)
+    inside = (
+        (np.arange(1, len(knots))[:, None, None] < rows[KNOTS]) & (start <= angle.high) & (end >= angle.low)
+    )
     bend = (Interval(last) - slope) / (Interval(end) - start)
     low, high = (Interval(np.clip(a, start, end)) - start for a in (angle.low, angle.high))
     slopes = [bend * step + slope for step in (low, high)]
@@ -131,18 +142,16 @@ def elevation(q: Taylor) -> tuple[Taylor, Interval]:
     """
     z, square = q[2], q.squared().total()
     level = q[:2].squared().total().of(root)
-    parts: list[tuple[Interval, Interval]] = []
-    for up, height, whole in zip(z.orders, level.orders, square.orders, strict=True):
-        slopes = (up[1] * height[0] - height[1] * up[0]) / whole[0]
-        bends = -(height[2] * up[0]) - outer(slopes, whole[1]) * 0.5
-        parts.append((slopes, bends / whole[0]))
+    up, height, whole = z.value[None], level.value[None], square.value[None]
+    slopes = (z.slopes * height - level.slopes * up) / whole
+    bends = (-(level.bends * up) - outer(slopes, square.slopes) * 0.5) / whole
     # where a box is over the point, or under it, one end is infinite
-    low = Interval(z.over.low) / np.where(z.over.low > 0.0, level.over.high, level.over.low)
-    high = Interval(z.over.high) / np.where(z.over.high > 0.0, level.over.low, level.over.high)
+    z_over, near_far = z.over.value, level.over.value
+    low = Interval(z_over.low) / np.where(z_over.low > 0.0, near_far.high, near_far.low)
+    high = Interval(z_over.high) / np.where(z_over.high > 0.0, near_far.low, near_far.high)
     tangent = Interval(low.low, high.high)
-    at_centre = arctan(z.value / level.value)
-    angle = Taylor(q.half, at_centre, *parts[0], arctan(tangent), *parts[1])
-    return angle.tightened(), tangent
+    angle = arctan(joined(z.at.value / level.at.value, tangent))
+    return Taylor(q.half, angle, slopes, bends).tightened(), tangent
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,25 +189,26 @@ def amplitude(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> 
         return None
     rows = family.channels[point].T
     distance, angle, tangent = _sight(family.points_m[point], boxes, rows)
-    at, over = (stack([getattr(x, part) for x in (distance, angle)]) for part in ("value", "over"))
-    polar = coordinates(at, over)
+    at, d = stack([distance.at.value, angle.at.value]), distance.over.value
+    polar = coordinates(at, stack([d, angle.over.value]))
     h = (_log_gain(rows, polar[0], polar[1]) * 0.5).of(exponential)
     # derivatives along the way, as the elevation grows, and across both
-    d, out, up = over[0], h.steep[0], h.steep[1] / over[0]
-    outwards, turned, mixed = h.bends[0], (h.bends[1] / d + out) / d, (h.bends[2] - up) / d
+    value, slopes, bends = h.over
+    out, up = slopes[0], slopes[1] / d
+    outwards, turned, mixed = bends[0], (bends[1] / d + out) / d, (bends[2] - up) / d
     total, apart = (Interval(x.magnitude()) for x in (outwards + turned, outwards - turned))
     block = (total + (apart.squared() + mixed.squared() * 4.0).sqrt()) * 0.5
     bend = Interval(np.maximum(block.high, ((out - up * tangent) / d).magnitude()))
     slope = (out.squared() + up.squared()).sqrt()
-    gradient = distance.slopes * h.slopes[0] + angle.slopes * h.slopes[1]
-    h0, h1, h2 = (x.most().high for x in (h.over, slope, bend))
-    end, closeness, square = h.over.high if is_above else h.over.low, 1.0 / d.low, 0.5 * boxes.half2.low
+    gradient = distance.at.slopes * h.at.slopes[0] + angle.at.slopes * h.at.slopes[1]
+    h0, h1, h2 = (x.most().high for x in (value, slope, bend))
+    end, closeness, square = value.high if is_above else value.low, 1.0 / d.low, 0.5 * boxes.half2.low
     b0, b1 = h0 * closeness, (h0 * closeness + h1) * closeness
     left_out = square * (b1 * b1 + b0 * (2.0 * b1 + h2) * closeness)
-    by_end = np.abs(end**2 - h.value.middle() ** 2) * closeness**2 + 3.0 * square * end**2 * closeness**4
+    by_end = np.abs(end**2 - h.at.value.middle() ** 2) * closeness**2 + 3.0 * square * end**2 * closeness**4
     use = left_out < by_end
     return Amplitude(
-        where(use, h.value, end),
+        where(use, h.at.value, end),
         where(use, gradient, 0.0),
         where(use, h0, end),
         where(use, h1, 0.0),
@@ -221,9 +231,10 @@ def excess(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Tay
     if not len(family.channels):
         return None
     gain, half = _gain(family, boxes, point), boxes.half.T
-    end = gain.over.high if is_above else gain.over.low
+    end = gain.over.value.high if is_above else gain.over.value.low
     weight = np.where(IDENTITY > 0.0, 0.25, 0.5)[:, None] * half[ROW] * half[COLUMN]
-    use = np.sum((gain.bends.high - gain.bends.low) * weight, axis=0) < np.abs(end - gain.value.middle())
+    bends = gain.over.bends
+    use = np.sum((bends.high - bends.low) * weight, axis=0) < np.abs(end - gain.at.value.middle())
     return chosen(use, gain, gain.alike(end))
 
 
@@ -239,4 +250,4 @@ def excess_at(family: Family, position_m: Iterable[Fraction]) -> Interval | None
     place, points = np.array([float(x) for x in position_m]), np.arange(len(family.points_m))
     many = np.tile(place, (len(points), 1))
     slack = np.nextafter(np.abs(many), np.inf) - np.abs(many)
-    return _gain(family, Boxes(leaf=points, centre=many, half=slack), points).over
+    return _gain(family, Boxes(leaf=points, centre=many, half=slack), points).over.value

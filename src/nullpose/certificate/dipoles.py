@@ -12,9 +12,9 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import excess
 from nullpose.certificate.forms import COLUMN, IDENTITIES, IDENTITY, ROW, Linear, outer, squares, top_vectors
-from nullpose.certificate.interval import Interval, stack, where
+from nullpose.certificate.interval import Interval, stack, swapped, where
 from nullpose.certificate.shear import Shear, link_vector, shear_of, way_to
-from nullpose.certificate.taylor import Taylor, chosen
+from nullpose.certificate.taylor import Taylor, chosen, cross
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -25,41 +25,40 @@ _SHARE = 0.1
 _TINY = 1e-290
 
 
-def dipole_sum(
-    family: Family, leaves: Leaves, boxes: Boxes, constants: list[tuple[Interval, FloatArray]]
-) -> tuple[Linear, Shear]:
+def dipole_sum(family: Family, leaves: Leaves, boxes: Boxes, constant: Interval) -> tuple[Linear, Shear]:
     """Return an upper bound on a leaf's sum over its box, linear in the position, and its coordinates.
 
     Args:
         family: the ratios.
         leaves: with multipliers, frame and level.
         boxes: of the leaves.
-        constants: forms, (6, b), that are not negative in the cells and the band, and their multipliers.
+        constant: forms, (6, b), that are not negative in the cells and the band.
     """
     shear = shear_of(family, leaves, boxes)
-    family, identity, parts = weighted_sum(family, leaves)
-    whole, lean2 = shear.identity(), shear.most[0].squared()
-    # E^T E, which the identity leaves out, is not negative, and at most so much
-    rest = whole * identity + shear.gram * (lean2 * where(identity.high > 0.0, identity, 0.0)).most()
+    family, identity, terms = weighted_sum(family, leaves)
+    whole = shear.identity()
+    rest, leaking = whole.alike(Interval(np.zeros((6, len(boxes))))), whole[0].alike(identity)
     links: list[tuple[Taylor, Interval, Interval, float]] = []
-    for q, weight in constants:
-        if np.any(weight != 0.0):
-            rest = rest + shear.form(q) * weight
-    for point, plain, sign in parts:
-        vectors, gain, near = _vectors(family, boxes, point)
+    for point, plain, sign in terms:
         scale = plain * _excess_end(family, boxes, point, sign)
+        r, near = way_to(family.points_m[point], boxes)
+        axes = family.ground_axes[point]
         if family.leak > 0.0:
-            leaking = scale * (sign * family.leak)
-            more = lean2 * gain.over * where(leaking.high > 0.0, leaking, 0.0)
-            rest = rest + whole * gain * leaking + shear.gram * more.most()
+            leaking = leaking + _gain(r, near, axes) * (scale * (sign * family.leak))
         share = scale * (1.0 - Interval(family.leak))
         anchored = shear.on & (point == shear.anchor) & (sign < 0.0)
         if np.any(anchored):
             rest = rest + shear.anchored * where(anchored, share * sign, 0.0)
-        links += [(*shear.seen(vector, near), where(anchored, 0.0, share), sign) for vector in vectors]
-    centre = rest.value
+        share = where(anchored, 0.0, share)
+        links += [(*shear.seen(a, near.over.value), share, sign) for a in _vectors(r, near, axes)]
+    # E^T E, which the identity leaves out, is not negative, and at most the square of E
+    square = shear.most[0].squared() * np.maximum(leaking.over.value.high, 0.0)
+    rest = rest + whole * leaking + shear.gram * square.most()
+    if np.any(constant.magnitude() > 0.0):
+        rest = rest + shear.form(constant)
+    centre = rest.at.value
     for vector, _, scale, sign in links:
-        centre = centre + squares(vector.value) * (scale * sign)
+        centre = centre + squares(vector.at.value) * (scale * sign)
     top = top_vectors(centre)
     total = linear_above(rest, np.abs(centre.middle()[:3]), top)
     for vector, third, scale, sign in links:
@@ -68,25 +67,23 @@ def dipole_sum(
 
 
 def _excess_end(family: Family, boxes: Boxes, point: IntArray, sign: float) -> Interval | float:
-    """Return the largest excess gain in each box, or the least: what a link's form is bounded with."""
+    """Bound the excess gain in each box by its largest or least: what a link's form is bounded with."""
     gain = excess(family, boxes, point, sign > 0.0)
-    return 1.0 if gain is None else Interval(gain.over.high if sign > 0.0 else gain.over.low)
+    return 1.0 if gain is None else Interval(gain.over.value.high if sign > 0.0 else gain.over.value.low)
 
 
-def _vectors(family: Family, boxes: Boxes, point: IntArray) -> tuple[list[Taylor], Taylor, Interval]:
-    """Return link vectors of a point for each box, its own gain over ``|r|^2``, and ``1 / |r|``.
+def _gain(r: Taylor, near: Taylor, axes: FloatArray) -> Taylor:
+    """State a point's own gain over ``|r|^2``: ``|v x r|^2 / |r|^4`` of a dipole along v."""
+    square = near.squared()
+    of_dipole = cross(r, Interval(axes.T)).squared().total() * square * square
+    return chosen(np.any(axes != 0.0, axis=1), of_dipole, square)
 
-    There is one vector of a dipole, or three of which two count then.
-    """
-    axes = family.ground_axes[point]
-    has = np.any(axes != 0.0, axis=1)
-    r, near = way_to(family.points_m[point], boxes)
-    vectors = [
-        link_vector(r, near, np.where(has[:, None], axes if i == 0 else 0.0, np.eye(3)[i]))
-        for i in range(1 if np.all(has) else 3)
-    ]
-    gain = chosen(has, vectors[0].squared().total(), near.squared())
-    return vectors, gain, near.over
+
+def _vectors(r: Taylor, near: Taylor, axes: FloatArray) -> list[Taylor]:
+    """State the link vectors of a point at the centres: one of a dipole, or three of which two are 0 then."""
+    has = np.any(axes != 0.0, axis=1)[:, None]
+    each = [np.where(has, axes if i == 0 else 0.0, np.eye(3)[i]) for i in range(1 if np.all(has) else 3)]
+    return [link_vector(r.at_centres(), near.at_centres(), v) for v in each]
 
 
 def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Linear:
@@ -100,10 +97,11 @@ def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Linear:
         sizes: (3, b) about how large a sum's diagonal is at the centres: it bears a share of that.
         top: (3, b) where it counts.
     """
-    most = np.where(IDENTITY > 0.0, 0.5, 1.0)[:, None] * form.half[ROW] * form.half[COLUMN]
-    most = np.nextafter(most, np.inf)
-    bent = form.bends * Interval(np.where(IDENTITIES > 0.0, 0.0, -most), most)
-    bent = sum((bent[:, pair] for pair in range(1, 6)), bent[:, 0])
+    most = np.nextafter(
+        np.where(IDENTITY > 0.0, 0.5, 1.0)[:, None] * form.half[ROW] * form.half[COLUMN], np.inf
+    )
+    ends = Interval(np.where(IDENTITY > 0.0, 0.0, -1.0)[:, None] * most, most)
+    bent = swapped(form.over.bends * ends).total()
     middle, radius = bent.middle(), Interval(bent.radius()[3:])
     i, j = ROW[3:], COLUMN[3:]
     larger = sizes[i] >= sizes[j]
@@ -114,8 +112,8 @@ def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Linear:
     first, second = where(larger, share, rest), where(larger, rest, share)
     diagonal = [Interval(bent.high[0]) + first[0] + first[1], Interval(bent.high[1]) + second[0] + first[2]]
     diagonal.append(Interval(bent.high[2]) + second[1] + second[2])
-    value = form.value + stack(diagonal + [Interval(entry) for entry in middle[3:]])
-    return Linear(value, form.slopes)
+    value = form.at.value + stack(diagonal + [Interval(entry) for entry in middle[3:]])
+    return Linear(value, form.at.slopes)
 
 
 def square_over(vector: Taylor, third: Interval, top: FloatArray, scale: Interval, sign: float) -> Linear:
@@ -131,10 +129,10 @@ def square_over(vector: Taylor, third: Interval, top: FloatArray, scale: Interva
         scale: (b,) not negative.
         sign: 1 or -1.
     """
-    half = vector.half
+    half, at = vector.half, vector.at
     steps = Interval(half)[ROW] * half[COLUMN] * np.where(IDENTITY > 0.0, 0.25, 1.0)[:, None]
-    parts, reach2 = vector.curve * steps, Interval(half).squared().total()
-    value = vector.value + parts[:, 0] + parts[:, 1] + parts[:, 2]
+    parts, reach2 = at.bends * steps, Interval(half).squared().total()
+    value = at.value + parts[:, 0] + parts[:, 1] + parts[:, 2]
     ball = (third * reach2 * reach2.sqrt() / 6.0).most()
     weight = _weights(parts, top) + 1e-3 * ball.high
     total = (Interval(weight).total() + ball).most()
@@ -144,10 +142,10 @@ def square_over(vector: Taylor, third: Interval, top: FloatArray, scale: Interva
     far = scale * (1.0 / Interval(eta) + (1.0 if sign > 0.0 else 0.0)) * total
     rest = _spread(parts, weight) * far + IDENTITIES * (ball * far)
     if sign > 0.0:
-        steep = vector.slopes * half
+        steep = at.slopes * half
         weight = _weights(steep, top)
         rest = rest + _spread(steep, weight) * (near * Interval(weight).total())
-    slopes = outer(vector.slopes, value[:, None])
+    slopes = outer(at.slopes, value[:, None])
     return Linear(squares(value) * (near * sign) + rest, slopes * (near * sign))
 
 
@@ -160,7 +158,4 @@ def _weights(vectors: Interval, top: FloatArray) -> FloatArray:
 
 def _spread(vectors: Interval, weight: FloatArray) -> Interval:
     """Return ``sum_s d_s d_s^T / weight_s``, (6, b)."""
-    total: Interval = squares(vectors[:, 0]) / weight[0]
-    for s in range(1, len(weight)):
-        total = total + squares(vectors[:, s]) / weight[s]
-    return total
+    return swapped(squares(vectors) * (1.0 / Interval(weight))).total()

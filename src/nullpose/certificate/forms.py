@@ -27,7 +27,9 @@ COUNTED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 def squares(x: Interval) -> Interval:
     """Return ``x x^T`` of vectors along the first axis; what is squared is never below zero."""
-    return stack([x[i].squared() if i == j else x[i] * x[j] for i, j in zip(ROW, COLUMN, strict=True)])
+    products = x[ROW] * x[COLUMN]
+    np.maximum(products.low[:3], 0.0, out=products.low[:3])
+    return products
 
 
 def outer(x: Interval, y: Interval) -> Interval:

@@ -50,7 +50,7 @@ def _holds(
 ) -> tuple[np.ndarray, FloatArray]:
     """Check which boxes are excluded, and find about the largest eigenvalues' vectors at their centres."""
     if len(family.ground_axes):
-        held = [(q, weight) for q, weight, _ in constants(field, leaves)]
+        held = sum((q * weight for q, weight, _ in constants(field, leaves)), Interval(np.zeros((6, 1))))
         total, shear = dipole_sum(family, leaves, boxes, held)
         whole, turning = shear.gram, shear.on
     else:

@@ -18,17 +18,34 @@ _MORE, _LEAST = 2.0**-53 * (1.0 + 2.0**-52), 5e-324
 _LARGEST = float(np.finfo(float).max)
 
 
-def _down(x: FloatArray) -> FloatArray:
-    """Return numbers at or below those next to x.
+def _step(x: FloatArray) -> FloatArray:
+    """Take more than half of the way to either neighbour, so that its rounding leads there at least."""
+    step = np.abs(x)
+    step *= _MORE
+    step += _LEAST
+    return step
 
-    The step is more than half of the way to either neighbour, so that its rounding leads there at least.
-    """
-    x = np.minimum(x, _LARGEST)  # what is too large for a number is no less than that
-    return x - (np.abs(x) * _MORE + _LEAST)
+
+def _down(x: FloatArray) -> FloatArray:
+    """Bound from below the numbers to which x are nearest; what is too large for one is no less than that."""
+    end = np.minimum(x, _LARGEST)
+    end -= _step(end)
+    return end
 
 
 def _up(x: FloatArray) -> FloatArray:
-    return -_down(-x)
+    """Bound from above the numbers to which x are nearest."""
+    end = np.maximum(x, -_LARGEST)
+    end += _step(end)
+    return end
+
+
+def above(x: FloatArray) -> FloatArray:
+    """Bound from above a sum of at most a thousand products of two numbers that are not negative.
+
+    Each sum and each product is off by a 2^53rd, or by less than the least number.
+    """
+    return x * (1.0 + 2.0**-40) + 2.0**-1000
 
 
 class Interval:

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from nullpose.certificate.interval import Interval, stack, where
-from nullpose.certificate.taylor import Taylor, coordinates, inverse_root
+from nullpose.certificate.taylor import Taylor, coordinates, inverse_root, joined
 from nullpose.physics.types import FloatArray
 
 PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
@@ -55,10 +55,8 @@ def _sine_cosine_over(
     angle: Taylor, turn: tuple[Interval, Interval], half: FloatArray
 ) -> tuple[Taylor, Taylor]:
     """Return sine and cosine of an angle over cells, from those at the centres."""
-    (s, c), (sines, cosines) = turn, _about(turn, half)
-    return angle.composed((s, c, -s), (sines, cosines, -sines)), angle.composed(
-        (c, -s, -c), (cosines, -sines, -cosines)
-    )
+    s, c = (joined(at, over) for at, over in zip(turn, _about(turn, half), strict=True))
+    return angle.composed(s, c, -s), angle.composed(c, -s, -c)
 
 
 def sine_cosine(x: FloatArray) -> tuple[Interval, Interval]:

@@ -24,7 +24,7 @@ from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.plain_tests import kept_out_holds
 from nullpose.certificate.profile import Profile, ProfileField
 from nullpose.certificate.profile_links import PI, Link, links_of, sine_cosine
-from nullpose.certificate.taylor import pairs
+from nullpose.certificate.taylor import joined, pairs
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -161,15 +161,13 @@ def _largest(
     identity, factors = _factors(family, leaves)
     total = links[0][0].alike(identity)
     for (cosine, near), weight in zip(links, factors, strict=True):
-        at, over = (
-            (f(0, c), f(1, c), f(2, c))
-            for f, c in ((profile.near, cosine.value), (profile.within, cosine.over))
-        )
-        total = total + cosine.composed(at, over) * near * weight
-    shares, bent = total.slopes.magnitude() * total.half, total.bends.magnitude()
+        at, over = cosine.at.value, cosine.over.value
+        gain = cosine.composed(*(joined(profile.near(n, at), profile.within(n, over)) for n in range(3)))
+        total = total + gain * near * weight
+    shares, bent = total.at.slopes.magnitude() * total.half, total.over.bends.magnitude()
     for pair, (i, j) in enumerate(zip(*pairs(5)[:2], strict=True)):
         shares[[i, j]] += bent[pair] * total.half[i] * total.half[j]
-    return np.asarray(np.fmin(total.largest().high, total.over.high)), shares
+    return np.asarray(np.fmin(total.largest().high, total.over.value.high)), shares
 
 
 def _out_of_reach(

@@ -53,17 +53,17 @@ class Shear:
     anchored: Taylor
 
     def seen(self, vector: Taylor, near: Interval) -> tuple[Taylor, Interval]:
-        """Return ``basis^T (I + E)^T a`` of link vectors a, (3, b), and a bound on its third derivative.
+        """Turn link vectors, ``basis^T (I + E)^T a``, and bound what that is in its third derivative.
 
         Args:
-            vector: a.
+            vector: a, (3, b), at the centres.
             near: (b,) ``1 / |r|`` over the boxes.
         """
         (slope, bend, third), most = vector_sizes(near), [self.most[i] for i in range(4)]
         mixed = bend * most[1] * 3.0 + slope * most[2] * 3.0 + near * most[3]
         # the basis' columns are longer than one by rounding alone
         whole = (third * (most[0] + 1.0) + mixed) * ROUNDING
-        return (self.columns * vector[:, None]).total(), whole.most()
+        return (self.columns.at_centres() * vector[:, None]).total(), whole.most()
 
     def identity(self) -> Taylor:
         """Return ``basis^T (I + E + E^T) basis``, (6, b)."""
@@ -96,14 +96,15 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
     is_dipole = np.any(axes != 0.0, axis=1)
     r, near = way_to(family.points_m[anchor], boxes)
     a = chosen(is_dipole, link_vector(r, near, axes), r)
-    length = a.value.squared().total().sqrt()
-    d0 = a.value / length
+    a0 = a.at.value
+    length = a0.squared().total().sqrt()
+    d0 = a0 / length
     along = (a * d0).total()
-    on = turning & ((along.over / length).low > _UPRIGHT) & (d0.radius().max(axis=0) < _SHARP)
+    on = turning & ((along.over.value / length).low > _UPRIGHT) & (d0.radius().max(axis=0) < _SHARP)
     # (a0 - a) / (a.d0) of a dipole's link vector a, r / (r.d0) - d0 of the way to another point
-    w = chosen(is_dipole, -(a - a.value), a) / along - where(is_dipole, 0.0, d0)
+    w = chosen(is_dipole, -(a - a0), a) / along - where(is_dipole, 0.0, d0)
     w = chosen(on, w, w.alike(Interval(np.zeros((3, len(on))))))
-    most = where(on, _sizes(w, along.over, near.over, is_dipole), 0.0)
+    most = where(on, _sizes(w.over.value, along.over.value, near.over.value, is_dipole), 0.0)
     w = w.narrowed(most[3])
     basis, upright = _basis(on, is_dipole, d0)
     one_row, one_column = (w[:, None] * basis).total() * d0[:, None], w[:, None] * dot(basis, d0[:, None])
@@ -115,9 +116,9 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
     return Shear(on, anchor, most, basis, products, turned + basis, chosen(is_dipole, still, flat))
 
 
-def _sizes(w: Taylor, along: Interval, near: Interval, is_dipole: np.ndarray) -> Interval:
+def _sizes(w: Interval, along: Interval, near: Interval, is_dipole: np.ndarray) -> Interval:
     """Return bounds on w and its first three derivatives along a unit direction, by the quotient rule."""
-    y, lean = Interval(along.low), w.over.squared().total().sqrt().most()
+    y, lean = Interval(along.low), w.squared().total().sqrt().most()
     # of a link vector, or of the way to a point
     sizes = zip(vector_sizes(near), (1.0, 0.0, 0.0), strict=True)
     slope, bend, third = (where(is_dipole, *pair) for pair in sizes)

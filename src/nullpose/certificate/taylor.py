@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from nullpose.certificate.elementary import exp, log
-from nullpose.certificate.interval import Interval, as_interval, common, where
+from nullpose.certificate.interval import Interval, above, as_interval, common, where
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 
@@ -22,9 +22,23 @@ Rule: TypeAlias = tuple[Interval, Interval, Interval]
 """A function of one number and its first two derivatives."""
 
 
+class Orders(NamedTuple):
+    """What is known of a formula in one place: at the centres of b boxes, or all over them.
+
+    Args:
+        value: (..., b).
+        slopes: (..., n, b) first derivatives.
+        bends: (..., n (n + 1) / 2, b) second derivatives, by :func:`pairs`.
+    """
+
+    value: Interval
+    slopes: Interval
+    bends: Interval
+
+
 @lru_cache
 def pairs(n: int) -> tuple[IntArray, IntArray, IntArray]:
-    """Return both coordinates of each second derivative, squares first, and, (n, n), where each is."""
+    """List both coordinates of each second derivative, squares first, and, (n, n), where each is."""
     off = np.triu_indices(n, 1)
     first, second = (np.append(np.arange(n), side) for side in off)
     place = np.zeros((n, n), dtype=np.int64)
@@ -36,14 +50,14 @@ def pairs(n: int) -> tuple[IntArray, IntArray, IntArray]:
 class Taylor:
     """Numbers, or vectors along a first axis, as functions of n coordinates over b boxes.
 
+    Along the axis before the last are the two places where they are known, the centres and all of the boxes;
+    what is the same in both, or known at the centres alone, has one.
+
     Args:
         half: (n, b) bounds on the distance of each coordinate from its value at the centre.
-        value: (..., b) at the centres.
-        slopes: (..., n, b) first derivatives there.
-        curve: (..., n (n + 1) / 2, b) second derivatives there, by :func:`pairs`.
-        over: (..., b) what they are all over the boxes.
-        steep: (..., n, b) first derivatives all over the boxes.
-        bends: (..., n (n + 1) / 2, b) second derivatives all over the boxes.
+        value: (..., places, b).
+        slopes: (..., n, places, b) first derivatives.
+        bends: (..., n (n + 1) / 2, places, b) second derivatives, by :func:`pairs`.
     """
 
     __array_ufunc__ = None  # numpy must leave mixed expressions to the operators below
@@ -51,32 +65,40 @@ class Taylor:
     half: FloatArray
     value: Interval
     slopes: Interval
-    curve: Interval
-    over: Interval
-    steep: Interval
     bends: Interval
 
     @property
-    def _parts(self) -> tuple[Interval, ...]:
-        return self.value, self.slopes, self.curve, self.over, self.steep, self.bends
+    def _orders(self) -> Orders:
+        return Orders(self.value, self.slopes, self.bends)
 
     @property
-    def orders(self) -> tuple[tuple[Interval, ...], tuple[Interval, ...]]:
-        """What is known at the centres and all over the boxes: value, first and second derivatives."""
-        return self._parts[:3], self._parts[3:]
+    def at(self) -> Orders:
+        """What is known at the centres."""
+        return Orders(*(part[..., 0, :] for part in self._orders))
+
+    @property
+    def over(self) -> Orders:
+        """What is known all over the boxes."""
+        return Orders(*(part[..., -1, :] for part in self._orders))
+
+    def at_centres(self) -> Taylor:
+        """Leave out what is known all over the boxes."""
+        return Taylor(self.half, *(part[..., :1, :] for part in self._orders))
 
     def __getitem__(self, index: Any) -> Taylor:
-        return Taylor(self.half, *(part[index] for part in self._parts))
+        return Taylor(self.half, *(part[index] for part in self._orders))
 
     def __add__(self, other: Taylor | Interval | FloatArray | float) -> Taylor:
         if not isinstance(other, Taylor):
-            return replace(self, value=self.value + other, over=self.over + other)
-        return Taylor(self.half, *(a + b for a, b in zip(self._parts, other._parts, strict=True))).tightened()
+            return replace(self, value=self.value + _each(other))
+        return Taylor(
+            self.half, *(a + b for a, b in zip(self._orders, other._orders, strict=True))
+        ).tightened()
 
     __radd__ = __add__
 
     def __neg__(self) -> Taylor:
-        return Taylor(self.half, *(-part for part in self._parts))
+        return Taylor(self.half, *(-part for part in self._orders))
 
     def __sub__(self, other: Taylor | Interval | FloatArray | float) -> Taylor:
         return self + -other
@@ -86,16 +108,15 @@ class Taylor:
 
     def __mul__(self, other: Taylor | Interval | FloatArray | float) -> Taylor:
         if not isinstance(other, Taylor):
-            scale = as_interval(other)
-            scales = (scale, _each(scale), _each(scale)) * 2
-            return Taylor(self.half, *(part * by for part, by in zip(self._parts, scales, strict=True)))
-        i, j, _ = pairs(len(self.half))
-        parts: list[Interval] = []
-        for (x, dx, ddx), (y, dy, ddy) in zip(self.orders, other.orders, strict=True):
-            mixed = dx[..., i, :] * dy[..., j, :] + dx[..., j, :] * dy[..., i, :]
-            slopes = dx * _each(y) + dy * _each(x)
-            parts += [x * y, slopes, ddx * _each(y) + ddy * _each(x) + mixed]
-        return Taylor(self.half, *parts).tightened()
+            scale = _each(other)
+            each = _along(scale)
+            return Taylor(self.half, self.value * scale, self.slopes * each, self.bends * each)
+        x, y, (i, j, _) = self, other, pairs(len(self.half))
+        mixed = x.slopes[..., None, :, :] * y.slopes[..., None, :, :, :]
+        mixed = mixed[..., i, j, :, :] + mixed[..., j, i, :, :]
+        slopes = x.slopes * _along(y.value) + y.slopes * _along(x.value)
+        bends = x.bends * _along(y.value) + y.bends * _along(x.value) + mixed
+        return Taylor(self.half, x.value * y.value, slopes, bends).tightened()
 
     __rmul__ = __mul__
 
@@ -103,106 +124,115 @@ class Taylor:
         return self * other.of(inverse)
 
     def of(self, function: Callable[[Interval], Rule]) -> Taylor:
-        """Return a function of these numbers, given by its rule."""
-        return self.composed(function(self.value), function(self.over))
+        """Compose a function with these numbers, given by its rule."""
+        return self.composed(*function(self.value))
 
-    def composed(self, at: Rule, over: Rule) -> Taylor:
-        """Return a function of these numbers, from its rule at the centres and all over the boxes."""
+    def composed(self, value: Interval, first: Interval, second: Interval) -> Taylor:
+        """Compose a function with these numbers, from its value and derivatives in each place."""
         i, j, _ = pairs(len(self.half))
-        parts: list[Interval] = []
-        for (_, dx, ddx), (value, first, second) in zip(self.orders, (at, over), strict=True):
-            square = dx[..., i, :] * dx[..., j, :]
-            low = np.where((i == j)[:, None], np.maximum(square.low, 0.0), square.low)
-            bends = ddx * _each(first) + Interval(low, square.high) * _each(second)
-            parts += [value, dx * _each(first), bends]
-        return Taylor(self.half, *parts).tightened()
+        square = self.slopes[..., i, :, :] * self.slopes[..., j, :, :]
+        low = np.where((i == j)[:, None, None], np.maximum(square.low, 0.0), square.low)
+        bends = self.bends * _along(first) + Interval(low, square.high) * _along(second)
+        return Taylor(self.half, value, self.slopes * _along(first), bends).tightened()
 
     def squared(self) -> Taylor:
-        """Return the squares."""
+        """Square the numbers."""
         return self.of(lambda x: (x.squared(), x * 2.0, Interval(2.0)))
 
     def total(self) -> Taylor:
-        """Return the sum over the first axis."""
-        return Taylor(self.half, *(part.total() for part in self._parts)).tightened()
+        """Sum over the first axis."""
+        return Taylor(self.half, *(part.total() for part in self._orders)).tightened()
 
     def tightened(self) -> Taylor:
-        """Return the same functions, whose ranges are no wider than what the derivatives leave."""
-        swing = _reach(self.bends.magnitude()[..., pairs(len(self.half))[2], :], self.half)
-        steep = Interval(self.slopes.magnitude()) + Interval(swing) * 0.5
-        reach = _reach(steep.high, self.half)
+        """Narrow the ranges over the boxes to what the derivatives leave."""
+        if self.value.low.shape[-2] == 1:
+            return self
+        at, over = self.at, self.over
+        swing = _reach(over.bends.magnitude()[..., pairs(len(self.half))[2], :], self.half)
+        reach = _reach(above(at.slopes.magnitude() + 0.5 * swing), self.half)
         return replace(
             self,
-            over=common(self.over, self.value + Interval(-reach, reach)),
-            steep=common(self.steep, self.slopes + Interval(-swing, swing)),
+            value=joined(at.value, common(over.value, at.value + Interval(-reach, reach))),
+            slopes=joined(at.slopes, common(over.slopes, at.slopes + Interval(-swing, swing))),
         )
 
     def largest(self) -> Interval:
-        """Return bounds above over the boxes, (b,), of numbers.
+        """Bound numbers from above over the boxes, (b,).
 
         Of ``f(c) + G.x + x.H x / 2`` with ``|x_i| <= h_i``: mixed terms are split by
         ``2 |x_i x_j| <= x_i^2 h_j / h_i + x_j^2 h_i / h_j``, which leaves a parabola for each coordinate.
         """
-        place, sizes, total = pairs(len(self.half))[2], self.bends.magnitude(), self.value
+        bends, total = self.over.bends, self.at.value
+        steep = Interval(self.at.slopes.magnitude())
+        sizes = bends.magnitude()[pairs(len(self.half))[2]]
         for i, h in enumerate(self.half):
-            others = [Interval(sizes[place[i, j]]) * k for j, k in enumerate(self.half) if j != i]
             # what x_i can add: (G + (mixed + own h / 2)) h at the end, or the parabola's top before it
-            steep = Interval(self.slopes[i].magnitude())
-            curve = sum(others, Interval(self.bends[i].high) * h)
-            end = steep * h + curve * h * 0.5
-            top = steep.squared() * h / (curve * -2.0)
-            before = (curve.high < 0.0) & ~(steep.low >= -curve.low)
+            others = above(np.sum(np.delete(sizes[i] * self.half, i, axis=0), axis=0))
+            curve = Interval(bends.high[i]) * h + others
+            end = (steep[i] + curve * 0.5) * h
+            top = steep[i].squared() * h / (curve * -2.0)
+            before = (curve.high < 0.0) & ~(steep.low[i] >= -curve.low)
             total = total + where(before, top, end).most()
         return total
 
     def narrowed(self, third: Interval) -> Taylor:
-        """Return the same functions, whose third derivatives along any unit direction are bounded, (b,)."""
+        """Narrow the ranges by bounds, (b,), on third derivatives along any unit direction."""
         reach = (third * Interval(self.half).squared().total().sqrt()).most().high
-        return replace(self, bends=common(self.bends, self.curve + Interval(-reach, reach))).tightened()
+        bends = common(self.over.bends, self.at.bends + Interval(-reach, reach))
+        return replace(self, bends=joined(self.at.bends, bends)).tightened()
 
     def within(self, low: float, high: Interval) -> Taylor:
-        """Return the same functions, which are between a number and others."""
-        return replace(self, over=common(self.over, Interval(low, high.high)))
+        """Narrow the ranges to between a number and others, (b,)."""
+        value = common(self.over.value, Interval(low, high.high))
+        return replace(self, value=joined(self.at.value, value))
 
     def alike(self, number: Interval | FloatArray | float) -> Taylor:
-        """Return constants over the same boxes."""
+        """Take constants over the same boxes."""
         n = len(self.half)
-        zero = Interval(np.zeros((n, 1))), Interval(np.zeros((n * (n + 1) // 2, 1)))
-        return Taylor(self.half, *(as_interval(number), *zero) * 2)
+        zeros = (Interval(np.zeros((m, 1, 1))) for m in (n, n * (n + 1) // 2))
+        return Taylor(self.half, _each(number), *zeros)
 
 
 def coordinates(value: Interval, over: Interval) -> Taylor:
-    """Return the coordinates themselves, (n, b), from what they are at the centres and over the boxes."""
+    """Take the coordinates themselves, (n, b), from what they are at the centres and over the boxes."""
     n = len(value.low)
-    unit, zero = Interval(np.eye(n)[:, :, None]), Interval(np.zeros((n, n * (n + 1) // 2, 1)))
-    return Taylor((over - value).magnitude(), value, unit, zero, over, unit, zero)
+    unit, zero = np.eye(n)[:, :, None, None], np.zeros((n, n * (n + 1) // 2, 1, 1))
+    return Taylor((over - value).magnitude(), joined(value, over), Interval(unit), Interval(zero))
+
+
+def joined(at: Interval, over: Interval) -> Interval:
+    """Join what is known at the centres, (..., b), and all over the boxes to both places."""
+    return Interval(
+        *(np.stack(np.broadcast_arrays(*ends), -2) for ends in ((at.low, over.low), (at.high, over.high)))
+    )
 
 
 def chosen(mask: np.ndarray, a: Taylor, b: Taylor) -> Taylor:
-    """Return a where the mask holds, else b."""
-    return Taylor(a.half, *(where(mask, x, y) for x, y in zip(a._parts, b._parts, strict=True)))
+    """Choose a where the mask holds, else b."""
+    return Taylor(a.half, *(where(mask, x, y) for x, y in zip(a._orders, b._orders, strict=True)))
 
 
 def cross(x: Taylor, y: Taylor | Interval) -> Taylor:
-    """Return the cross products of vectors."""
+    """Multiply vectors by the cross product."""
     return x[[1, 2, 0]] * y[[2, 0, 1]] - x[[2, 0, 1]] * y[[1, 2, 0]]
 
 
 def inverse(x: Interval) -> Rule:
-    """Return ``1 / x`` by its rule."""
+    """State ``1 / x`` by its rule."""
     value = 1.0 / x
     square = value.squared()
     return value, -square, square * value * 2.0
 
 
 def root(x: Interval) -> Rule:
-    """Return the square root of what is positive by its rule."""
+    """State the square root of what is positive by its rule."""
     value = x.sqrt()
     slope = 0.5 / value
     return value, slope, -(slope / x) * 0.5
 
 
 def inverse_root(x: Interval) -> Rule:
-    """Return ``1 / sqrt(x)`` of what is positive by its rule."""
+    """State ``1 / sqrt(x)`` of what is positive by its rule."""
     value = 1.0 / x.sqrt()
     square = value.squared()
     slope = value * square * -0.5
@@ -210,22 +240,28 @@ def inverse_root(x: Interval) -> Rule:
 
 
 def logarithm(x: Interval) -> Rule:
-    """Return the logarithm of what is positive by its rule."""
+    """State the logarithm of what is positive by its rule."""
     slope = 1.0 / x
     return log(x), slope, -slope.squared()
 
 
 def exponential(x: Interval) -> Rule:
-    """Return ``e^x`` by its rule."""
+    """State ``e^x`` by its rule."""
     value = exp(x)
     return value, value, value
 
 
-def _each(x: Interval) -> Interval:
-    """Return numbers for each of the derivatives, which lie along the axis before the last."""
-    return Interval(*(end[..., None, :] if end.ndim else end for end in x.ends))
+def _each(number: Interval | FloatArray | float) -> Interval:
+    """Take numbers, (..., b), in each place."""
+    x = as_interval(number)
+    return x[..., None, :] if x.low.ndim else x
+
+
+def _along(x: Interval) -> Interval:
+    """Take numbers, (..., places, b), for each derivative."""
+    return x[..., None, :, :] if x.low.ndim else x
 
 
 def _reach(steep: FloatArray, half: FloatArray) -> FloatArray:
-    """Return bounds on how far slopes, (..., n, b), lead within the boxes."""
-    return sum((Interval(steep[..., i, :]) * h for i, h in enumerate(half)), Interval(0.0)).high
+    """Bound how far slopes, (..., n, b), lead within the boxes."""
+    return above(np.sum(steep * half, axis=-2))
