@@ -41,9 +41,11 @@ def assert_true(table: PatternTable, field: Field) -> None:
 
 write = {form: writer for form, (_, writer) in WRITERS.items()} | {"msi": write_omni_msi}
 FORMS = [(form, name) for form in _FORMS for name in FIELDS if form != "msi" or name == "omni"]
+# that each form is read at all, of an antenna without symmetry, is in test_files.py
+_REGULAR = [each if each[1] == "omni" else pytest.param(*each, marks=pytest.mark.slow) for each in FORMS]
 
 
-@pytest.mark.parametrize(("form", "name"), FORMS)
+@pytest.mark.parametrize(("form", "name"), _REGULAR)
 def test_regular_files_are_read(tmp_path: Path, form: str, name: str) -> None:
     """Every form of every format gives each of three patterns, in UTF-8 or in UTF-16, to .1 dB."""
     path = tmp_path / "pattern.txt"
@@ -107,7 +109,7 @@ def damaged(random: Random, text: str) -> str:
 
 
 @pytest.mark.parametrize(
-    "seed", [*range(40), *_SUBTLE, *(pytest.param(n, marks=pytest.mark.slow) for n in range(40, 150))]
+    "seed", [*range(24), *_SUBTLE, *(pytest.param(n, marks=pytest.mark.slow) for n in range(24, 150))]
 )
 def test_damaged_files_are_refused_or_read_right(tmp_path: Path, seed: int) -> None:
     """Of damaged files none is misread: what is accepted is the pattern to .1 dB, 20 dB down."""

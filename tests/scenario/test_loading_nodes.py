@@ -242,7 +242,7 @@ def test_nodes_from_elsewhere(tmp_path: Path) -> None:
 
 def test_too_many_nodes(tmp_path: Path) -> None:
     """Files of more nodes than are allowed are refused for that."""
-    text = collection(*[feature()] * 20_000)
-    for file, content in (("n.csv", LOCAL + "a,1,2,3,4\n" * 20_000), ("n.json", text)):
+    text = collection(*[feature()] * 10_001)
+    for file, content in (("n.csv", LOCAL + "a,1,2,3,4\n" * 10_001), ("n.json", text)):
         fault = faults_of(tmp_path, file, content)[-1]
         assert str(fault) == "nodes: there are more than 10000 members, the most that are allowed"

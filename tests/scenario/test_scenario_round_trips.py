@@ -105,4 +105,4 @@ def test_examples_round_trip(example: Path, tmp_path: Path) -> None:
     """Every example loads, and loads equal from what it is written back as."""
     scenario = load(example)
     (tmp_path / "copy.toml").write_text(scenario.to_toml(), encoding="utf-8")
-    assert load(tmp_path / "copy.toml") == scenario
+    assert load(tmp_path / "copy.toml") == scenario == Scenario.from_dict(scenario.to_dict())
