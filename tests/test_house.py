@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterable
+from functools import cache
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
@@ -159,7 +160,7 @@ def _required(*extras: str) -> set[str]:
 )
 def test_imported_packages_are_required(files: str, extras: list[str]) -> None:
     """What the source imports is named in an extra, and what tests import in that of their target."""
-    distributions = packages_distributions()
+    distributions = cache(packages_distributions)()
     required = _required(*extras)
     missing = {
         name

@@ -6,15 +6,13 @@ from benchmarks.soundness.ends import subsets_of
 from benchmarks.soundness.features import ENDS, FEATURES, make_feature_scene
 from benchmarks.soundness.scenes import KINDS, make_scene
 from benchmarks.soundness.search import best_value
+from sizes import and_slow
 
-SCENES = 14
 FEATURE_SCENES = 1
-slow = pytest.mark.slow
+SCENES = 14
 
 
-@pytest.mark.parametrize(
-    "number", [*range(SCENES), *(pytest.param(n, marks=slow) for n in range(SCENES, 50))]
-)
+@pytest.mark.parametrize("number", and_slow(range(5), range(5, 50)))
 def test_no_pose_exceeds_the_bound(number: int) -> None:
     """An independent search finds nothing above the bound, and the value is the reported pose's."""
     outcome = check_scene(make_scene(number), starts=20 if number < SCENES else 60)
@@ -23,7 +21,7 @@ def test_no_pose_exceeds_the_bound(number: int) -> None:
 
 
 @pytest.mark.parametrize("feature", FEATURES)
-@pytest.mark.parametrize("number", [*range(FEATURE_SCENES), pytest.param(FEATURE_SCENES, marks=slow)])
+@pytest.mark.parametrize("number", and_slow(range(FEATURE_SCENES), [FEATURE_SCENES]))
 def test_no_pose_exceeds_the_bound_of_a_feature(feature: str, number: int) -> None:
     """So it is with everything that scenarios can ask for; what is certified is verified."""
     outcome = check_scene(make_feature_scene(feature, number), starts=20 if number < FEATURE_SCENES else 60)
@@ -67,7 +65,7 @@ HARD = [("antennas", 210), ("antennas", 5059), ("antennas", 5135), ("antennas", 
 HARD += [("patterns", 16), ("patterns", 117), ("gaps", 169)]
 
 
-@pytest.mark.parametrize(("feature", "number"), HARD)
+@pytest.mark.parametrize(("feature", "number"), and_slow(HARD[3:6:2], [*HARD[:3], HARD[4], HARD[6]]))
 def test_hard_scenes_of_a_feature(feature: str, number: int) -> None:
     """Scenes that were unsound once, or not verified."""
     outcome = check_scene(make_feature_scene(feature, number), starts=5, time_limit_s=600.0)

@@ -35,7 +35,7 @@ def test_a_pose_on_a_null_is_called_one(run, paper):
 
 def test_no_way_out_is_named_that_is_refused(run):
     """Among buildings --robust is refused, so that nothing advises it."""
-    said = run("solve", "examples/town.toml").stdout
+    said = run("solve", "examples/town.toml", "--gap", "0.1").stdout
     assert "stands on a null (towards M)" in said
     assert "--robust" not in said
 

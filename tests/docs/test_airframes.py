@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sizes import and_slow
 
 import nullpose
 from nullpose.study.monte_carlo import draw_scene, load_spec
@@ -74,7 +75,7 @@ def test_what_any_attitude_gains_in_the_papers_scene() -> None:
     assert f"up to {best - level:.2f} dB in the paper's scene" in README
 
 
-@pytest.mark.parametrize("antenna", ["isotropic", "dipole"])
+@pytest.mark.parametrize("antenna", and_slow(["isotropic"], ["dipole"]))
 def test_what_any_attitude_gains_on_farms(antenna: str, tmp_path: Path) -> None:
     """The median and the most of the example study, with whips and without, are those printed."""
     file = tmp_path / "spec.toml"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.soundness.check import check_scene
 from benchmarks.soundness.features import make_feature_scene
+from sizes import and_slow
 
 from nullpose.physics import Pose, evaluate
 from nullpose.scenario import Scenario
@@ -68,7 +69,7 @@ def test_many_downlinks_are_solved_together() -> None:
     assert many.value[0, 0] == pytest.approx(solve(scenes[0], gap=1e-4).objective.value, rel=2e-4)
 
 
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", and_slow(range(2), range(2, 12)))
 def test_random_downlinks_are_sound(number: int) -> None:
     """No search exceeds a bound, certificates verify, and no answer is below that of the search alone."""
     assert check_scene(make_feature_scene("downlink", number), starts=60).faults == ()

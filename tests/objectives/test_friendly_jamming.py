@@ -11,6 +11,7 @@ from benchmarks.soundness.features import make_feature_scene
 from benchmarks.soundness.search import best_value
 from hypothesis import given, strategies as st
 from scipy.optimize import minimize
+from sizes import and_slow
 
 from nullpose.certificate import Certificate, verify
 from nullpose.errors import UsageError
@@ -172,7 +173,7 @@ def test_known_answers_are_certified_and_verified(
     assert verify(certificate_of(solution)).proved
 
 
-@pytest.mark.parametrize("number", range(20))
+@pytest.mark.parametrize("number", and_slow(range(3), range(3, 20)))
 def test_random_scenes_are_sound(number: int) -> None:
     """No independent search is above a bound, and each certificate is proved."""
     assert check_scene(make_feature_scene("friendly-jamming", number), starts=60).faults == ()
@@ -257,7 +258,7 @@ def test_what_does_not_know_pairs_refuses_them() -> None:
             solve(scenario, robust=scenario.is_uncertain)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", and_slow([0], range(1, 6)))
 def test_no_pose_among_buildings_beats_the_bound(seed: int) -> None:
     """A search of the physics finds nothing above the bound, nor better than what is certified."""
     rng = np.random.default_rng(seed)

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from matplotlib.figure import Figure
+from sizes import few_examples
 
 from nullpose import Pose, Result, Scenario, compare_airframes, load, solve, sweep
 from nullpose.report.figures.dots import draw_comparison
@@ -149,7 +150,7 @@ def test_a_key_leaves_out_what_is_not_drawn(name: str) -> None:
 
 
 @given(seed=st.integers(0, 10_000), nodes=st.integers(1, 14), zones=st.integers(0, 6))
-@settings(max_examples=12, deadline=None)
+@few_examples(4)
 def test_names_keep_apart_in_crowds(seed: int, nodes: int, zones: int) -> None:
     """Seen from above in a column, every name drawn is in the frame and touches no other name and no mark."""
     generator = np.random.default_rng(seed)

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sizes import and_slow
 
 import nullpose
 from nullpose import Scenario
@@ -38,9 +39,14 @@ def urban(distance_m: FloatArray, elevation_rad: FloatArray, azimuth_rad: FloatA
     return np.asarray(distance_m**-2.0 * (seen * 10.0**-0.1 + (1.0 - seen) * 10.0**-2.0))
 
 
-@pytest.mark.parametrize("more", [{}, {"airframe": {"tilt_max_deg": 20.0}}])
-@pytest.mark.parametrize("scheme", ["optimum", "vertical"])
-def test_a_power_law_as_a_function_has_the_value_of_the_model(more: dict[str, Any], scheme: str) -> None:
+TILTING = {"airframe": {"tilt_max_deg": 20.0}}
+
+
+@pytest.mark.parametrize(
+    ("scheme", "more"),
+    and_slow([("optimum", TILTING), ("vertical", {})], [("optimum", {}), ("vertical", TILTING)]),
+)
+def test_a_power_law_as_a_function_has_the_value_of_the_model(scheme: str, more: dict[str, Any]) -> None:
     """Under two schemes, with and without an airframe."""
     law = nullpose.solve(scene(power_law(3.0), **more), scheme, gap=5e-2)
     model = nullpose.solve(scene({"model": "power-law", "exponent": 3.0}, **more), scheme, gap=1e-4)

@@ -88,7 +88,7 @@ def test_the_unit_of_a_function_has_no_effect() -> None:
     """A rate in bit/s and less a constant has its optimum at the same place."""
     plain, large = (
         nullpose.solve(
-            field(1, Custom(lambda sinr, scale=scale, off=off: scale * KNOWN["sum-rate"](sinr) - off))
+            field(0, Custom(lambda sinr, scale=scale, off=off: scale * KNOWN["sum-rate"](sinr) - off))
         )
         for scale, off in ((1.0, 0.0), (2e7, 1e9))
     )
@@ -129,6 +129,6 @@ def test_a_function_that_returns_no_number_at_a_pose_is_refused() -> None:
 
 def test_equal_seeds_give_equal_poses() -> None:
     """And a search that is told to prove nothing finds the same."""
-    scenario = field(1, Custom(KNOWN["sum-rate"]))
+    scenario = field(0, Custom(KNOWN["sum-rate"]))
     poses: list[Pose] = [nullpose.solve(scenario, **more).pose for more in ({}, {"certify": False})]  # type: ignore[arg-type]
     np.testing.assert_array_equal(poses[0].position_m, poses[1].position_m)

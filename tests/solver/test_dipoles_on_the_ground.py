@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import and_slow, few_examples
 
 from nullpose.certificate import verify
 from nullpose.physics import objective_value
@@ -43,8 +44,13 @@ def test_whips_have_their_known_optimum(ratio: float, value: float, paper: Calla
 
 
 @pytest.mark.parametrize("scheme", ["optimum", "vertical", "zero-interference", "maximum-gain"])
-@pytest.mark.parametrize("kinds", [("nodes",), ("jammers",), ("nodes", "jammers")])
-@pytest.mark.parametrize("null_depth_db", [None, 25.0])
+@pytest.mark.parametrize(
+    ("kinds", "null_depth_db"),
+    and_slow(
+        [(("nodes",), None), (("nodes", "jammers"), 25.0)],
+        [(("nodes",), 25.0), (("jammers",), None), (("jammers",), 25.0), (("nodes", "jammers"), None)],
+    ),
+)
 def test_every_case_is_certified(
     scheme: str, kinds: tuple[str, ...], null_depth_db: float | None, paper: Callable
 ) -> None:
@@ -98,7 +104,7 @@ def test_a_certificate_for_another_leak_is_refused(depth: float, paper: Callable
     from dataclasses import replace
 
     certificate = certificate_of(
-        solve(with_antennas(paper(9.0), antenna="dipole", null_depth_db=20.0), gap=1e-3)
+        solve(with_antennas(paper(9.0), antenna="dipole", null_depth_db=20.0), gap=0.3)
     )
     assert verify(certificate).proved
     other = with_antennas(paper(9.0), antenna="dipole", null_depth_db=depth)
@@ -121,7 +127,7 @@ def test_circular_antennas_are_twice_the_noise(ratio: float, paper: Callable) ->
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=12)
+@few_examples(5)
 def test_no_pose_exceeds_the_bound(seed: int, random_scene: Callable) -> None:
     """On random fields with dipoles anyhow the bound is above every pose of a search, the pose's own too."""
     rng = np.random.default_rng(seed)
@@ -154,7 +160,7 @@ def test_secrecy_and_airframes_know_dipoles(paper: Callable) -> None:
     """An eavesdropper with a whip, a vehicle that tilts a little, a keep-out ball: certified and proved."""
     data = with_antennas(paper(1.0), ("nodes",)).to_dict()
     data["airframe"] = {"tilt_max_deg": 20.0}
-    tilted = solve(Scenario.from_dict(data), gap=1e-3)
+    tilted = solve(Scenario.from_dict(data), gap=2e-2)
     assert tilted.status == "certified"
     assert verify(certificate_of(tilted)).proved
     del data["airframe"], data["jammers"]
@@ -165,6 +171,6 @@ def test_secrecy_and_airframes_know_dipoles(paper: Callable) -> None:
     }
     for node in data["nodes"]:
         del node["power_w"]
-    secret = solve(Scenario.from_dict(data), gap=1e-3)
+    secret = solve(Scenario.from_dict(data), gap=2e-2)
     assert secret.status == "certified"
     assert verify(certificate_of(secret)).proved

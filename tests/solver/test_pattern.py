@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sizes import and_slow
 
 from nullpose import Scenario, apply_overrides, compare, load, solve, solve_many
 from nullpose.antenna.harmonics import directions, fit
@@ -70,7 +71,7 @@ def test_a_dipole_as_a_pattern_is_a_dipole() -> None:
     scenario = with_antenna(
         PAPER, {"kind": "pattern", "harmonics": pattern_rows(lambda x, y, z: 1 - z**2, 2)}
     )
-    dipole, pattern = solve(PAPER), solve(scenario)
+    dipole, pattern = solve(PAPER), solve(scenario, gap=1e-2)
     assert pattern.objective.value == pytest.approx(dipole.objective.value, rel=1e-6)
     assert pattern.objective.upper_bound >= dipole.objective.value
     assert min_sinr(PAPER, pattern.pose) == pytest.approx(pattern.objective.value, rel=1e-9)
@@ -93,7 +94,8 @@ def test_airframe(kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "mount_deg"), [("half-wave", 0.0), ("half-wave", 89.999), ("uneven", 45.0), ("pattern", 30.0)]
+    ("kind", "mount_deg"),
+    and_slow([("half-wave", 0.0), ("uneven", 45.0)], [("half-wave", 89.999), ("pattern", 30.0)]),
 )
 def test_level_vehicles(kind: str, mount_deg: float) -> None:
     """Roll and pitch are exactly zero, no less than the search alone finds, what is promised is verified."""

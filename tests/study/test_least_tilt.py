@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import and_slow, few_examples
 
 import nullpose
 from nullpose import Scenario
@@ -58,7 +59,7 @@ def checked(scenario: Scenario, found: LeastTilt, mount: MountTilt, apart_deg: f
 
 @pytest.mark.parametrize(
     ("file", "power_w"),
-    [("paper.toml", 0.01), ("paper.toml", 1.0), ("paper.toml", 100.0), ("whips.toml", 1.0)],
+    and_slow([("paper.toml", 100.0), ("whips.toml", 1.0)], [("paper.toml", 0.01), ("paper.toml", 1.0)]),
 )
 def test_both_sides_hold_in_the_examples(file: str, power_w: float) -> None:
     """With the tilt that suffices a solve reaches the target, and with the one below it none does."""
@@ -71,7 +72,7 @@ def test_both_sides_hold_in_the_examples(file: str, power_w: float) -> None:
     checked(scenario, found, found.best)
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", and_slow([2], [1, 3]))
 def test_no_pose_of_a_grid_reaches_the_target_with_too_little_tilt(seed: int) -> None:
     """Positions and axes at random, those that the vehicle reaches: all below the bound."""
     scenario, rng = field(seed, whips=seed == 2), np.random.default_rng(seed)
@@ -90,7 +91,7 @@ def test_no_pose_of_a_grid_reaches_the_target_with_too_little_tilt(seed: int) ->
             assert objective_value(scenario, positions_m, axes).max() <= mount.upper_bound
 
 
-@settings(max_examples=5)
+@few_examples(2)
 @given(seed=st.integers(0, 10_000), whips=st.booleans())
 def test_more_is_asked_for_more_and_the_best_mount_asks_for_least(seed: int, whips: bool) -> None:
     """A larger share never needs less tilt; no stated mount needs less than the best one."""
@@ -106,7 +107,7 @@ def test_more_is_asked_for_more_and_the_best_mount_asks_for_least(seed: int, whi
         assert all(found.best.suffices_deg <= (mount.suffices_deg or 0.0) for mount in found.mounts)
 
 
-@pytest.mark.parametrize("seeds", [range(12), pytest.param(range(12, 50), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seeds", and_slow([range(3)], [range(3, 50)]))
 def test_nearly_all_of_the_value_takes_the_tilt_of_the_best_pose(seeds: range) -> None:
     """Both sides agree with solve; less is asked for less; no stated mount needs less than the best one."""
     for seed in seeds:

@@ -38,6 +38,18 @@ class _Page(HTMLParser):
         self.addresses += [value or "" for key, value in attrs if key in ("src", "href", "srcset", "action")]
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Puts empty pictures in the place of figures, for what is not about them."""
+
+    def write(figure: object, *paths: Path) -> tuple[Path, ...]:
+        for path in paths:
+            path.write_text("<svg/>", encoding="utf-8")
+        return paths
+
+    monkeypatch.setattr("nullpose.report.study.writing.write_figure", write)
+
+
 def test_files_of_a_report(make: Make, ladder: Ladder) -> None:
     """Markdown, a page that asks for nothing, two tables, each figure twice; what the text names is there."""
     folder = make(ladder(40, 1.0, 2.0, points=2), sweep=SWEEP)
@@ -59,6 +71,7 @@ def test_files_of_a_report(make: Make, ladder: Ladder) -> None:
     assert not {"script", "link"} & set(page.tags)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_tables_on_disk_are_the_rows(make: Make, ladder: Ladder) -> None:
     """A row for each scene, combination and case, in dB beside the ratio; the answer is of the last one."""
     cells = ladder(9, 1.0, 2.0, points=2)
@@ -98,6 +111,7 @@ def test_the_same_each_time(make: Make, ladder: Ladder, tmp_path: Path) -> None:
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     ("cells", "given", "figures"),
     [
@@ -133,6 +147,7 @@ def test_no_text_of_a_study_is_markup(make: Make, ladder: Ladder) -> None:
     assert "<b>" not in svg
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_study_that_is_not_finished_says_so_on_top(make: Make, ladder: Ladder) -> None:
     """Before anything else but the title."""
     folder = make(ladder(4, 1.0, 2.0), scenes=9)
@@ -141,6 +156,7 @@ def test_a_study_that_is_not_finished_says_so_on_top(make: Make, ladder: Ladder)
     assert lines[2].startswith("> **This study is not finished: 4 of 9 scenes")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_figures_that_are_no_more_there(make: Make, ladder: Ladder, tmp_path: Path) -> None:
     """What an earlier report drew and this one does not is taken away; other files stay."""
     out = tmp_path / "out"
@@ -152,6 +168,7 @@ def test_figures_that_are_no_more_there(make: Make, ladder: Ladder, tmp_path: Pa
     assert (out / "figures" / "mine.png").read_bytes() == b"old"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_margins_are_required_to_be_met(make: Make, ladder: Ladder) -> None:
     """Of margins the requirement is 0 dB unless another is given, and they are called so."""
     nodes = {"layout": "disc", "count": 2, "centre_m": [0, 0], "radius_m": 50, "power_w": 1, "weight": 2}
@@ -172,7 +189,7 @@ def test_a_requirement_in_the_wrong_unit(make: Make, ladder: Ladder) -> None:
     assert not (folder / "report").exists()
 
 
-def test_solved_studies(tmp_path: Path) -> None:
+def test_solved_studies(undrawn: None, tmp_path: Path) -> None:
     """A robust case, and a study of secrecy, from the solver to the report."""
     space = {"airspace": {"altitude_m": [8.0, 30.0]}, "receiver": {"noise_w": 1e-3, "reference_gain_db": 0.0}}
     disc = {"layout": "disc", "count": 1, "centre_m": [0.0, 25.0], "radius_m": 40.0}

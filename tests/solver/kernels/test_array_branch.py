@@ -9,7 +9,6 @@ import pytest
 from nullpose.scenario import Array, Scenario
 from nullpose.solver.array_search import ArraySearch
 from nullpose.solver.kernels.bounds.array_branch import branch_array
-from nullpose.solver.kernels.search.array_response import array_value
 
 LOW, HIGH = np.array([0.0, 0.0, 8.0, -math.pi / 2]), np.array([60.0, 60.0, 12.0, math.pi / 2])
 
@@ -41,7 +40,7 @@ def test_the_bound_is_that_of_the_box(scene: Callable) -> None:
         bound, boxes, state = _branch(task, 1.4 * best)
         assert best <= bound == 1.4 * best
         assert boxes < 200_000
-        assert math.exp(array_value(task.problem, state)) > 0.5 * best
+        assert math.exp(task.judge(state[None])[0]) > 0.5 * best
 
 
 def test_a_limit_leaves_a_bound(random_scene: Callable) -> None:

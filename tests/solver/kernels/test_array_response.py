@@ -8,7 +8,7 @@ import pytest
 from nullpose.physics.array import digital_sinr, element_positions
 from nullpose.scenario import Array
 from nullpose.solver.array_search import ArraySearch
-from nullpose.solver.kernels.search.array_response import array_value, respond
+from nullpose.solver.kernels.search.array_response import respond
 
 CASES = [(1, "linear"), (2, "linear"), (5, "circular"), (8, "linear")]
 
@@ -16,7 +16,7 @@ CASES = [(1, "linear"), (2, "linear"), (5, "circular"), (8, "linear")]
 def _response(task: ArraySearch, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     logs, slopes = np.empty(task.problem.nodes), np.empty((task.problem.nodes, 4))
     worst = respond(task.problem, state, logs, slopes)
-    assert worst == np.min(logs) == array_value(task.problem, state)
+    assert worst == np.min(logs) == task.judge(state[None])[0]
     return logs, slopes
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from sizes import and_slow
 
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.axis_field import AxisField
@@ -272,21 +273,22 @@ FREE = ["free", "band", "cone", "level"]
 AFFINE_FIELDS = ["vertical", "towards", "broadside"]
 
 
+@pytest.mark.parametrize("cases", and_slow([24], [64]))
 @pytest.mark.parametrize("border", ["none", "ball", "zone", "fence"])
 @pytest.mark.parametrize("family", ["shared", "groups", "turned"])
-def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str) -> None:
+def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str, cases: int) -> None:
     """Whatever the axes, the cell, the denominators, the turns and the borders; and much is excluded."""
     rng = np.random.default_rng([["shared", "groups", "turned"].index(family), len(border), ord(border[0])])
     for fields in (FREE, AFFINE_FIELDS):
         met, excluded = 0, Counter[int]()
-        for number in range(64):
+        for number in range(cases):
             case = some_case(
                 rng, family=family, field=fields[number % len(fields)], border=border, celled=number % 8 > 3
             )
             is_excluded, kind = check(case, rng)
             met += kind >= 0
             excluded[kind] += is_excluded
-        assert met >= 24
+        assert met >= 0.375 * cases
         assert excluded.total() >= 0.6 * met
         if fields is AFFINE_FIELDS:
             assert excluded[AFFINE] >= 0.6 * met

@@ -88,7 +88,7 @@ def test_the_bound_by_parts_is_about_the_closed_form(seed: int, tolerance: float
 def test_the_two_values_of_nearly_every_ball_are_as_near_as_asked_for() -> None:
     """Of those that the antenna points at, some keep a looser bound."""
     near = []
-    for seed in range(200):
+    for seed in range(60):
         rng = np.random.default_rng(seed)
         radius, q = a_ball(rng)
         y, sets = unit(rng) if seed % 2 else q / np.linalg.norm(q), ball(radius)
