@@ -273,7 +273,7 @@ FREE = ["free", "band", "cone", "level"]
 AFFINE_FIELDS = ["vertical", "towards", "broadside"]
 
 
-@pytest.mark.parametrize("cases", and_slow([24], [64]))
+@pytest.mark.parametrize("cases", and_slow([40], [64]))
 @pytest.mark.parametrize("border", ["none", "ball", "zone", "fence"])
 @pytest.mark.parametrize("family", ["shared", "groups", "turned"])
 def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str, cases: int) -> None:
@@ -289,8 +289,8 @@ def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str, cases:
             met += kind >= 0
             excluded[kind] += is_excluded
         assert met >= 0.375 * cases
-        assert excluded.total() >= 0.5 * met
+        assert excluded.total() >= 0.55 * met
         if fields is AFFINE_FIELDS:
-            assert excluded[AFFINE] >= 0.5 * met
+            assert excluded[AFFINE] >= 0.55 * met
         else:
-            assert excluded.total() - excluded[FAR] - excluded[OFF_BAND] >= 0.4 * met
+            assert excluded.total() - excluded[FAR] - excluded[OFF_BAND] >= 0.35 * met
