@@ -64,7 +64,6 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
     start, a, b = recurrence(harmonics.degree)
     orders = int(np.max(np.nonzero(used)[0], initial=0)) + 1
     norms = np.sqrt(2.0 * np.arange(harmonics.degree + 1) + 1.0)  # of a harmonic of each degree
-    table = np.ascontiguousarray(np.concatenate([cells for level in levels for cells in level]))
     return PatternArrays(
         np.ascontiguousarray(harmonics.cosine),
         np.ascontiguousarray(harmonics.sine),
@@ -72,7 +71,7 @@ def pattern_arrays(harmonics: Harmonics) -> PatternArrays:
         a,
         b,
         orders,
-        table,
+        np.ascontiguousarray(np.concatenate([cells for level in levels for cells in level])),
         offset.astype(np.int64),
         len(finest),
         _ROUNDING * float(np.sum((np.abs(harmonics.cosine) + np.abs(harmonics.sine)).T * norms)),

@@ -61,8 +61,7 @@ class Custom:
     name: str = "custom"
 
     def __post_init__(self) -> None:
-        rng = np.random.default_rng(0)
-        shares = rng.uniform(size=(3, 2, _PAIRS))
+        shares = np.random.default_rng(0).uniform(size=(3, 2, _PAIRS))
         shares[:, 1, ::2] = shares[:, 0, ::2] * (1.0 - _NEAR) + shares[:, 1, ::2] * _NEAR
         low_m, high_m = np.log(_DISTANCES_M)
         distance_m = np.exp(low_m + (high_m - low_m) * shares[0])

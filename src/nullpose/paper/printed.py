@@ -79,7 +79,6 @@ def search_as_printed(scenario: Scenario, level: float, *, seed: int = 0) -> Pri
     def min_sinr(position_m: FloatArray) -> float:
         return float(np.min(sinr_as_printed(varied, position_m)))
 
-    family = build_family(varied)
-    search = PositionSearch(lambda at_m: math.log(min_sinr(at_m)), family, seed)
+    search = PositionSearch(lambda at_m: math.log(min_sinr(at_m)), build_family(varied), seed)
     search.search()
     return PrintedPoint(level, search.state, min_sinr(search.state))

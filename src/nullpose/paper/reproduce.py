@@ -138,11 +138,13 @@ def reproduce(
     printed = tuple(search_as_printed(scenario, level, seed=seed) for level in printed_levels)
     poses = [row for row in table.of(Scheme.OPTIMUM) if row.value in POSE_LEVELS]
     heading = (JAMMER_POWER, "min_sinr", "min_sinr_db", "x_m", "y_m", "z_m")
-    points = [(at.level, at.min_sinr, at.min_sinr_db, *at.position_m.tolist()) for at in printed]
     files = (
         *write_figure(draw_figure2(table), *(folder / f"figure2{kind}" for kind in _KINDS)),
         table.write_csv(folder / "figure2.csv"),
-        write_csv(folder / "figure2-printed.csv", [heading, *points]),
+        write_csv(
+            folder / "figure2-printed.csv",
+            [heading, *[(at.level, at.min_sinr, at.min_sinr_db, *at.position_m.tolist()) for at in printed]],
+        ),
         *write_figure(draw_printed(table, printed), *(folder / f"figure2-printed{kind}" for kind in _KINDS)),
         *write_figure(draw_poses(scenario, poses), *(folder / f"poses{kind}" for kind in _KINDS)),
     )

@@ -132,8 +132,9 @@ def allowed_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) ->
     value = record.value(scenario, numbers)
     if record.mean_offset is None:
         return value
-    is_met = np.all(numbers["sinr"] >= scenario.node_requirements, axis=-1)
-    return np.asarray(np.where(is_met, value, -np.inf))
+    return np.asarray(
+        np.where(np.all(numbers["sinr"] >= scenario.node_requirements, axis=-1), value, -np.inf)
+    )
 
 
 def node_values(reception: Reception) -> FloatArray:

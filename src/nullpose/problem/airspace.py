@@ -22,8 +22,7 @@ def airspace_zones(airspace: Airspace) -> dict[str, FloatArray | IntArray]:
     """Build the fields of a domain for no-fly zones and fence, without those that change nothing."""
     zones: list[_Zone] = []
     for zone in airspace.no_fly:
-        is_flat = zone.shape == "box" and not area_m2(zone.outline_m) > 0.0
-        if is_flat or not airspace.reached(zone):
+        if (zone.shape == "box" and not area_m2(zone.outline_m) > 0.0) or not airspace.reached(zone):
             continue
         kind, edges = FORBIDDEN_POLYGON, _edges(zone.outline_m)
         if zone.centre_m is not None and zone.radius_m is not None:

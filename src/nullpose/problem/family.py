@@ -47,8 +47,10 @@ class Family:
 
     def at(self, position_m: FloatArray) -> Family:
         """Narrow the family to one position, (3,), metres, whether the airspace allows it or not."""
-        place = Domain(position_m, position_m, np.zeros((0, 3)), self.domain.keep_out_m)
-        return Family(**self.arrays._asdict(), **place._asdict())
+        return Family(
+            **self.arrays._asdict(),
+            **Domain(position_m, position_m, np.zeros((0, 3)), self.domain.keep_out_m)._asdict(),
+        )
 
     @property
     def required_ratios(self) -> Family:

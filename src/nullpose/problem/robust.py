@@ -42,8 +42,9 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
 
     def copied(point: int, point_m: FloatArray, rotation: FloatArray) -> int:
         """Index a copy, new or not."""
-        key = point_m.tobytes() + rotation.tobytes()
-        return copies.setdefault(key, (len(copies), point_m, rotation, point))[0]
+        return copies.setdefault(
+            point_m.tobytes() + rotation.tobytes(), (len(copies), point_m, rotation, point)
+        )[0]
 
     groups: dict[tuple[int, bytes], int] = {}
     numerator_point, denominator_of = [], []
@@ -63,8 +64,10 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         key = (group, disturbers_m.tobytes() + rotation.tobytes())
         if key not in groups:
             groups[key] = len(groups)
-            pairs = zip(disturbers.tolist(), disturbers_m, strict=True)
-            entries += [copied(point, point_m, rotation) for point, point_m in pairs]
+            entries += [
+                copied(point, point_m, rotation)
+                for point, point_m in zip(disturbers.tolist(), disturbers_m, strict=True)
+            ]
             weights.append(nominal.denominator_weight[bounds])
             start.append(len(entries))
         denominator_of.append(groups[key])
@@ -88,8 +91,9 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
 
 def point_uncertainty_m(scenario: Scenario) -> FloatArray:
     """Collect the radii of the balls in which each point of the family may be, (m,), metres."""
-    family = build_family(scenario, any_channel=True)
-    return _of_points(family, scenario, scenario.of_interferers("uncertainty_m"))
+    return _of_points(
+        build_family(scenario, any_channel=True), scenario, scenario.of_interferers("uncertainty_m")
+    )
 
 
 def _of_points(nominal: Family, scenario: Scenario, of_interferers: FloatArray) -> FloatArray:

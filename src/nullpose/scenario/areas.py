@@ -249,7 +249,6 @@ def unique(name: str, taken: set[str]) -> str:
     """Number a name that is taken, and take it; an empty one stays."""
     if not name:
         return ""
-    numbered = (f"{name} {n}" if n > 1 else name for n in count(1))
-    name = next(each for each in numbered if each not in taken)
+    name = next(each for each in (f"{name} {n}" if n > 1 else name for n in count(1)) if each not in taken)
     taken.add(name)
     return name

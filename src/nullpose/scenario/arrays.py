@@ -57,8 +57,10 @@ def _antennas(kinds: str) -> cached_property[GroundAntennas | None]:
         if all(point.antenna == "isotropic" and point.gain_dbi == 0.0 for point in points):
             return None
         axes = [unit_axis(point.antenna_axis) if point.leak < 1.0 else np.zeros(3) for point in points]
-        numbers = [(point.largest_gain, point.leak) for point in points]
-        return GroundAntennas(read_only(axes, (-1, 3)), *read_only(numbers, (-1, 2)).T)
+        return GroundAntennas(
+            read_only(axes, (-1, 3)),
+            *read_only([(point.largest_gain, point.leak) for point in points], (-1, 2)).T,
+        )
 
     return cached_property(stack)
 

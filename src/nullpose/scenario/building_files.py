@@ -65,7 +65,7 @@ def buildings_of(
 
     each, faults = call_each(areas_with_height, marked)
     found: list[tuple[Area, BuildingHeight]] = list(chain.from_iterable(each))
-    faults += _without_height([area for area, height in found if not height.by])
+    faults += _without_height([area.place for area, height in found if not height.by])
     raise_all(faults)
     total = sum(len(area.polygons) for area, _ in found)
     require(
@@ -75,20 +75,21 @@ def buildings_of(
         "streets of the scene",
     )
     tables = [table for area, height in found for table in _tables(area, height, rules, names)]
-    in_file = [area.place for area, _ in found for _ in area.polygons]
-    places = {f"buildings[{index}]": place for index, place in enumerate(in_file, first)}
+    places = {
+        f"buildings[{index}]": place
+        for index, place in enumerate([area.place for area, _ in found for _ in area.polygons], first)
+    }
     return tables, list(_notes(found, counts, gone)), places
 
 
-def _without_height(areas: Sequence[Area]) -> Iterator[Fault]:
-    """Yield, once for all, that buildings state no height and no rule says which to assume."""
-    for area in areas[:1]:
-        yield Fault(
-            area.place,
-            "it states no height (height, or building:levels with storey_height_m)"
-            f"{f', and so {len(areas) - 1} more' if areas[1:] else ''}; write storey_height_m = 3, or "
-            "missing_height_m = 9 or [4, 12] for those that state none, beside buildings_from",
-        )
+def _without_height(places: Sequence[str]) -> list[Fault]:
+    """List, once for all, that buildings state no height and no rule says which to assume."""
+    message = (
+        "it states no height (height, or building:levels with storey_height_m)"
+        f"{f', and so {len(places) - 1} more' if places[1:] else ''}; write storey_height_m = 3, or "
+        "missing_height_m = 9 or [4, 12] for those that state none, beside buildings_from"
+    )
+    return [Fault(place, message) for place in places[:1]]
 
 
 def _tables(area: Area, height: BuildingHeight, rules: Building, names: set[str]) -> Iterator[PlainTable]:

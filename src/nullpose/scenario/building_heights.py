@@ -24,7 +24,6 @@ _LENGTH = re.compile(
     r"([-+]?(?:\d+\.?\d*|\.\d+))\s*(m|metres?|meters?|ft|feet|foot|')?\s*(?:(\d+\.?\d*)\s*(?:\"|''|in))?",
     re.I,
 )
-_FEET = ("ft", "feet", "foot", "'")
 _LEVELS = ("building:levels", "levels", "num_floors")  # of OpenStreetMap and Overture
 _BASES = ("min_height", "building:min_level", "min_level", "min_floor")
 _LIKE_STATES = r"status|demoli|lifecycle|end_date|\bruin"
@@ -32,8 +31,6 @@ _LIKE_HEIGHTS = re.compile(
     rf"height|level|floor|store?y|stories|elev|h(?:oe|ö)he|(?:\b|_)alt(?:\b|_|i)|{_LIKE_STATES}", re.I
 )
 _LIKE_BASES = re.compile(rf"(?:\b|_)min(?:\b|_)|{_LIKE_STATES}", re.I)
-_OF_CORNERS = "altitudes of corners"
-_BELOW_GROUND = "underground"
 _REMEDY = (
     "correct it in the file, or write missing_height_m = 9 or [4, 12] beside buildings_from, which counts "
     "for all that cannot be read"
@@ -120,13 +117,13 @@ def _unread(feature: Feature, rules: Building, by: str) -> tuple[str, ...]:
         key
         for key in feature.properties
         if key not in read
-        and _BELOW_GROUND not in key
+        and "underground" not in key
         and _LIKE_HEIGHTS.search(key)
         and (by in (BY_LEVELS, ASSUMED) or _LIKE_BASES.search(key))
     )
     corners = shapely.get_coordinates(feature.geometry, include_z=True)
     is_high = by in (BY_LEVELS, ASSUMED) and bool(np.nan_to_num(corners[:, 2]).any())
-    return (*unread, *[_OF_CORNERS] * is_high)
+    return (*unread, *["altitudes of corners"] * is_high)
 
 
 def _length_m(feature: Feature, rules: Building, key: str) -> float:
@@ -138,7 +135,7 @@ def _length_m(feature: Feature, rules: Building, key: str) -> float:
     )
     text = "" if isinstance(value, bool | list | dict) else str(value).strip()
     number, unit, inches = match.groups() if (match := _LENGTH.fullmatch(text)) else ("nan", None, None)
-    is_feet = (unit or rules.height_unit or "m").lower() in _FEET
+    is_feet = (unit or rules.height_unit or "m").lower() in ("ft", "feet", "foot", "'")
     number = float(number)
     require(
         math.isfinite(number) and (is_feet if inches else is_plain or not unit),

@@ -27,10 +27,14 @@ def state_of(feature: Feature) -> str:
         feature: of a file.
     """
     properties = feature.properties
-    properties_of_state = map(properties.get, ("building", "building:part", "class", "location", "status"))
-    words = {str(value).lower() for value in properties_of_state}
-    flags = {key.lower() for key, value in properties.items() if value in ("yes", "true", True)}
-    words |= {flag.removeprefix("is_").removeprefix("has_") for flag in flags}
+    words = {
+        str(value).lower()
+        for value in map(properties.get, ("building", "building:part", "class", "location", "status"))
+    }
+    words |= {
+        flag.removeprefix("is_").removeprefix("has_")
+        for flag in {key.lower() for key, value in properties.items() if value in ("yes", "true", True)}
+    }
     if properties.keys().isdisjoint(("building", "building:part")):
         words |= {mark[1] for mark in map(MARK.fullmatch, properties) if mark}
     if any(re.fullmatch(_BELOW, str(properties.get(key))) for key in ("layer", "level")):

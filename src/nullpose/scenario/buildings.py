@@ -188,12 +188,11 @@ class Building(Section):
     @property
     def zone(self) -> NoFlyZone:
         """What the vehicle may not enter: the building at its highest, courtyards and clearance with it."""
-        solid = NoFlyZone.model_construct(
+        return NoFlyZone.model_construct(
             name=f"of the building {self.name}",
             polygon_m=tuple(map(tuple, self.outline_m.tolist())),
             altitude_m=(self.floor_m, self.heights_m[1]),
-        )
-        return solid.grown(self.clearance_m or 0.0)
+        ).grown(self.clearance_m or 0.0)
 
     def holds(self, position_m: Floats) -> bool:
         """Check if a position is inside it, not in a courtyard; below a floor on the ground too.

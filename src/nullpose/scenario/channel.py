@@ -122,8 +122,10 @@ class Channel(Section):
             yield (key,), f"has no meaning with {named}; remove it, or write {others}"
         for key in CHANNELS[self.model].keys:
             if key not in present | _DEFAULTS.keys() | {*_NUMBERS}:
-                description = type(self).model_fields[key].description
-                yield (key,), f"missing, but {named} needs it; add it: {description}"
+                yield (
+                    (key,),
+                    f"missing, but {named} needs it; add it: {type(self).model_fields[key].description}",
+                )
         if "environment" in _keys_of(self.model) and present.isdisjoint(("environment", *_NUMBERS)):
             instead = f"{', '.join(_NUMBERS[:-1])} and {_NUMBERS[-1]}"
             yield ("environment",), f"missing, but {named} needs it, or {instead}; add either"
@@ -214,14 +216,14 @@ class CustomChannel(Channel):
         return self.law.link()
 
 
-def _read_custom(value: object) -> object:
-    """Return the table of a channel of one's own, in Python; other values pass unchanged."""
-    return CustomChannel.model_construct(model=value.name, law=value) if isinstance(value, Custom) else value
-
-
 _OR_NAME = ByName(
     'a table such as { model = "power-law", exponent = 2.4 }, or the name of a model that needs no numbers',
     {name: {"model": name} for name, model in CHANNELS.items() if not model.keys},
 )
-NamedChannel = Annotated[Channel, BeforeValidator(_read_custom), _OR_NAME]
+_OF_LAW = BeforeValidator(
+    lambda value: (
+        CustomChannel.model_construct(model=value.name, law=value) if isinstance(value, Custom) else value
+    )
+)
+NamedChannel = Annotated[Channel, _OF_LAW, _OR_NAME]
 """The type of a point's key ``channel``: a table, or the name of a model."""

@@ -50,8 +50,10 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
     } | ({} if scenario.destination is None else {("destination",): scenario.destination})
     yield from key_faults(raw, ("nodes_from",), f"{ONLY_LOCAL}, in place of its own nodes; remove it or them")
     airspace: Airspace | None = scenario.airspace
-    listed = getattr(airspace, "no_fly", None) or ()
-    zones: dict[Place, NoFlyZone] = {("airspace", "no_fly", index): zone for index, zone in enumerate(listed)}
+    zones: dict[Place, NoFlyZone] = {
+        ("airspace", "no_fly", index): zone
+        for index, zone in enumerate(getattr(airspace, "no_fly", None) or ())
+    }
     buildings: dict[Place, Building] = {
         ("buildings", index): each for index, each in enumerate(scenario.buildings or ()) if each is not None
     }
@@ -283,8 +285,10 @@ def shared_names(tables: Mapping[Place, Any]) -> Iterator[tuple[Place, str]]:
         # Tables of a faulty scenario are not named by their place yet.
         name = f"{table.letter}{int(place[-1]) + 1}" if table.name == "" else table.name
         if name is not None and owners.setdefault(name, place) != place:
-            owner = path_of(owners[name])
-            yield (*place, "name"), f'got "{name}", the name of {owner} already; every name may be used once'
+            yield (
+                (*place, "name"),
+                f'got "{name}", the name of {path_of(owners[name])} already; every name may be used once',
+            )
 
 
 def _shared_places(points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:

@@ -66,7 +66,7 @@ def call_each(function: Callable[[_Raw], _Read], members: Iterable[_Raw]) -> tup
 
 
 def rejection(message: str) -> PydanticCustomError:
-    """Return the exception with which a validator refuses a value, in exactly these words."""
+    """Build the exception with which a validator refuses a value, in exactly these words."""
     # The message travels as context: braces in it (from user text) are then not taken for placeholders.
     return PydanticCustomError(_KIND, "{message}", {"message": message})
 
@@ -115,7 +115,7 @@ def _key(step: str) -> str:
 
 
 def scenario_error(error: ValidationError, data: object, source: str = "") -> ScenarioError:
-    """Return the ScenarioError that says the same, its faults in the order of the input.
+    """Convert errors of pydantic to a ScenarioError, its faults in the order of the input.
 
     Args:
         error: what pydantic collected, already in plain words.
@@ -133,7 +133,7 @@ def scenario_error(error: ValidationError, data: object, source: str = "") -> Sc
 
 
 def _ranks(place: Place, data: Any) -> list[int]:
-    """Return the rank of each step of a place among its siblings in the input."""
+    """Rank each step of a place among its siblings in the input."""
     ranks = []
     for step in place:
         # a range looks itself up at once, however long it is

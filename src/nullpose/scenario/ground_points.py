@@ -167,7 +167,7 @@ class GroundPoint(Section):
     )
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
-        """Return the faults of what is given of an antenna that has none, and of a profile."""
+        """List the faults of the keys of an antenna where there is none, and of a profile."""
         yield from super().faults(raw)
         for key, (noun, owner) in _PARTS.items():
             if getattr(self, key) is not None and self.antenna in GROUND_ANTENNAS.keys() - {owner}:

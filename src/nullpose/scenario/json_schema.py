@@ -65,8 +65,10 @@ def _rules(kind: type[Section]) -> list[PlainTable]:
     rules = [ways.schema() for ways in kind.ways if ways.most == 1 or needed.intersection(ways.groups[0])]
     silent = [name for name, record in RECORDS.items() if "nodes.power" not in record.needs]
     if issubclass(kind, Scenario):
-        powers = {"properties": {"nodes": {"items": POWER.schema()}}}
         rules.append(
-            {"if": {"properties": {"objective": {"enum": silent}}, "required": ["objective"]}, "else": powers}
+            {
+                "if": {"properties": {"objective": {"enum": silent}}, "required": ["objective"]},
+                "else": {"properties": {"nodes": {"items": POWER.schema()}}},
+            }
         )
     return rules

@@ -66,8 +66,7 @@ def nodes_of_csv(text: str) -> ReadNodes:
         ScenarioError: no CSV, a header that cannot be used, or no line below it.
     """
     reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
-    cells = ([cell.strip() for cell in row] for row in reader)
-    lines = ((reader.line_num, row) for row in cells if any(row))
+    lines = ((reader.line_num, row) for row in ([cell.strip() for cell in row] for row in reader) if any(row))
     try:
         line, header = next(lines, (1, []))
         rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused

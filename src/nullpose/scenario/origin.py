@@ -83,8 +83,9 @@ class Origin(Section):
         The altitude is over the ellipsoid, or over the sea if only that is known: in the local frame the two
         differ by less than a hundred-thousandth of a distance.
         """
-        height_m = self.alt_msl_m if self.alt_m is None else self.alt_m
-        return read_only([self.lat_deg, self.lon_deg, height_m or 0.0], (3,))
+        return read_only(
+            [self.lat_deg, self.lon_deg, (self.alt_msl_m if self.alt_m is None else self.alt_m) or 0.0], (3,)
+        )
 
     def place(self, position_m: ArrayLike) -> dict[str, float]:
         """Convert a position to a place on the Earth.
@@ -177,13 +178,15 @@ def _located(kind: type[Section], raw: object, origin: Origin | None) -> Any:
         if key == "altitude_m" or size_m(value) <= FARTHEST_M
     }
     if rings := getattr(sound, "courtyards_lat_lon_deg", None):
-        yards = (_located(kind, {"polygon_lat_lon_deg": ring}, origin) for ring in rings)
-        near["courtyards_m"] = [yard["polygon_m"] for yard in yards]
+        near["courtyards_m"] = [
+            yard["polygon_m"]
+            for yard in (_located(kind, {"polygon_lat_lon_deg": ring}, origin) for ring in rings)
+        ]
     return {**raw} | {key: near.get(key, _PLACEHOLDERS[key]) for key in wanted}
 
 
 def in_metres(table: object, origin: Origin) -> dict[str, Floats]:
-    """Return the metres that follow from what a table states on the Earth, by key.
+    """Convert the keys of a table that state places on the Earth to metres, by key.
 
     Args:
         table: a point, an airspace or a zone, in which None stands for what is not stated or at fault.
@@ -211,5 +214,5 @@ def in_metres(table: object, origin: Origin) -> dict[str, Floats]:
 
 
 def size_m(values: Floats) -> float:
-    """Return the greatest length of some vectors, or of one [m]."""
+    """Measure the greatest length of some vectors, or of one [m]."""
     return float(np.linalg.norm(np.atleast_2d(values), axis=-1).max())

@@ -10,7 +10,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
-from nullpose.errors import Fault, ScenarioError, checked
+from nullpose.errors import ScenarioError, checked
 from nullpose.files import PlainTable
 from nullpose.scenario.faults import call_each, path_of, raise_all, refusal, require
 from nullpose.scenario.origin import POINT_LISTS
@@ -87,7 +87,7 @@ def apply_overrides(scenario: Scenario, overrides: Iterable[str | Override]) -> 
         (10.0, 0.0)
     """
     data, changes = scenario.to_dict(), list(overrides)
-    faults = _apply_all(changes, data)
+    _, faults = call_each(lambda change: _apply(change, data), changes)
     try:
         changed = Scenario.from_dict(data)
     except ScenarioError as error:
@@ -107,14 +107,9 @@ def overridden(tables: PlainTable, overrides: Sequence[str | Override]) -> Plain
         ScenarioError: with every path that does not exist.
     """
     data = deepcopy(dict(tables))
-    raise_all(_apply_all(overrides, data), _source(overrides))
+    _, faults = call_each(lambda change: _apply(change, data), overrides)
+    raise_all(faults, _source(overrides))
     return data
-
-
-def _apply_all(overrides: Sequence[str | Override], data: PlainTable) -> list[Fault]:
-    """Set the values in a raw scenario; return the faults of those that cannot be set."""
-    _, faults = call_each(lambda override: _apply(override, data), overrides)
-    return faults
 
 
 def _source(overrides: Sequence[str | Override]) -> str:
@@ -126,9 +121,9 @@ def _apply(raw: str | Override, data: PlainTable) -> None:
     override = parse_override(raw) if isinstance(raw, str) else raw
     path = override.path
     require(_PATH.fullmatch(path), path, "this is not a path")
-    found = (step.groups(default="") for step in _STEP.finditer(path))
     steps: list[str | int] = [
-        int(index) if index else double or single or bare for double, single, bare, index in found
+        int(index) if index else double or single or bare
+        for double, single, bare, index in (step.groups(default="") for step in _STEP.finditer(path))
     ]
     _assign(Scenario, data, steps, deepcopy(plain(override.value)), path)
     if steps[0] == "antenna" and len(steps) > 1 and steps[1] not in ("normalise", "gain_dbi", "harmonics"):

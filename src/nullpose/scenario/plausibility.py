@@ -105,13 +105,15 @@ def doubts(scenario: Scenario) -> tuple[Fault, ...]:
         for index, point in enumerate(getattr(scenario, kind))
     } | ({} if scenario.destination is None else {"destination": scenario.destination})
     metric_m = [point.position_m for point in points.values() if point.lat_deg is None]
-    degrees = close_to_degrees(scenario.origin, metric_m, "lat_deg, lon_deg and an altitude")
     return (
         *_powers(scenario, points),
         *_noises(scenario, points),
         *_gains(points),
         *_patterns(scenario),
-        *(Fault("position_m", message) for message in degrees),
+        *(
+            Fault("position_m", message)
+            for message in close_to_degrees(scenario.origin, metric_m, "lat_deg, lon_deg and an altitude")
+        ),
         *_altitudes(points),
     )
 

@@ -111,8 +111,7 @@ def may_hold_a_position(airspace: Airspace, centres_m: Floats) -> bool:
     apart_m = np.linalg.norm(centres_m - np.clip(centres_m, lower_m, upper_m), axis=1)
     near_m = centres_m[apart_m < airspace.keep_out_m]
     outlines = [airspace.geofence_outline_m, *(zone.outline_m for zone in airspace.no_fly)]
-    borders = sum(map(len, outlines), len(near_m))
-    most = min(60_000, _MOST_DISTANCES // max(1, borders))
+    most = min(60_000, _MOST_DISTANCES // max(1, sum(map(len, outlines), len(near_m))))
     position_m, is_sure = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, near_m, at), most)
     return position_m is not None or not is_sure
 
@@ -136,8 +135,7 @@ def _reach_faults(
             return np.asarray(np.minimum(inside, _clearance_m(airspace, centres_m, at)))
 
         lower_m = np.maximum(airspace.lower_m, centre_m - total_m)
-        upper_m = np.minimum(airspace.upper_m, centre_m + total_m)
-        met_m, _ = find_position(lower_m, upper_m, clearance_m)
+        met_m, _ = find_position(lower_m, np.minimum(airspace.upper_m, centre_m + total_m), clearance_m)
         if met_m is not None:
             yield (
                 (*place, "uncertainty_m") if reach_m else ("receiver", "position_error_m"),

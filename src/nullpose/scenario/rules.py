@@ -24,11 +24,11 @@ class Rule:
     """What a value must be, as the metadata of an annotated type."""
 
     def read(self, value: object) -> Any:
-        """Return a raw value as its type takes it, or raises the fault that says what is wrong with it."""
+        """Convert a raw value to what its type takes; raise the fault that says what is wrong with it."""
         return value
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
-        """Return the JSON Schema, given that of the type."""
+        """Write the JSON Schema of the rule from that of the type."""
         return inner
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -65,7 +65,7 @@ class Limits(Rule):
         return f"{self.noun} from {self.low:g} to {self.high:g}"
 
     def read(self, value: object) -> float:
-        """Return the number, or raises the fault that says what is wrong with it."""
+        """Check a number; raise the fault that says what is wrong with it."""
         value = plain(value)
         if isinstance(value, bool) or not isinstance(value, int | float):
             is_quoted = isinstance(value, str) and _NUMBER.fullmatch(value)
@@ -84,7 +84,7 @@ class Count(Limits):
     """A whole number between two limits; used as the metadata of an annotated int."""
 
     def read(self, value: object) -> int:
-        """Return the whole number, or raises the fault that says what is wrong with it."""
+        """Check a whole number; raise the fault that says what is wrong with it."""
         number = super().read(value)
         if not number.is_integer():
             raise rejection(f"got {described(value)}, must be a whole number: {self.allowed} ({self.hint})")
@@ -104,7 +104,7 @@ class Choice(Rule):
     words: Collection[str] = field(hash=False)
 
     def read(self, value: object) -> str:
-        """Return the word, or raises the fault that names the words and the one nearest."""
+        """Check a word; raise the fault that names the words and the one nearest."""
         if isinstance(value, str) and value in self.words:
             return value
         allowed = " or ".join(f'"{word}"' for word in self.words)
@@ -130,7 +130,7 @@ class ByName(Rule):
     tables: Mapping[str, object] = field(hash=False)
 
     def read(self, value: object) -> Any:
-        """Return the table, or raises the fault that names those that have a name."""
+        """Look up a table by its name; raise the fault that lists the names."""
         return self.tables[Choice(self.noun, self.tables).read(value)] if isinstance(value, str) else value
 
     def schema(self, inner: JsonSchemaValue) -> JsonSchemaValue:
@@ -153,7 +153,7 @@ class ListOf(Rule):
     most: int
 
     def read(self, value: object) -> list[object]:
-        """Return the members, or raises the fault that says what is wrong with the list."""
+        """Check the members of a list; raise the fault that says what is wrong with it."""
         value = plain(value)
         if not isinstance(value, list | tuple) or not self.fewest <= len(value) <= self.most:
             raise rejection(f"got {described(value)}, must be {self.noun}")
@@ -183,7 +183,7 @@ class NumberOr(Rule):
     several: TypeAdapter[Any]
 
     def read(self, value: object) -> Any:
-        """Return the number or the list, or raises the fault that says what is wrong with it."""
+        """Check a number or a list; raise the fault that says what is wrong with it."""
         value = plain(value)
         is_list = isinstance(value, list | tuple)
         return self.several.validate_python(value) if is_list else self.number.read(value)

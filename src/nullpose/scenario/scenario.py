@@ -284,9 +284,9 @@ class Scenario(Section, PointArrays):
     @property
     def is_uncertain(self) -> bool:
         """Whether any position, or the pose that the vehicle holds, is known only up to an error."""
-        points = (*self.jammers, *self.eavesdroppers)
-        errors = (self.receiver.attitude_error_deg, self.receiver.position_error_m)
-        return any(errors) or any(point.uncertainty_reach_m > 0.0 for point in points)
+        return any((self.receiver.attitude_error_deg, self.receiver.position_error_m)) or any(
+            point.uncertainty_reach_m > 0.0 for point in (*self.jammers, *self.eavesdroppers)
+        )
 
     @property
     def axis_band(self) -> tuple[float, float]:

@@ -92,11 +92,11 @@ class Section(BaseModel):
 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
-        """Return the raw table with what follows from its own values filled in."""
+        """Fill in the keys of a raw table that follow from its own values."""
         return data
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
-        """Return the faults between several values of a table; those with a fault of their own are None.
+        """List the faults between several values of a table; those with a fault of their own are None.
 
         Args:
             raw: the raw table, as it was before anything was filled in.
@@ -113,8 +113,10 @@ class Section(BaseModel):
             raise rejection(f"got {described(data)}, must be {cls.heading()}")
         for key, value in data.items():
             if isinstance(value, list | tuple) and len(value) > MOST_MEMBERS:
-                too_long = f"there are more than {MOST_MEMBERS} members, the most that are allowed"
-                raise collected(cls.__name__, [((key,), too_long)])
+                raise collected(
+                    cls.__name__,
+                    [((key,), f"there are more than {MOST_MEMBERS} members, the most that are allowed")],
+                )
         fields = cls.model_fields
         raw = {key: value for key, value in data.items() if key in fields}
         present = frozenset(key for key, value in raw.items() if value is not None)

@@ -127,5 +127,6 @@ def cut(polygon: Polygon, box: Polygon) -> list[Polygon]:
     if box.covers(polygon.envelope):
         return [polygon]
     # In metres a long edge of the box would leave the parallel, and might cross other edges
-    inside = polygon & shapely.segmentize(box, _CUT_DEG)
-    return [part for part in parts_of(inside) if part.geom_type == "Polygon"]
+    return [
+        part for part in parts_of(polygon & shapely.segmentize(box, _CUT_DEG)) if part.geom_type == "Polygon"
+    ]

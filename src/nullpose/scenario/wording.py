@@ -47,8 +47,7 @@ def described(value: object) -> str:
         case bool(truth):
             return f"the truth value {str(truth).lower()}"
         case float(number):
-            words = {"nan": "NaN", "inf": "infinity", "-inf": "minus infinity"}
-            return words.get(repr(number), repr(number))
+            return {"nan": "NaN", "inf": "infinity", "-inf": "minus infinity"}.get(repr(number), repr(number))
         case int(number):
             # Very long integers cannot be printed in decimal by default, and nobody would read them.
             return str(number) if abs(number) < 10**15 else f"an integer beyond {'-' * (number < 0)}1e+15"
@@ -56,8 +55,9 @@ def described(value: object) -> str:
             shown = text if len(text) <= _LONGEST_QUOTE else text[: _LONGEST_QUOTE - 3] + "..."
             return f'the text "{printable(shown)}"' if text else "an empty text"
         case list() | tuple() as values:
-            sizes = {0: "an empty list", 1: "a list of one value"}
-            return sizes.get(len(values), f"a list of {len(values)} values")
+            return {0: "an empty list", 1: "a list of one value"}.get(
+                len(values), f"a list of {len(values)} values"
+            )
         case Mapping():
             return "a table"
         case date() | time():

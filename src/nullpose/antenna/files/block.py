@@ -170,8 +170,7 @@ def gridded(block: Block, source: str) -> PatternTable:
         apart = np.abs(gain - block.gain) > SAME_FIELD * block.gain + 0.1 * _WEAK * np.max(block.gain)
         _refuse_row(block, apart, "has a gain and fields that contradict each other")
     _refuse_row(block, gain < 0.0, "has a gain below 0; is a column in decibels read as linear?")
-    pole = (rows == 0) | (rows == len(thetas) - 1)
-    other = gain[first[rows, np.where(pole, 0, columns)]]
+    other = gain[first[rows, np.where((rows == 0) | (rows == len(thetas) - 1), 0, columns)]]
     apart = np.maximum(gain, other) > _TWICE * np.minimum(gain, other)
     apart &= np.abs(gain - other) > _WEAK * np.max(gain)
     _refuse_row(

@@ -28,8 +28,6 @@ _TOTAL = re.compile(r"abs\((dir|gain|real|rlzd|grlz|e\)).*")
 _QUANTITIES = {"di": "directivity", "ga": "gain", "re": "realised gain", "rl": "realised gain"}
 _QUANTITIES |= {"gr": "realised gain", "e)": "field"}
 _DECIBELS = {"db": 0.0, "dbi": 0.0, "dbd": DBD}
-_OTHER_PARTS = "Its parts along theta and phi do not add up to its total; the total is read."
-_LINEAR = ("", "lin.", "1")
 _AXES = {"zaxis": (0.0, 0.0, 1.0), "xaxis": (1.0, 0.0, 0.0)}
 _UNALIGNED = 1e-6
 _TOLERANCE = 1.01  # of powers that must rise from radiated to stimulated
@@ -122,7 +120,7 @@ def read_cst(lines: Lines) -> Iterator[Block]:
     if columns.keys() >= {*_PARTS, *phases}:
         parts = np.stack([power[part] for part in _PARTS], axis=1)
         if np.mean(np.abs(np.sum(parts, axis=1) - power[total]) > SAME_FIELD * power[total]) > 0.5:
-            notes = (_OTHER_PARTS,)
+            notes = ("Its parts along theta and phi do not add up to its total; the total is read.",)
         else:
             field = np.sqrt(parts) * np.exp(1j * np.radians(values[:, [columns[phase] for phase in phases]]))
     yield Block(
@@ -143,5 +141,5 @@ def _power(values: FloatArray, unit: str, quantity: str, line: int) -> FloatArra
     if unit in _DECIBELS:
         return from_db(values + _DECIBELS[unit])
     allowed = f"one of [{'], ['.join(_DECIBELS)}] or linear, []"
-    require(unit in _LINEAR, f"got a {quantity} in [{unit}], must be in {allowed}", line)
+    require(unit in ("", "lin.", "1"), f"got a {quantity} in [{unit}], must be in {allowed}", line)
     return values

@@ -12,7 +12,6 @@ from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numb
 
 _ANGLES = {"angle_deg": (0.0, 1.0), "elevation_deg": (90.0, -1.0)}  # to that from the axis: offset and sign
 _FIELDS = (("re_theta", "im_theta"), ("re_phi", "im_phi"))
-_IN_DB = ("db(", "gain_dbi")
 _GAINS = {"gain_dbi": "gain"} | {
     name: quantity
     for total, quantity in (("gain", "gain"), ("realizedgain", "realised gain"), ("dir", "directivity"))
@@ -56,7 +55,7 @@ def read_csv(lines: Lines) -> Iterator[Block]:
         yield Block(
             theta_deg=part["theta_deg"],
             phi_deg=part["phi_deg"],
-            gain=from_db(gain) if total.startswith(_IN_DB) else gain,
+            gain=from_db(gain) if total.startswith(("db(", "gain_dbi")) else gain,
             field=field,
             lines=np.array([lines[1 + row][0] for row in rows.tolist()]),
             frequency_hz=float(frequency_hz),

@@ -28,7 +28,6 @@ _LIKE_ZENITH_DEG = 30.0  # a beam is taken for one measured from the zenith so n
 _WIDEST_DEG = 10.0  # between two rows of a cut
 _NEGATIVE_DB = 0.05
 _NUMBER = re.compile(r"(?!GAIN|FREQ|HORIZ|VERT|MECH)[A-Z].* ([-+]?\d+\.?\d*)", re.IGNORECASE)
-_CLOCKWISE = "The file's azimuths grow clockwise seen from above; they are turned the other way round."
 _CAVEAT = (
     "it is an estimate by the sum of losses: its horizontal cut changes by {:.1f} dB, and two cuts do not "
     "tell what is between them"
@@ -136,7 +135,7 @@ def _estimate(front_db: FloatArray, back_db: FloatArray, round_db: FloatArray) -
     sum_db = round_db + down_db - ahead * front_db[90] - (1.0 - ahead) * back_db[90]
     gain = from_db(-np.maximum(sum_db, np.minimum(round_db, down_db)))
     gain[[0, -1]] = np.mean(gain[[0, -1]], axis=1, keepdims=True)  # where all azimuths are one direction
-    return gain, _CLOCKWISE
+    return gain, "The file's azimuths grow clockwise seen from above; they are turned the other way round."
 
 
 def _frequency_hz(text: str) -> tuple[float | None, str]:
@@ -159,12 +158,11 @@ def _loss_db(lines: Lines, keys: dict[str, tuple[int, str]], name: str) -> Float
     angle, order, which = np.unique(np.round(values[:, 0] % 360.0, 3), return_index=True, return_inverse=True)
     gaps = np.diff(angle, append=angle[0] + 360.0)
     far = f"is too far from the next: rows go all round, at most {_WIDEST_DEG:g} degrees apart"
-    faults = [
+    for wrong, why in [
         (values[:, 1] < -_NEGATIVE_DB, "has a loss below 0; losses are positive"),
         (values[:, 1] != values[order, 1][which], "is given twice, with other losses; keep one"),
         (np.isin(np.arange(len(values)), order[gaps > _WIDEST_DEG]), far),
-    ]
-    for wrong, why in faults:
+    ]:
         for i in np.flatnonzero(wrong)[:1]:
             refuse(f"the cut {name} at {values[i, 0]:g} degrees {why}", lines[at + 1 + i][0])
     return np.asarray(np.interp(np.arange(360.0), angle, values[order, 1], period=360.0))
