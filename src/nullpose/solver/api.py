@@ -187,9 +187,8 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
     if band == (0.0, 1.0):
         kernel(family.arrays, position, axis)
     else:
-        fixed = family.at(position)
         axis = solve_and_prove(
-            fixed, [AxisField.within(*band)], SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)
+            family.at(position), [AxisField.within(*band)], SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)
         ).incumbent.axis
     return Pose.of_airframe(scenario, position, axis)
 

@@ -40,9 +40,11 @@ class ArraySearch(EpigraphSearch):
         family = build_family(scenario, any_channel=True)
         super().__init__(family, float(array.elements), seed)
         places = element_positions(array.elements, array.layout, array.spacing_wavelengths)
-        strengths_m2 = np.concatenate([family.numerator_weight, family.denominator_weight])
         self.problem = ArrayProblem(
-            family.arrays, strengths_m2, len(scenario.nodes), np.ascontiguousarray(places[:, :2])
+            family.arrays,
+            np.concatenate([family.numerator_weight, family.denominator_weight]),
+            len(scenario.nodes),
+            np.ascontiguousarray(places[:, :2]),
         )
         self.elements = array.elements
         # by how many equal rotations the elements come to lie on each other
@@ -61,8 +63,9 @@ class ArraySearch(EpigraphSearch):
         Args:
             upright: the dipole's pose, and the work to find it.
         """
-        yaws = np.linspace(0.0, 2.0 * math.pi / self.symmetry, _YAWS)
-        states = np.column_stack([np.tile(upright.position_m, (_YAWS, 1)), yaws])
+        states = np.column_stack(
+            [np.tile(upright.position_m, (_YAWS, 1)), np.linspace(0.0, 2.0 * math.pi / self.symmetry, _YAWS)]
+        )
         self.climb(states[np.argmax(self.judge(states))])
         self.starts, self.evaluations = self.starts + upright.starts, self.evaluations + upright.evaluations
 

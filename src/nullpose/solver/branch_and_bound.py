@@ -88,8 +88,7 @@ class BranchAndBound(ABC):
                     return f"the node limit of {self.limits.node_limit}"
                 if workers.stuck:
                     return "shadows of buildings that meet in one point"
-                kernel = self.exclusion_kernel(gap)
-                self.nodes += workers.work(kernel, self.chunk, until - self.nodes, pool)
+                self.nodes += workers.work(self.exclusion_kernel(gap), self.chunk, until - self.nodes, pool)
                 improved = [self.improve(*pose) for pose in workers.better()]
                 if improved and not any(improved):
                     self.rounding *= 10.0

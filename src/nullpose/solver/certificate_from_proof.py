@@ -56,7 +56,6 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
     mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0))
     point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
     uses_ball = rows[:, node.NU] > 0.0
-    is_free = np.isin(test, (WORLD, TOWARDS))
     return Leaves(
         box=_parts(
             proof.root[0], proof.root[1], rows[:, node.CENTRE : node.HALF], rows[:, node.HALF : node.LEVEL]
@@ -68,7 +67,7 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
         mix=mix,
         mixes=mixes,
         sides=np.where(rows[:, [node.FACE]] >= 0.0, rows[:, node.SIDE : node.SIDE + 2], 0.0),
-        band=np.where(is_free, rows[:, node.BAND], 0.0),
+        band=np.where(np.isin(test, (WORLD, TOWARDS)), rows[:, node.BAND], 0.0),
         ball=np.where(uses_ball, rows[:, node.BALL], -1).astype(np.int64),
         ball_multiplier=np.where(uses_ball, rows[:, node.NU], 0.0),
     )
@@ -101,8 +100,7 @@ def _of_profile(proof: Proof) -> Leaves:
 def _order_multipliers(weights: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
     """Order multipliers, (l, n), so that those that count come first; return which they are and how many."""
     order = np.argsort(weights <= 0.0, axis=1, kind="stable")
-    count = np.maximum(1, np.sum(weights > 0.0, axis=1))
-    return order, np.take_along_axis(weights, order, axis=1), count
+    return order, np.take_along_axis(weights, order, axis=1), np.maximum(1, np.sum(weights > 0.0, axis=1))
 
 
 def _parts(low: FloatArray, high: FloatArray, centre: FloatArray, half: FloatArray) -> IntArray:

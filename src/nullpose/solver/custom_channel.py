@@ -29,8 +29,6 @@ from nullpose.solver.proof import prove
 from nullpose.solver.rigour import bound_above
 from nullpose.solver.solve_and_prove import Outcome
 
-UNBOUNDED = "a channel of one's own states no bounds on its change"
-NO_SIDES = "the airspace has no sides, and nothing else bounds how far away a pose can be as good"
 _AT_POSITION = SearchSettings(coarse=1, polished=1, rounds=1, patience=1, landmarks=0)
 _SHARE = 0.2  # of the gap asked for, for the proof of each box
 _AROUND = 10.0  # keep-out radii around the points in which positions are drawn
@@ -48,8 +46,10 @@ class CustomSearch(PositionSearch):
 
     def __init__(self, scenario: Scenario, family: Family, fields: Sequence[AxisField], seed: int) -> None:
         super().__init__(self.value_at, family, seed)
-        points = (*scenario.nodes, *scenario.interferers, *scenario.destinations)
-        laws = ((j, scenario.custom_law(point)) for j, point in enumerate(points))
+        laws = (
+            (j, scenario.custom_law(point))
+            for j, point in enumerate((*scenario.nodes, *scenario.interferers, *scenario.destinations))
+        )
         self.laws = {j: law for j, law in laws if law is not None}
         self.fields = fields
 
@@ -176,9 +176,13 @@ def solve_custom(
 def _bounded(search: CustomSearch, options: SolveOptions, deadline: float) -> tuple[float | None, int, str]:
     """Halve boxes until the gap is closed; return the bound, the boxes and why it stopped short."""
     if not all(law.is_bounded for law in search.laws.values()):
-        return None, 0, UNBOUNDED
+        return None, 0, "a channel of one's own states no bounds on its change"
     if not np.all(np.isfinite(corners_m := search.root())):
-        return None, 0, NO_SIDES
+        return (
+            None,
+            0,
+            "the airspace has no sides, and nothing else bounds how far away a pose can be as good",
+        )
     order = count()
     heap = [(-math.inf, next(order), *corners_m)]
     boxes, reason = 0, ""
@@ -195,10 +199,10 @@ def _bounded(search: CustomSearch, options: SolveOptions, deadline: float) -> tu
             halves = []
             for ends_m in ((low_m, lower_m), (upper_m, high_m)):
                 left_s = max(1e-3, deadline - limit_clock())
-                limits = replace(
-                    options, gap=_SHARE * target, time_limit_s=left_s, threads=1, on_progress=None
+                bound, examined = search.bound_of(
+                    *ends_m,
+                    replace(options, gap=_SHARE * target, time_limit_s=left_s, threads=1, on_progress=None),
                 )
-                bound, examined = search.bound_of(*ends_m, limits)
                 halves.append((-min(bound, -heap[0][0]), next(order), *ends_m))
                 boxes += examined
             heapq.heappush(heap, halves[1])  # first: an interrupt between both leaves the whole box

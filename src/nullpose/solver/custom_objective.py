@@ -21,7 +21,6 @@ from nullpose.solver.multistart import multistart
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.solve_and_prove import Outcome
 
-_UNBOUNDED = "an objective that is a function in Python is searched, and nothing is proved of it"
 _DRAWN, _CLIMBED = 2000, 6  # states of a search, each time
 _LOWERED = (0.3, 1e-2, 0.0)  # shares by which single SINRs are lowered, the last from the best state
 _STEP = 1e-6  # of differences
@@ -53,8 +52,9 @@ class ObjectiveSearch(EpigraphSearch):
         means = [self.family.changed(shares=equal, offset=offset) for offset in (0.0, 1.0)]
         self.known = [multistart(each, field, seed=seed) for each in (self.family, *means)]
         starts = [self._state(each.position_m, each.axis) for each in self.known]
-        shares = np.array([[1.0], [1.0 - _SHARE]])
-        self.origin, less = scenario.objective.values_of(shares * sinr(scenario, *np.split(starts[0], 2)))
+        self.origin, less = scenario.objective.values_of(
+            np.array([[1.0], [1.0 - _SHARE]]) * sinr(scenario, *np.split(starts[0], 2))
+        )
         self.unit = (self.origin - less) / _SHARE or 1.0
         for start in starts:
             self.climb(start)
@@ -150,4 +150,8 @@ def solve_by_function(scenario: Scenario, fields: Sequence[AxisField], options: 
         starts=sum(search.starts for search in searches),
         evaluations=sum(search.evaluations for search in searches),
     )
-    return Outcome(incumbent=found, chosen=chosen, reason=_UNBOUNDED)
+    return Outcome(
+        incumbent=found,
+        chosen=chosen,
+        reason="an objective that is a function in Python is searched, and nothing is proved of it",
+    )

@@ -115,15 +115,14 @@ class LocalSearch(ABC):
         from nullpose.solver.kernels.search.domain import walls
 
         low_m, high_m = self.family.low_m, self.family.high_m
-        position_m = np.clip(position_m, low_m, high_m)
         for _ in range(_REPAIRS):
+            position_m = np.clip(position_m, low_m, high_m)
             distance_m, outwards = walls(self.family.domain, position_m)
             if not np.any(distance_m < 0.0):
                 break
             worst = int(np.argmin(distance_m))
             position_m = position_m + (_CLEAR_M - distance_m[worst]) * outwards[worst]
-            position_m = np.clip(position_m, low_m, high_m)
-        return position_m
+        return np.clip(position_m, low_m, high_m)
 
 
 class EpigraphSearch(LocalSearch):

@@ -104,8 +104,10 @@ class ManySolutions:
             "boxes": self.boxes,
             "reason": self.reason,
         }
-        cells = zip(*(values.ravel().tolist() for values in columns.values()), strict=True)
-        return [dict(zip(columns, row, strict=True)) for row in cells]
+        return [
+            dict(zip(columns, row, strict=True))
+            for row in zip(*(values.ravel().tolist() for values in columns.values()), strict=True)
+        ]
 
     @classmethod
     def blank(cls, scenes: int, airframes: int) -> ManySolutions:
@@ -173,8 +175,9 @@ def solve_many(
     flown = [scenarios[0].model_copy(update={"airframe": each}) for each in airframes or ()]
     for row, scenario in enumerate(scenarios):
         vehicles, of_scene = flown or [scenario], limits.of(scenario)  # of which the airframe counts
-        outcomes = _by_vehicle(scenario, [each.airframe for each in vehicles], of_scene)
-        for column, (vehicle, outcome) in enumerate(zip(vehicles, outcomes, strict=True)):
+        for column, (vehicle, outcome) in enumerate(
+            zip(vehicles, _by_vehicle(scenario, [each.airframe for each in vehicles], of_scene), strict=True)
+        ):
             if outcome is None:
                 results.reason[row, column] = NOWHERE
             else:

@@ -111,8 +111,7 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     of_pairs = ratios.numerator_point[ratios.pairs[:, 1]]
     numbers = set((of_pairs if len(of_pairs) else ratios.denominator_point).tolist())
     interferers = ratios.points_m[sorted(numbers)[:most]]
-    centre = nodes.sum(axis=0, keepdims=True) / len(nodes)
-    over = np.concatenate([centre, interferers, nodes[:most]])
+    over = np.concatenate([nodes.sum(axis=0, keepdims=True) / len(nodes), interferers, nodes[:most]])
     over[:, 2] = np.maximum(floor_m, over[:, 2] + clear_m)
     over[0, 2] = floor_m
     beside = []
@@ -198,8 +197,9 @@ def climb(
         mu: first barrier weight, in units of the log ratio.
         steps: most steps.
     """
-    pose = (position_m.copy(), axis.copy())
-    return _run(family, axis_field, np.empty((0, 3)), 0, _NO_SEARCH, (mu,), steps, pose)
+    return _run(
+        family, axis_field, np.empty((0, 3)), 0, _NO_SEARCH, (mu,), steps, (position_m.copy(), axis.copy())
+    )
 
 
 def _run(

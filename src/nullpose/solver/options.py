@@ -98,8 +98,7 @@ class SolveOptions:
             scenario: what is to be solved.
             gap: the gap unless one is asked for; without it the scenario's default.
         """
-        usual = default_gap_of(scenario) if gap is None else gap
-        target = usual if self.gap is None else self.gap
+        target = (default_gap_of(scenario) if gap is None else gap) if self.gap is None else self.gap
         return replace(self, gap=target, of_rate=Quantity.of(scenario).is_rate)
 
     @property

@@ -47,8 +47,7 @@ def solve_pattern(scenario: Scenario, family: Family, options: SolveOptions) -> 
     """
     antenna = scenario.antenna_record
     assert not antenna.is_quadratic, "the caller asks"
-    reach = reach_of(scenario, antenna)
-    return PatternRun(family, antenna, reach, options).outcome()
+    return PatternRun(family, antenna, reach_of(scenario, antenna), options).outcome()
 
 
 def reach_of(scenario: Scenario, antenna: PatternAntenna) -> AttitudeReach:
@@ -123,8 +122,7 @@ class PatternRun(BranchAndBound):
             nodes=self.nodes,
             is_even=self.reach.even,
         )
-        proofs = (proof,) if len(self.leaves) else ()
-        cells = 0 if proofs else self.nodes
+        cells, proofs = (0, (proof,)) if len(self.leaves) else (self.nodes, ())
         return Outcome(incumbent=found, upper_bound=bound, reason=reason, proofs=proofs, cells=cells)
 
     @property
@@ -139,8 +137,7 @@ class PatternRun(BranchAndBound):
         try:
             if self.proved <= self.value * (1.0 + target):
                 return ""
-            until = began + _DIRECT_SHARE * limits.time_limit_s
-            reason = self._stage(target, until)
+            reason = self._stage(target, began + _DIRECT_SHARE * limits.time_limit_s)
             for gap in _GAPS if reason and self.nodes < self.node_limit else ():
                 if gap > target and self._stage(gap, self.deadline):
                     break

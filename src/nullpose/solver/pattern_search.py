@@ -126,16 +126,19 @@ class PatternSearch(EpigraphSearch):
             return np.asarray(Rotation.random(count, random_state=self.rng).as_matrix())
         tilt = tilt_max_rad * self.rng.uniform(size=count) * self.rng.choice([0.0, 1.0], size=count)
         yaw, towards = self.rng.uniform(-math.pi, math.pi, (2, count))
-        body = Rotation.from_euler("ZYZ", np.stack([towards, tilt, yaw - towards], axis=1)).as_matrix()
-        return np.asarray(body @ Rotation.from_euler("y", self.reach.mount_rad).as_matrix())
+        return np.asarray(
+            Rotation.from_euler("ZYZ", np.stack([towards, tilt, yaw - towards], axis=1)).as_matrix()
+            @ Rotation.from_euler("y", self.reach.mount_rad).as_matrix()
+        )
 
     def _aim_nulls(self, positions_m: FloatArray) -> FloatArray:
         """Draw rotations that have the strongest interferer, or the first point, where the gain is low."""
         weights = self.family.denominator_weight
         strongest = self.family.denominator_point[np.argmax(weights)] if len(weights) else 0
         to_strongest_m = self.family.points_m[strongest] - positions_m
-        turns = self.rng.uniform(-math.pi, math.pi, len(to_strongest_m))
-        spins = Rotation.from_rotvec(np.outer(turns, [0.0, 0.0, 1.0])).as_matrix()
+        spins = Rotation.from_rotvec(
+            np.outer(self.rng.uniform(-math.pi, math.pi, len(to_strongest_m)), [0.0, 0.0, 1.0])
+        ).as_matrix()
         chosen = self.lowest[self.rng.integers(len(self.lowest), size=len(to_strongest_m))]
         return np.asarray(_frames(to_strongest_m) @ spins @ _frames(chosen).transpose(0, 2, 1))
 

@@ -54,8 +54,7 @@ class PositionSearch(LocalSearch):
         from nullpose.solver.kernels.search.domain import contains
 
         self.evaluations += len(states)
-        allowed = (contains(self.family.domain, state) for state in states)
-        pairs = zip(states, allowed, strict=True)
+        pairs = zip(states, (contains(self.family.domain, state) for state in states), strict=True)
         return np.array([self.objective(state) if inside else -math.inf for state, inside in pairs])
 
     def climb(self, state: FloatArray) -> float:
@@ -66,14 +65,15 @@ class PositionSearch(LocalSearch):
         value, size_m = self.take(state), _SIZE * float(np.max(np.diff(self.box(self.best), axis=0)))
         self.starts += 1
         for _ in range(_RESTARTS):
-            corners_m = state + np.vstack([np.zeros(3), size_m * np.eye(3)])
             found = minimize(
                 lambda position_m: -self.judge(position_m[None])[0],
                 state,
                 method="Nelder-Mead",
                 bounds=list(zip(low_m, high_m, strict=True)),
                 options={
-                    "initial_simplex": np.clip(corners_m, low_m, high_m),
+                    "initial_simplex": np.clip(
+                        state + np.vstack([np.zeros(3), size_m * np.eye(3)]), low_m, high_m
+                    ),
                     "xatol": 1e-9,
                     "fatol": 1e-13,
                     "maxfev": 800,

@@ -103,15 +103,13 @@ class Sensitivity:
             {"m": self.sizes.jammers_m},
             {},
         ]
-        table: PlainTable = {}
-        for kind, size in zip(_KINDS, sizes, strict=True):
-            value = getattr(self, kind)
-            has_db = value > 0.0 and not self.quantity.is_rate
-            table[kind] = size | {
-                "value": value,
-                "value_db": self.quantity.in_unit(value) if has_db else None,
-            }
-        return table
+        values = [getattr(self, kind) for kind in _KINDS]
+        has_db = [value > 0.0 and not self.quantity.is_rate for value in values]
+        values_db = [self.quantity.in_unit(x) if has else None for x, has in zip(values, has_db, strict=True)]
+        return {
+            kind: size | {"value": value, "value_db": value_db}
+            for kind, size, value, value_db in zip(_KINDS, sizes, values, values_db, strict=True)
+        }
 
 
 @checked
@@ -166,8 +164,10 @@ class _Search:
         samples[::2] *= self.random.random((_SAMPLES // 2, len(self.first)))[:, self.ball] ** 0.4
         free = np.array([kind == 0, kind == 1, kind == 2, kind >= 0])
         drawn = np.where(free[:, None], samples, 0.0)
-        order = np.argsort(self._logs(drawn), axis=1)
-        starts = [each[rows[:most]] for each, rows, most in zip(drawn, order, _STARTS, strict=True)]
+        starts = [
+            each[rows[:most]]
+            for each, rows, most in zip(drawn, np.argsort(self._logs(drawn), axis=1), _STARTS, strict=True)
+        ]
         free, points = np.repeat(free, _STARTS, axis=0), np.concatenate(starts)
         for places in np.split(samples[: _TURNS * _PLACES], _TURNS):
             points, logs = self._descend(self._placed(points, free, np.vstack([points, places])), free)
@@ -211,10 +211,9 @@ class _Search:
         lengths[:, :2] = [[0.0], [1e9]]  # stay, and to the border
         in_balls = slope / np.maximum(_LEAST, self._lengths(slope))
         newton = np.swapaxes(metric @ slope[..., None], 1, 2)
-        steps = np.concatenate(
+        ends = points[:, None] - np.concatenate(
             [lengths[:, :, self.ball] * in_balls[:, None], _NEWTON[:, None] * newton], axis=1
         )
-        ends = points[:, None] - steps
         return np.asarray(ends / np.maximum(1.0, self._lengths(ends)))  # to the border if beyond
 
     def _slope(self, points: FloatArray, logs: FloatArray, free: NDArray[np.bool_]) -> FloatArray:
@@ -226,11 +225,11 @@ class _Search:
 
     def _logs(self, points: FloatArray) -> FloatArray:
         """Evaluate the logarithm of the smallest ratio at every point, (...)."""
-        jammers = points[..., 6:].reshape(*points.shape[:-1], -1, 2)
         errors: dict[str, FloatArray] = {
             "position_offset_m": self.sizes.position_m * points[..., 3:6],
             "rotation_world": rotation_about(math.radians(self.sizes.attitude_deg) * points[..., :3]),
-            self.offsets: self.sizes.jammers_m * np.insert(jammers, 2, 0.0, axis=-1),
+            self.offsets: self.sizes.jammers_m
+            * np.insert(points[..., 6:].reshape(*points.shape[:-1], -1, 2), 2, 0.0, axis=-1),
         }
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a jammer may be at the drone
             ratios = self.ratios_under(replace(self.unmoved, **errors)).reshape(*points.shape[:-1], -1)
@@ -239,8 +238,7 @@ class _Search:
 
     def _lengths(self, points: FloatArray) -> FloatArray:
         """Measure the part in each ball, at each of its coordinates, (..., d)."""
-        squares = np.add.reduceat(points * points, self.first, axis=-1)
-        return np.asarray(np.sqrt(squares)[..., self.ball])
+        return np.asarray(np.sqrt(np.add.reduceat(points * points, self.first, axis=-1))[..., self.ball])
 
 
 def _lowest(points: FloatArray, logs: FloatArray) -> tuple[FloatArray, FloatArray]:

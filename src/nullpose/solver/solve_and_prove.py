@@ -94,26 +94,30 @@ def solve_and_prove(
     best = each[chosen]
     proofs: list[Proof] = []
     reason = ""
-    for i, field in enumerate(fields):
-        if not options.certify:
-            break
+    least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
+    for i, field in enumerate(fields if options.certify else ()):
         # the level to exclude is that of the best of all; where to look for better poses is this field's
-        least = 0.0 if options.of_rate else -math.inf  # a rate is never below zero
         level, start = max(best.log_value, least), each[i]
-        start = start if start.log_value == level else replace(start, log_value=level)
-        nodes = sum(p.nodes for p in proofs)
-        search = partial(searched, field, False)
-        proof = prove(family, field, start, options, began=began, nodes=nodes, bound=bound, search=search)
+        proof = prove(
+            family,
+            field,
+            start if start.log_value == level else replace(start, log_value=level),
+            options,
+            began=began,
+            nodes=sum(p.nodes for p in proofs),
+            bound=bound,
+            search=partial(searched, field, False),
+        )
         proofs.append(proof)
         reason = reason or proof.reason
         if proof.incumbent.log_value > best.log_value:
             best, chosen = proof.incumbent, i
     if searches:
-        starts, evaluations = (
-            sum(found.starts for found in searches),
-            sum(found.evaluations for found in searches),
+        best = replace(
+            best,
+            starts=sum(found.starts for found in searches),
+            evaluations=sum(found.evaluations for found in searches),
         )
-        best = replace(best, starts=starts, evaluations=evaluations)
     has_leaves = all(len(proof.leaves) for proof in proofs)
     return Outcome(
         incumbent=best,
@@ -137,10 +141,9 @@ def _within_requirements(
     found = nearest.incumbent
     if found.log_value >= 0.0:
         return nearest.chosen, climb(family, fields[nearest.chosen], found.position_m, found.axis)
-    missed_db, bound = -to_db(math.exp(found.log_value)), nearest.upper_bound
-    proved = ""
-    if bound is not None and bound < 1.0:
-        proved = f", and proved: every pose misses one by {-to_db(bound):.6g} dB or more"
+    missed_db = -to_db(math.exp(found.log_value))
+    most = math.inf if nearest.upper_bound is None else nearest.upper_bound
+    proved = f", and proved: every pose misses one by {-to_db(most):.6g} dB or more" if most < 1.0 else ""
     raise RequirementError(
         "nodes.min_sinr_db: no pose was found that meets every requirement; the best misses one by "
         f"{missed_db:.6g} dB{proved}. Lower min_sinr_db by as much, or widen the airspace"

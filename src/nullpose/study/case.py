@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field
 from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
-from nullpose.scenario.faults import Place, key_faults, rejection
+from nullpose.scenario.faults import Place, key_faults, require_value
 from nullpose.scenario.rules import ByName, Choice, Count, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
@@ -48,9 +48,8 @@ _POSE = ByName("a table with position_m, or a name", {"centroid": {"position_m":
 
 
 def _truth(value: object) -> bool:
-    if not isinstance(value, bool):
-        raise rejection(f"got {described(value)}, must be true or false, without quotes")
-    return value
+    require_value(isinstance(value, bool), f"got {described(value)}, must be true or false, without quotes")
+    return bool(value)
 
 
 _Bool = Annotated[bool, BeforeValidator(_truth)]
@@ -157,8 +156,8 @@ class Case(Section):
     @property
     def is_level(self) -> bool:
         """Whether it is the best pose of a vehicle with one dipole that does not tilt."""
-        tilts = self.airframe is None or not self.is_free or self.airframe.tilt_max_rad > 0.0
-        return self.scheme is Scheme.VERTICAL or not tilts
+        is_still = self.airframe is not None and self.airframe.tilt_max_rad <= 0.0
+        return self.scheme is Scheme.VERTICAL or (self.is_free and is_still)
 
     @property
     def label(self) -> str:
@@ -166,7 +165,7 @@ class Case(Section):
         if self.array is not None:
             return f"array of {self.array.elements}, digital"
         if self.name == FILE_VEHICLE and self.airframe is not None:
-            return f"file: tilt {_degrees(self.airframe.tilt_max_rad)}, mount {self.airframe.mount_deg:g}"
+            return f"file: tilt {degrees_text(self.airframe.tilt_max_rad)}, mount {self.airframe.mount_deg:g}"
         if self.scheme is not None:
             return self.scheme.label
         level_or_tilt, _, dipole = self.name.rpartition("-")
@@ -187,9 +186,10 @@ class Case(Section):
             return f"the case {self.name}"
         phrase, airframe = f"an {OMNIDIRECTIONAL} vehicle", _AIRFRAMES.get(self.usual, self.airframe)
         if airframe is not None and self.usual != OMNIDIRECTIONAL:
-            tilt, mount_deg = _degrees(airframe.tilt_max_rad), airframe.mount_deg
-            words = {usual_deg: f"a {word} dipole" for word, usual_deg in _MOUNTS_DEG.items()}
-            dipole = words.get(mount_deg, f"the dipole mounted at {mount_deg:.4g} degrees")
+            tilt, mount_deg = degrees_text(airframe.tilt_max_rad), airframe.mount_deg
+            dipole = {usual_deg: f"a {word} dipole" for word, usual_deg in _MOUNTS_DEG.items()}.get(
+                mount_deg, f"the dipole mounted at {mount_deg:.4g} degrees"
+            )
             vehicle = "a level vehicle" if tilt == "0" else f"a {tilt} degree tilt"
             if self.reach is not None:
                 vehicle = f"the least tilt for {100.0 * self.reach:.6g} %"
@@ -222,5 +222,14 @@ AIRFRAME_CASES: tuple[Case, ...] = tuple(
 )
 
 
-def _degrees(angle_rad: float) -> str:
+def degrees_text(angle_rad: float) -> str:
+    """Write an angle in degrees, without digits that are rounding.
+
+    Args:
+        angle_rad: the angle, radians.
+
+    Example:
+        >>> degrees_text(0.5235987755982988)
+        '30'
+    """
     return f"{round(math.degrees(angle_rad), 6):g}"

@@ -142,14 +142,15 @@ def _against(best: Result, pose: Pose) -> Result:
     result = evaluated(best, scenario, pose, bound)
     below = None if bound is None else quantity.in_unit(bound) - quantity.in_unit(result.objective.value)
     place = ", ".join(f"{x:z.3f}" for x in best.pose.position_m)
-    notes = [
-        *(f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed),
-        *([] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]),
-        f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m",
-    ]
     return replace(
         result,
-        note="\n".join(notes),
+        note="\n".join(
+            [
+                *(f"not allowed, so that the bound does not hold: {reason}" for reason in not_allowed),
+                *([] if below is None else [f"{below:.3g} {quantity.unit} below the bound"]),
+                f"best pose: {quantity.in_unit(best.objective.value):.4f} {quantity.unit} at ({place}) m",
+            ]
+        ),
         details=GivenDetails(best=best, below_bound=below, not_allowed=not_allowed),
     )
 
@@ -176,5 +177,6 @@ def pose_faults(scenario: Scenario, pose: Pose) -> Iterable[str]:
     if near_m < keep_out_m - BORDER_M:
         yield f"{near_m:.3g} m from {nearest}, closer than keep_out_m = {keep_out_m:g} m"
     if scenario.airframe is not None and pose.tilt_rad > scenario.airframe.tilt_max_rad + _TILT_RAD:
-        tilts_deg = np.degrees([pose.tilt_rad, scenario.airframe.tilt_max_rad])
-        yield "tilted by {:.3f} deg, more than the airframe's {:g} deg".format(*tilts_deg)
+        yield "tilted by {:.3f} deg, more than the airframe's {:g} deg".format(
+            *np.degrees([pose.tilt_rad, scenario.airframe.tilt_max_rad])
+        )

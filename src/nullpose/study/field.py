@@ -59,8 +59,7 @@ class Field:
             UsageError: xarray is not installed.
         """
         places = {"y_m": self.north_m, "x_m": self.east_m, "z_m": self.altitude_m}
-        array = imported("xarray").DataArray
-        return array(
+        return imported("xarray").DataArray(
             self.values, coords=places, dims=("y_m", "x_m"), name=self.name, attrs={"unit": self.unit}
         )
 

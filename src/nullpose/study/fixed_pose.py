@@ -70,5 +70,7 @@ def _over_centroid_m(scenario: Scenario) -> NDArray[np.float64]:
         zone.ceiling_m for zone in scenario.open_airspace.inner.no_fly if math.isfinite(zone.ceiling_m)
     ]
     positions_m = [np.append(across_m, height_m) for height_m in sorted(heights_m)]
-    allowed = (each for each in positions_m if not list(pose_faults(scenario, Pose(each, 0.0, 0.0))))
-    return next(allowed, np.append(across_m, heights_m[0]))
+    return next(
+        (each for each in positions_m if not list(pose_faults(scenario, Pose(each, 0.0, 0.0)))),
+        np.append(across_m, heights_m[0]),
+    )

@@ -85,9 +85,8 @@ class ResultRow(Result):
     @property
     def min_sinr(self) -> float:
         """The smallest SINR over the nodes, a power ratio; a node's SNR where the drone transmits."""
-        if self.objective.quantity == _SINR:
-            return self.objective.value
-        return min(link.sinr for link in self.links)
+        is_sinr = self.objective.quantity == _SINR
+        return self.objective.value if is_sinr else min(link.sinr for link in self.links)
 
     @property
     def min_sinr_db(self) -> float:

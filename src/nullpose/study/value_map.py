@@ -139,10 +139,9 @@ def map_grid_m(scenario: Scenario, position_m: FloatArray, cells: int) -> tuple[
     """
     low_m, high_m = map_extent_m(scenario, position_m)
     step_m = float(np.max(high_m - low_m)) / (cells - 1)
-    ends = zip(low_m, high_m, position_m[:2], strict=True)
     east, north = (
         at + step_m * np.arange(-round((at - low) / step_m), round((high - at) / step_m) + 1)
-        for low, high, at in ends
+        for low, high, at in zip(low_m, high_m, position_m[:2], strict=True)
     )
     return east, north
 
@@ -172,8 +171,7 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
     if fields is not None and scenario.axis_band == (0.0, 1.0) and not is_rate and is_smallest:
         axes = _exact_axes(scenario, positions_m, go_on)
     else:
-        rank = _served if fields is None else allowed_value
-        axes = _ranked_axes(scenario, positions_m, held, rank, go_on)
+        axes = _ranked_axes(scenario, positions_m, held, _served if fields is None else allowed_value, go_on)
     return allowed_value(scenario, positions_m, axes)
 
 

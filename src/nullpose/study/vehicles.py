@@ -29,8 +29,6 @@ _ROBUST_S = 10.0  # for each vehicle's robust pose, at most
 
 ARRAY_SIZES = (2, 4, 8)  # of the arrays that every comparison tries
 
-_ARRAY = Array(elements=ARRAY_SIZES[0], layout="linear", spacing_wavelengths=0.5)
-
 
 def cases_of(scenario: Scenario) -> Sequence[Case]:
     """List the vehicles to try for a scenario: its own among the usual ones, if it is none of them.
@@ -42,7 +40,10 @@ def cases_of(scenario: Scenario) -> Sequence[Case]:
     Args:
         scenario: with or without an airframe or an array.
     """
-    array, of_file = scenario.array or _ARRAY, Case(name=FILE_VEHICLE, airframe=scenario.airframe)
+    array, of_file = (
+        scenario.array or Array(elements=ARRAY_SIZES[0], layout="linear", spacing_wavelengths=0.5),
+        Case(name=FILE_VEHICLE, airframe=scenario.airframe),
+    )
     is_another = of_file.airframe is not None and not of_file.usual
     vehicles = _placed(AIRFRAME_CASES, of_file) if is_another else AIRFRAME_CASES
     if scenario.objective != USUAL or scenario.states_antennas or scenario.has_channels:
@@ -75,11 +76,14 @@ def compare_schemes(
     cases = [Case(name=scheme.value, scheme=scheme) for scheme in Scheme if not reasons[scheme]]
     left_out = {scheme.value: reason for scheme, reason in reasons.items() if reason}
     options["gap"] = SolveOptions(**options).of(scenario).target
-
-    def solve_case(case: Case, options: SolveKeywords) -> Result:
-        return solve(scenario, case.name, **options)
-
-    return _table(scenario, cases, solve_case, options, on_progress, left_out)
+    return _table(
+        scenario,
+        cases,
+        lambda case, options: solve(scenario, case.name, **options),
+        options,
+        on_progress,
+        left_out,
+    )
 
 
 @checked
@@ -118,8 +122,7 @@ def compare_airframes(
     """
     is_stated = options.get("gap") is not None
     options["gap"] = SolveOptions(**options).of(scenario).target
-    whole = AIRFRAME_CASES[-1].on(scenario)
-    search = TiltSearch(whole, 1.0 - TOLERANCE, options)
+    search = TiltSearch(AIRFRAME_CASES[-1].on(scenario), 1.0 - TOLERANCE, options)
     if cases is None:
         cases = cases_of(scenario)
         if scenario.antenna_record.is_axisymmetric:
@@ -139,16 +142,20 @@ def compare_airframes(
 def _with_best_mount(cases: Sequence[Case], mount_deg: float) -> Sequence[Case]:
     """Add each tilt with the dipole at a mount, unless that is upright or flat."""
     for tilt_deg in TILTS_DEG if 0.0 < mount_deg < 90.0 else ():
-        airframe = Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg)
-        case = Case(name=f"{f'tilt-{tilt_deg}' if tilt_deg else 'level'}{BEST_MOUNT}", airframe=airframe)
+        case = Case(
+            name=f"{f'tilt-{tilt_deg}' if tilt_deg else 'level'}{BEST_MOUNT}",
+            airframe=Airframe(tilt_max_deg=tilt_deg, mount_deg=mount_deg),
+        )
         cases = _placed(cases, case)
     return cases
 
 
 def _placed(cases: Sequence[Case], case: Case) -> Sequence[Case]:
     """Put a vehicle behind those that take no more tilt."""
-    tilts_rad = [math.inf if each.airframe is None else each.airframe.tilt_max_rad for each in cases]
-    place = bisect_right(tilts_rad, case.airframe.tilt_max_rad if case.airframe else math.inf)
+    place = bisect_right(
+        [math.inf if each.airframe is None else each.airframe.tilt_max_rad for each in cases],
+        case.airframe.tilt_max_rad if case.airframe else math.inf,
+    )
     return (*cases[:place], case, *cases[place:])
 
 
@@ -173,9 +180,8 @@ def _table(
         else:
             options["certify"] = options.get("certify", True) and not result.interrupted
             is_usual = case.airframe is not None and not case.name.endswith(BEST_MOUNT)
-            has_guarantee = is_usual and scenario.is_uncertain
-            is_interrupted = any(row.interrupted for row in (*rows, result))
-            kept = _guaranteed(result, None if is_interrupted else options) if has_guarantee else None
+            allowed = None if any(row.interrupted for row in (*rows, result)) else options
+            kept = _guaranteed(result, allowed) if is_usual and scenario.is_uncertain else None
             rows.append(ResultRow.of(math.nan, result, case, kept))
     settings = MappingProxyType(provenance(chosen.seed) | chosen.settings)
     return ResultTable("", tuple(rows), MappingProxyType(left_out), scenario, settings)

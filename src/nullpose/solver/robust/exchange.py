@@ -37,7 +37,6 @@ POLARISATION = (
     "node's null counts as lost: the worst that they could be"
 )
 """The note of a solution whose scenario states such."""
-_MOST_CELLS_REACHED = "limit of the proof of what the pose guarantees: most cells of errors"
 _CLIMB, _CLIMB_STEPS = 1e-2, 100  # barrier weight and steps of a climb from the best pose so far
 _MOST_ROUNDS = 100
 _SHARE = 1.0 / 3.0  # of the gap, for the distance between the finite family and the guarantee
@@ -79,7 +78,11 @@ def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
         exchange.reason = INTERRUPT
     robust = _prove_best(scenario, exchange, robust)
     is_close = robust.guarantee.worst <= exchange.level(robust.guarantee.lower)
-    unsettled = "error cases that the search did not settle" if is_close else _MOST_CELLS_REACHED
+    unsettled = (
+        "error cases that the search did not settle"
+        if is_close
+        else "limit of the proof of what the pose guarantees: most cells of errors"
+    )
     without_errors = guarantee_of(inner, nominal.position_m, nominal.antenna_axis, exchange.accuracy())
     return Answer(
         scheme="robust",
@@ -230,9 +233,8 @@ class Exchange:
             began: when the clock of the limits began.
         """
         assert self.incumbent is not None
-        start = self.incumbent
-        if self.limits.of_rate:  # a rate is never below zero
-            start = replace(start, log_value=max(0.0, start.log_value))
+        least = 0.0 if self.limits.of_rate else -math.inf  # a rate is never below zero
+        start = replace(self.incumbent, log_value=max(least, self.incumbent.log_value))
         value = math.exp(start.log_value)
         gap = level / value - 1.0
         gap = gap if gap > _LEAST_GAP else self.limits.ratio_gap(value)  # the search was cut short

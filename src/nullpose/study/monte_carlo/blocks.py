@@ -53,8 +53,10 @@ class Town(NamedTuple):
         for point_m in points_m[:, :2]:
             is_free &= np.any(np.abs((point_m - self.centres_m) @ self.walls_m.T) > reach_m2, axis=1)
         corners_m = self.centres_m[is_free, None] + _CORNERS @ self.walls_m
-        pairs = zip(corners_m.tolist(), self.heights_m[is_free].tolist(), strict=True)
-        return [{"polygon_m": corners, "height_m": height_m} for corners, height_m in pairs]
+        return [
+            {"polygon_m": corners, "height_m": height_m}
+            for corners, height_m in zip(corners_m.tolist(), self.heights_m[is_free].tolist(), strict=True)
+        ]
 
 
 class Blocks(Section):

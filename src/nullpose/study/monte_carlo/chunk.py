@@ -76,8 +76,7 @@ def solve_chunk(spec_json: str, expected: str, first: int, last: int, deadly: Co
     began = time.perf_counter()
     spec = _spec(spec_json, expected)
     try:
-        rows = list(rows_of(spec, first, last, deadly))
-        return as_parquet(spec, rows, time.perf_counter() - began)
+        return as_parquet(spec, list(rows_of(spec, first, last, deadly)), time.perf_counter() - began)
     except Exception as error:  # not every exception can be sent from one process to another
         reason = reason_of(error)
     raise ClusterError(f"workers: scenes {first} to {last} cannot be worked on: {reason}")

@@ -84,8 +84,10 @@ def scene_at(spec: StudySpec, index: int, point: int) -> Scenario:
         UsageError: there is no such scene or combination.
         ScenarioError: no valid scene was drawn, or a swept value makes it invalid.
     """
-    scene = require_number("scene", index, 0, spec.n_scenes - 1)
-    return Draws(spec).at(scene, require_number("point", point, 0, len(spec.points) - 1))
+    return Draws(spec).at(
+        require_number("scene", index, 0, spec.n_scenes - 1),
+        require_number("point", point, 0, len(spec.points) - 1),
+    )
 
 
 def quantity_of(spec: StudySpec) -> Quantity:

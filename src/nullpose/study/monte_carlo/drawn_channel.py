@@ -41,8 +41,7 @@ class Environments(Section):
             generator: where chance comes from.
             count: how many.
         """
-        places = (generator.random(count) * len(self.choice)).astype(int)
-        return np.asarray(np.array(self.choice)[places])
+        return np.asarray(np.array(self.choice)[(generator.random(count) * len(self.choice)).astype(int)])
 
 
 _OR_NAME = ByName("an environment", {name: {"choice": [name]} for name in ENVIRONMENTS})

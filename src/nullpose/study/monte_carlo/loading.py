@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 from nullpose.errors import Fault, ScenarioError, UsageError, require_usage
@@ -17,7 +18,6 @@ from nullpose.study.case import Case
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.spec import StudySpec
 
-_SPEC_FILE = FileKind("the spec of a study", "study.toml")
 # In place of a scenario file that is faulty.
 _STAND_IN: PlainTable = {
     "airspace": {"altitude_m": [10.0, 20.0]},
@@ -44,7 +44,7 @@ def load_spec(path: str | os.PathLike[str], *, allow_outside: bool = False) -> S
     source = os.fspath(path)
     faults: list[Fault] = []
     try:
-        tables = tables_of(file_text(Path(source), _SPEC_FILE))
+        tables = tables_of(file_text(Path(source), FileKind("the spec of a study", "study.toml")))
         faults = _read_scenarios(tables, Path(source).parent, allow_outside)
         spec = StudySpec.from_dict(tables)
     except ScenarioError as error:
@@ -97,12 +97,8 @@ def require_sound(spec: StudySpec, source: str = "study") -> None:
     raise_all(faults, source)
 
 
-def _faults_at(draws: Draws, index: int, values: Mapping[str, float]) -> tuple[Fault, ...]:
-    try:
-        draws.base(index, values)
-    except ScenarioError as error:
-        return error.faults
-    return ()
+def _faults_at(draws: Draws, index: int, values: Mapping[str, float]) -> list[Fault]:
+    return call_each(partial(draws.base, index), [values])[1]
 
 
 def _sweep_faults(draws: Draws, spec: StudySpec, index: int) -> list[Fault]:

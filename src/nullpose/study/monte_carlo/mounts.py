@@ -36,9 +36,10 @@ def _with_best_mount(spec: StudySpec, case: Case, on_note: Callable[[str], None]
     search = {"certify": None if case.pose else False}  # proofs would take three times as long
     for step_deg, count in _STAGES:
         on_note(f"case {case.name}: mounts in steps of {step_deg:g} degrees are tried")
-        around_deg = (best_deg + step_deg * step for step in range(-count, count + 1))
         mounted = {
-            mount: case.mounted(mount, name=str(mount), **search) for mount in around_deg if 0 <= mount <= 90
+            mount: case.mounted(mount, name=str(mount), **search)
+            for mount in (best_deg + step_deg * step for step in range(-count, count + 1))
+            if 0 <= mount <= 90
         }
         rows = rows_of(spec.model_copy(update={"cases": list(mounted.values())}), 0, scenes - 1)
         values = [quantity.in_unit(row.get("value", 0.0)) for row in rows]  # no pose is no signal

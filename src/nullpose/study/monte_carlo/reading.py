@@ -76,8 +76,8 @@ class StudyTable:
             yield self._as_frame(schema_of(self.spec).empty_table())
 
     def __repr__(self) -> str:
-        done = f"{self.scenes_done} of {self.spec.n_scenes} scenes"
-        return f"StudyTable({self.spec.name!r}: {done}, {self.quantity.smallest})"
+        done, name = self.scenes_done, self.spec.name
+        return f"StudyTable({name!r}: {done} of {self.spec.n_scenes} scenes, {self.quantity.smallest})"
 
     def _repr_html_(self) -> str:
         return str(next(self.batches()).head(_SHOWN).to_html(index=False))
@@ -90,10 +90,11 @@ class StudyTable:
         """
         spec = self.spec
         frame = self.frame().drop(columns="point").astype({"case": object})
-        arrays = frame.set_index(["scene", *spec.swept, "case"]).to_xarray()
-        swept = {path: list(values) for path, values in spec.sweep}
-        return arrays.reindex({**swept, "case": list(spec.case_names)}).assign_attrs(
-            name=spec.name, objective=self.manifest["objective"]
+        return (
+            frame.set_index(["scene", *spec.swept, "case"])
+            .to_xarray()
+            .reindex({**{path: list(values) for path, values in spec.sweep}, "case": list(spec.case_names)})
+            .assign_attrs(name=spec.name, objective=self.manifest["objective"])
         )
 
     def _as_frame(self, table: pa.Table) -> pd.DataFrame:

@@ -77,8 +77,10 @@ def as_parquet(spec: StudySpec, rows: Sequence[Row], seconds: float) -> bytes:
     import pyarrow.parquet as pq
 
     failed = sum(row["status"] == FAILED for row in rows)
-    schema = schema_of(spec).with_metadata({"failed": str(failed), "seconds": repr(seconds)})
-    table = pa.Table.from_pylist([row | spec.points[row["point"]] for row in rows], schema=schema)
+    table = pa.Table.from_pylist(
+        [row | spec.points[row["point"]] for row in rows],
+        schema=schema_of(spec).with_metadata({"failed": str(failed), "seconds": repr(seconds)}),
+    )
     content = io.BytesIO()
     # statistics of pages are for searching; without them there is less that no checksum covers
     pq.write_table(table, content, compression="zstd", write_page_checksum=True, write_statistics=False)

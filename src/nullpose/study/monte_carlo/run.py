@@ -28,7 +28,6 @@ MOST_IN_A_PART = 5000  # scenes, however quick they are: a part is held in memor
 
 _PART_S = 1.0
 _MOST_WORKERS = 1024
-_LIBRARIES = ("nullpose", "numpy", "scipy", "numba", "pyarrow")
 
 Scenes = tuple[int, int]  # the first and the last
 
@@ -146,10 +145,11 @@ def run_study(
         study = json.dumps(spec.to_dict()), fingerprint()
         with workers_of(scheduler, workers, tally.look) as crew:
             if is_new:
-                size = _size(spec, crew, study) if chunk is None else chunk
-                versions = {name: version(name) for name in _LIBRARIES}
                 folder.write_manifest(
-                    spec, size, versions | {"python": platform.python_version(), "code": fingerprint()}
+                    spec,
+                    _size(spec, crew, study) if chunk is None else chunk,
+                    {name: version(name) for name in ("nullpose", "numpy", "scipy", "numba", "pyarrow")}
+                    | {"python": platform.python_version(), "code": fingerprint()},
                 )
                 to_do = _resume(folder, spec, tally)
             for (first, last), content in _solved(crew, study, to_do, tally):

@@ -100,13 +100,16 @@ class StudySpec(Section):
         """Yield the faults between the parts of the spec, those that are None being at fault."""
         if self.scenes is None and self.scene is not None and not self.scene.files:
             yield ("scenes",), "missing; it must be given: how many scenes"
-        cases = [(("cases", index), case) for index, case in enumerate(self.cases or ()) if case is not None]
-        yield from shared_names(dict(cases))
+        yield from shared_names(
+            {("cases", index): case for index, case in enumerate(self.cases or ()) if case is not None}
+        )
         for key in ("x_m", "y_m") if self.buildings and not any(map(raw.get, DRAWN_LISTS)) else ():
             if getattr(self.buildings, key) is None:
                 yield ("buildings", key), "missing; no points are drawn around which they could stand; add it"
-        points_by_kind = [(kind, each) for kind, each in self.drawn.items() if isinstance(each, Points)]
-        for index, (kind, points) in product(range(self.scene.size if self.scene else 0), points_by_kind):
+        for index, (kind, points) in product(
+            range(self.scene.size if self.scene else 0),
+            [(kind, each) for kind, each in self.drawn.items() if isinstance(each, Points)],
+        ):
             replaced = filter(None, getattr(self.scene.whole(index), kind))
             for key, values in points.values(list(replaced)).items():
                 if len(values) > 1:
@@ -159,9 +162,8 @@ class StudySpec(Section):
     def digest(self) -> str:
         """SHA-256 of all that decides a row; titles and the names of files are left out."""
         values = self.to_dict() | {"name": "", "scenes": self.n_scenes}
-        values["scene"] = {
-            key: value for key, value in values["scene"].items() if key not in ("file", "files")
-        }
+        for key in ("file", "files"):
+            values["scene"].pop(key, None)
         for case in [each for each in values["cases"] if "mount_scenes" in each]:
             case["airframe"].pop("mount_deg", None)  # the scenes choose it, so it follows from the rest
         return hashlib.sha256(json.dumps(values, sort_keys=True, separators=(",", ":")).encode()).hexdigest()

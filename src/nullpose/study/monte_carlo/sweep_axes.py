@@ -18,9 +18,13 @@ MOST_POINTS = 1_000_000  # combinations of swept values
 
 _DEEPEST = 16  # parts of a path: no value of a scene is deeper
 _VALUE = Limits("a number", -1e30, 1e30, "in the unit that the path ends in")
-_POINTS = Count("a number of values", 2, 100_000, "both ends included")
 _SPACING = Choice("a spacing", ("linear", "log"))
-_KEYS: dict[str, Rule] = {"from": _VALUE, "to": _VALUE, "points": _POINTS, "spacing": _SPACING}
+_KEYS: dict[str, Rule] = {
+    "from": _VALUE,
+    "to": _VALUE,
+    "points": Count("a number of values", 2, 100_000, "both ends included"),
+    "spacing": _SPACING,
+}
 
 Axis = tuple[str, tuple[float, ...]]
 

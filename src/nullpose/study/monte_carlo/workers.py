@@ -192,8 +192,7 @@ def workers_of(scheduler: str | None, workers: int | None, on_look: OnLook) -> I
     """
     if scheduler is not None:
         with _quiet(), _connected(scheduler) as client:
-            executor = client.get_executor(pure=False)
-            yield Workers(executor, scheduler, on_look, count=-1, client=client)
+            yield Workers(client.get_executor(pure=False), scheduler, on_look, count=-1, client=client)
     elif workers == 0:
         yield Workers(_Here(), "this machine", on_look, ahead=1)
     else:
@@ -239,8 +238,7 @@ async def _reach(scheduler: str) -> None:
     from distributed.comm import connect
 
     # the certificate that Dask's configuration names, which a tls:// address needs
-    comm = await connect(scheduler, timeout=_CONNECT_S, **Security().get_connection_args("client"))
-    await comm.close()
+    await (await connect(scheduler, timeout=_CONNECT_S, **Security().get_connection_args("client"))).close()
 
 
 _LOGGERS = ("distributed", "tornado", "asyncio")
