@@ -142,11 +142,6 @@ class SceneOptions:
         check_outputs(files_of(self.file, self.overrides or ()), outputs)
 
 
-def limit_keyword(time_limit: float | None) -> SolveKeywords:
-    """Name a time limit as the solver takes it; nothing if none is stated."""
-    return {} if time_limit is None else {"time_limit_s": time_limit}
-
-
 @dataclass(frozen=True, kw_only=True)
 class ProofOptions:
     """The options of every verb that proves."""
@@ -169,7 +164,7 @@ class ProofOptions:
     def keywords(self, fast: bool = False) -> SolveKeywords:
         """Name the options as the solver takes them."""
         return {
-            **limit_keyword(self.time_limit),
+            **({} if self.time_limit is None else {"time_limit_s": self.time_limit}),
             "gap": self.gap,
             "node_limit": self.node_limit,
             "certify": not fast,

@@ -58,8 +58,7 @@ def tell(
         SolveError: there is a fault.
     """
     if json_output:
-        paths = {"files": [str(path) for path in files]} if files else {}
-        show_json(found.to_dict() | more | paths)
+        show_json(found.to_dict() | more | ({"files": [str(path) for path in files]} if files else {}))
     else:
         shown = view(found)
         show(shown, broken=broken)
@@ -103,8 +102,7 @@ def compiling_announced(time_limit: float | None = None) -> Iterator[None]:
     from nullpose.solver.compiling import announce_compiling
 
     announce = cache(partial(say, _COMPILING, err=True))
-    compiler = BackgroundCompiler(announce, counts=time_limit is not None)
-    with compiler.in_use(), announce_compiling(announce):
+    with BackgroundCompiler(announce, counts=time_limit is not None).in_use(), announce_compiling(announce):
         yield
 
 

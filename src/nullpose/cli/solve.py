@@ -120,9 +120,8 @@ def solve(
     is_checked = verify or certificate is not None
     is_array = scenario.array is not None and not robust
     if robust or is_array:
-        where = "with --robust" if robust else "for a scenario with an [array]"
         refuse(
-            where,
+            "with --robust" if robust else "for a scenario with an [array]",
             export=exports if is_array else None,
             scheme=scheme is not Scheme.OPTIMUM,
             null_jammer=null_jammer,
@@ -163,11 +162,13 @@ def _with_errors(scenario: Scenario, sizes: ErrorSizes) -> Scenario:
     airspace, kind = scenario.airspace, scenario.objective_record.interferers
     apart_m = distances_m(scenario.of_interferers("positions_m"), airspace.lower_m, airspace.upper_m)
     free_m = _CLEAR * np.maximum(apart_m, airspace.keep_out_m) - sizes.position_m
-    radii_m = np.clip(free_m, 0.0, sizes.jammers_m).tolist()
     errors = {
         "receiver.attitude_error_deg": sizes.attitude_deg,
         "receiver.position_error_m": sizes.position_m,
-        **{f"{kind}[{i}].uncertainty_m": radius_m for i, radius_m in enumerate(radii_m)},
+        **{
+            f"{kind}[{i}].uncertainty_m": radius_m
+            for i, radius_m in enumerate(np.clip(free_m, 0.0, sizes.jammers_m).tolist())
+        },
     }
     return apply_overrides(scenario, [Override(path, size) for path, size in errors.items()])
 

@@ -79,17 +79,19 @@ def _proved_view(certificate: Certificate, leaves: int) -> View:
 
     most, least, near = claim_numbers(certificate)
     gives = Quantity.of(certificate.scenario).gives
-    rows = [
-        ("upper bound", most),
-        ("pose's value", least),
-        ("gap", near),
-        ("boxes checked", f"{leaves:,}"),
-        ("scheme", certificate.scheme),
-        ("SHA-256", subject(certificate)["scenario_sha256"]),
-    ]
     return document(
         head(certificate.scenario.name),
         Text("PROVED", style="bold green"),
-        pairs("", rows),
+        pairs(
+            "",
+            [
+                ("upper bound", most),
+                ("pose's value", least),
+                ("gap", near),
+                ("boxes checked", f"{leaves:,}"),
+                ("scheme", certificate.scheme),
+                ("SHA-256", subject(certificate)["scenario_sha256"]),
+            ],
+        ),
         capitalised(f"{claim_words(certificate)} above the bound. The stated pose {gives} the pose's value."),
     )

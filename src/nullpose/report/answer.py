@@ -53,13 +53,12 @@ def answer_lines(comparison: ResultTable) -> list[str]:
         return ["No vehicle compared with one dipole was found to reach every node."]
     kinds = {kind: [row for row in single if row.name.endswith(end)] for kind, end in _KINDS.items()}
     kinds["array"] = [row for row in comparison.rows if row.case.array is not None]
-    of_file = [row for row in comparison.rows if row.name == FILE_VEHICLE]
     return [
         *(_least_line(comparison, kind, found) for kind, found in kinds.items() if found),
         *(
             f"{capitalised(row.case.phrase)} {_VERDICTS[verdict_on(comparison, row)]}: "
             f"it {_reach(comparison, row)}."
-            for row in of_file
+            for row in [row for row in comparison.rows if row.name == FILE_VEHICLE]
         ),
         "The least tilt for each mount of the dipole: nullpose vehicle FILE",
     ]
@@ -92,7 +91,7 @@ def _least_line(comparison: ResultTable, kind: str, found: Sequence[ResultRow]) 
 
 
 def _size(row: ResultRow) -> float:
-    """Return what a vehicle takes: elements of an array, or else tilt [rad]."""
+    """Measure the effort of a vehicle: elements of its array, or else its tilt [rad]."""
     if row.case.array:
         return row.case.array.elements
     return row.case.airframe.tilt_max_rad if row.case.airframe else 0.0

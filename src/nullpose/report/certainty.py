@@ -19,13 +19,15 @@ def counted(rows: Iterable[ResultRow]) -> PlainTable:
     """Count values by status, with the widest gap of those with a bound; None if there are none."""
     rows = tuple(rows)
     counts = Counter(row.status for row in rows)
-    gaps = [row.objective.relative_gap for row in rows if row.objective.relative_gap is not None]
     return {
         "values": len(rows),
         "certified": counts[Status.CERTIFIED],
         "gap_not_reached": counts[Status.GAP_NOT_REACHED],
         "best_found": counts[Status.BEST_FOUND],
-        "largest_relative_gap": max(gaps, default=None),
+        "largest_relative_gap": max(
+            [row.objective.relative_gap for row in rows if row.objective.relative_gap is not None],
+            default=None,
+        ),
     }
 
 
@@ -37,13 +39,12 @@ def _sentence(status: Status, rows: Sequence[ResultRow]) -> str:
         target = f"the least tilt for {rows[0].case.reach:.7g} of the value"
         return f"{target} is proved to {STEP_DEG:g} degrees at {count}"
     gap = "none" if counts["largest_relative_gap"] is None else rounded_up(counts["largest_relative_gap"])
-    sentences = {
+    return {
         Status.CERTIFIED: f"each point is certified optimal within {gap} (relative)",
         Status.GAP_NOT_REACHED: "all bounds are valid, but the requested gap is not reached at "
         f"{counts['gap_not_reached']} of {counts['values']} points; relative gap up to {gap}",
         Status.BEST_FOUND: "best found by search, no upper bound",
-    }
-    return sentences[status]
+    }[status]
 
 
 def certainty_lines(table: ResultTable) -> list[str]:
@@ -58,8 +59,10 @@ def labelled_certainty(table: ResultTable) -> list[tuple[str, str]]:
         status: _sentence(status, [row for row in table.rows if weakest[row.name] is status])
         for status in weakest.values()
     }
-    names = sorted(weakest, key=lambda name: _ORDER.index(weakest[name]))
-    return [(table.of(name)[0].label, sentences[weakest[name]]) for name in names]
+    return [
+        (table.of(name)[0].label, sentences[weakest[name]])
+        for name in sorted(weakest, key=lambda name: _ORDER.index(weakest[name]))
+    ]
 
 
 def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:

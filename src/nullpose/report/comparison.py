@@ -203,8 +203,7 @@ def _null_cells(row: ResultRow) -> dict[str, str]:
 def _link_cells(row: ResultRow) -> dict[str, str]:
     """Write each node's ratio, and its SINR, margin or rate with a mark where the node binds."""
     quantity, links, binding = row.objective.quantity, row.links, binding_nodes(row)
-    ratios = {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links}
-    return ratios | {
+    return {f"{quantity.ratio} {link.node} (dB)": f"{link.sinr_db:.4f} " for link in links} | {
         f"{quantity.short} {link.node} ({quantity.unit})": (
             f"{quantity.in_unit(quantity.at(link)):.4f}{'*' if link.node in binding else ' '}"
         )
@@ -236,9 +235,11 @@ def _vehicle_proof_lines(found: Sequence[ResultRow]) -> list[str]:
 def _proof_lines(comparison: ResultTable) -> list[str]:
     """Write what is proved of a table's values, of poses that were given apart."""
     solved = [row for row in comparison.rows if row.status is not Status.POSE_GIVEN]
-    statuses = dict.fromkeys(row.status for row in solved)
     return [
-        *(f"{_STATUS[status]}: {status.message.removeprefix('certified ')}." for status in statuses),
+        *(
+            f"{_STATUS[status]}: {status.message.removeprefix('certified ')}."
+            for status in dict.fromkeys(row.status for row in solved)
+        ),
         *grouped((row.label, row.reason) for row in solved),
         *(f"Bounds: {line}" for line in rigour_lines((row.label, row.rigour) for row in solved)),
     ]

@@ -106,8 +106,10 @@ def rows(columns: Mapping[str, Sequence[str | None]]) -> list[Row]:
 
 def beside(columns: Mapping[str, Row]) -> list[Row]:
     """Set what is compared side by side: columns by heading, each with the same labels, become rows."""
-    labels = next(iter(columns.values()), {})
-    return [{"": label} | {name: cells[label] for name, cells in columns.items()} for label in labels]
+    return [
+        {"": label} | {name: cells[label] for name, cells in columns.items()}
+        for label in next(iter(columns.values()), {})
+    ]
 
 
 def grouped(sentences: Iterable[tuple[str, str]]) -> list[str]:

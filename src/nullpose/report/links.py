@@ -58,11 +58,11 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
     binding = binding_nodes(result)
     counted: dict[str, Sequence[str | None]] = {}
     if quantity.noun != quantity.ratio:
-        numbers = [quantity.in_unit(quantity.at(link)) for link in links]
-        counted[f"{quantity.noun} ({quantity.unit})"] = [f"{number:.6g}" for number in numbers]
+        heading = f"{quantity.noun} ({quantity.unit})"
+        counted[heading] = [f"{quantity.in_unit(quantity.at(link)):.6g}" for link in links]
     if scenario.objective_record.transmits:
         counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
-    distances_m = [distance_m(result.pose, point_m) for point_m in scenario.terminal_positions_m]
+
     columns: dict[str, Sequence[str | None]] = {
         "node": [link.node for link in links],
         **counted,
@@ -70,7 +70,9 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
         "weight": [cell(each.weight, ".6g") for each in scenario.terminals],
         f"{quantity.ratio} (dB)": [f"{link.sinr_db:.4f}" for link in links],
         quantity.ratio: [None if counted else f"{link.sinr:.5g}" for link in links],
-        "distance (m)": [f"{distance:.2f}" for distance in distances_m],
+        "distance (m)": [
+            f"{distance_m(result.pose, point_m):.2f}" for point_m in scenario.terminal_positions_m
+        ],
         **more,
         "": ["worst" if link.node in binding else "" for link in links],
     }
@@ -89,10 +91,11 @@ def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
         received_w = received_from_sources_w(scenario, pose.position_m, orientation)
         ratios = received_w[len(scenario.nodes) :] / scenario.receiver.noise_power_w
     is_even = scenario.antenna_record.is_even
-    angles_deg = [math.degrees(axis_angle_rad(pose, point_m, is_even)) for point_m in points]
     columns = {
         noun: names,
-        f"axis to {noun} (deg)": [f"{angle_deg:.4f}" for angle_deg in angles_deg],
+        f"axis to {noun} (deg)": [
+            f"{math.degrees(axis_angle_rad(pose, point_m, is_even)):.4f}" for point_m in points
+        ],
         "distance (m)": [f"{distance_m(pose, point_m):.2f}" for point_m in points],
         heading: ["nulled" if db < _NULLED_DB else f"{db:.2f}" for db in to_db(ratios)],
     }

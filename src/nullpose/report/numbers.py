@@ -105,9 +105,8 @@ def axis_label(path: str) -> str:
     """Name a swept setting such as ``jammers.M.power_w`` in words: ``Power of jammer M (W)``."""
     *tables, leaf = path.split(".")
     key, _, place = leaf.partition("[")
-    unit, words = unit_of(path), _KEY_WORDS.get(key, "")
-    if not words:
-        words = key.rpartition("_")[0] if unit else key
+    unit = unit_of(path)
+    words = _KEY_WORDS.get(key) or (key.rpartition("_")[0] if unit else key)
     part = _PARTS.get((key, place[:1]), "")
     group = tables[0].partition("[")[0].removesuffix("s") if tables else ""
     whose = " ".join((group, *tables[1:])) if len(tables) > 1 else group and f"the {group}"

@@ -12,7 +12,6 @@ def pattern_view(summary: PatternSummary) -> View:
     """Set what was read of a pattern, with notes on how."""
     table, largest_m = summary.table, summary.largest_m
     field = "gains only" if table.field is None else "with phases"
-    polarisation = summary.polarisation if table.field is None else f"{summary.polarisation}, at the peak"
     rows = [
         ("quantity", table.quantity),
         ("frequency", None if table.frequency_hz is None else f"{table.frequency_hz / 1e6:.7g} MHz"),
@@ -22,7 +21,10 @@ def pattern_view(summary: PatternSummary) -> View:
         ("null used", _null_text(summary.used_null_db, summary.used_null_deg)),
         ("error of the fit", _error_text(summary)),
         ("ripple round z", f"{summary.ripple_db:z.2f} dB, at theta 90"),
-        ("polarisation", polarisation),
+        (
+            "polarisation",
+            summary.polarisation if table.field is None else f"{summary.polarisation}, at the peak",
+        ),
         ("degree used", f"{summary.degree}; the grid resolves {summary.supported_degree}"),
         ("grid", f"steps of {summary.step_deg:g} degrees, {field}"),
         ("", f"fine enough for antennas within {largest_m:.2g} m of the origin" if largest_m else None),

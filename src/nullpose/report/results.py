@@ -73,8 +73,10 @@ def result_view(result: Result) -> View:
     searches, place = result.stats.searches or 0, zip("xyz", _metres(pose.position_m, more), strict=True)
     agreement = f"{result.stats.agreeing} of {searches} local searches ended at this value"
     lines = (hop_words(result), requirement_words(result), result.note, agreement if searches > 1 else "")
-    position = ", ".join(f"{axis} {x} m" for axis, x in place)
-    at = [("position", position), ("attitude", _attitude_words(pose, more))]
+    at = [
+        ("position", ", ".join(f"{axis} {x} m" for axis, x in place)),
+        ("attitude", _attitude_words(pose, more)),
+    ]
     return document(
         result_head(result, *lines),
         pairs("", [*at, *antenna, *frame_rows(scenario, pose, more)]),
@@ -120,9 +122,8 @@ def result_head(result: Result, *more: str) -> View:
     """Write what stands above any result: value, bound, how sure it is, the work behind it, and more."""
     objective, stats = result.objective, result.stats
     sure = "" if objective.upper_bound is None else objective.rigour.message
-    status = result.status.message
-    if result.rigour is Rigour.FLOATING_POINT:  # there can be no certificate
-        status = status.removeprefix("certified ")
+    uncertified = "certified " if result.rigour is Rigour.FLOATING_POINT else ""  # no certificate can be
+    status = result.status.message.removeprefix(uncertified)
     lines: tuple[str, ...] = (
         bound_words(objective),
         f"{status}{result.reason and f': {result.reason}'}",
@@ -167,13 +168,15 @@ def _robust_view(result: Result, details: RobustDetails) -> View:
 def _guarded_cells(objective: Objective, guarded: GuardedPose, more: int) -> dict[str, str]:
     """Write what a pose guarantees, what it gives without errors, and where it is."""
     pose, quantity = guarded.pose, objective.quantity
-    values = {
-        "guaranteed": guarded.guaranteed,
-        "lowest found": guarded.worst,
-        "without errors": guarded.nominal,
-    }
     return {
-        **{f"{name} ({quantity.unit})": f"{quantity.in_unit(value):.4f}" for name, value in values.items()},
+        **{
+            f"{name} ({quantity.unit})": f"{quantity.in_unit(value):.4f}"
+            for name, value in {
+                "guaranteed": guarded.guaranteed,
+                "lowest found": guarded.worst,
+                "without errors": guarded.nominal,
+            }.items()
+        },
         "position (m)": ", ".join(_metres(pose.position_m, more)),
         "roll, pitch, yaw (deg)": ", ".join(_degrees(x, more) for x in _angles_rad(pose).values()),
         "axis azimuth (deg)": azimuth_text(pose, more),

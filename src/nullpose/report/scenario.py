@@ -269,7 +269,10 @@ def _points_table(
         "from": [getattr(point, "source_name", None) for point in points],
         "requires (dB)": [cell(getattr(point, "min_sinr_db", None), ".6g") for point in points],
         "weight": [cell(getattr(point, "weight", None), ".6g") for point in points],
-        "uncertainty (m)": [_extents(point) for point in points],
+        "uncertainty (m)": [
+            f"{radius_m:g}" if (radius_m := getattr(point, "uncertainty_m", None)) else None
+            for point in points
+        ],
     }
     if best:
         columns["nearest (m)"] = [cell(each["nearest_m"], ".6g") for each in numbers]
@@ -289,9 +292,3 @@ def _gain_words(antenna: _Point | Antenna | None) -> str:
     """Write an antenna's gain after a comma, nothing where it is 0 dBi."""
     dbi = 0.0 if antenna is None else getattr(antenna, "peak_dbi", antenna.gain_dbi)
     return "" if dbi == 0.0 else f", {dbi:g} dBi"
-
-
-def _extents(point: _Point) -> str | None:
-    """Write how far a point may be from its position; None if it is not uncertain."""
-    radius_m = getattr(point, "uncertainty_m", None)
-    return f"{radius_m:g}" if radius_m else None

@@ -79,5 +79,6 @@ def _nulled_names(result: Result) -> list[str]:
     """List the jammers or eavesdroppers whose link is in a null of the antenna."""
     scenario, pose = result.scenario, result.pose
     gains = interferer_gains(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
-    names = scenario.of_interferers("names")
-    return [name for name, gain in zip(names, gains, strict=True) if gain < _NULL_GAIN]
+    return [
+        name for name, gain in zip(scenario.of_interferers("names"), gains, strict=True) if gain < _NULL_GAIN
+    ]

@@ -25,9 +25,13 @@ def write_sweep(
     Raises:
         OutputError: a file cannot be written.
     """
-    figure = draw_sweep(sweep, log=log, width=width, bounds=bounds)
-    pictures = write_figure(figure, *(folder / f"sweep.{kind}" for kind in ("png", "svg", "pdf")))
-    return (sweep.write_csv(folder / "sweep.csv"), *pictures)
+    return (
+        sweep.write_csv(folder / "sweep.csv"),
+        *write_figure(
+            draw_sweep(sweep, log=log, width=width, bounds=bounds),
+            *(folder / f"sweep.{kind}" for kind in ("png", "svg", "pdf")),
+        ),
+    )
 
 
 def sweep_view(sweep: ResultTable) -> View:
@@ -63,7 +67,5 @@ def _cell(row: ResultRow) -> str:
     if row.tilt is not None:
         enough_deg, little_deg = row.tilt.suffices_deg, row.tilt.fails_deg
         return "\ntoo little: ".join("-" if deg is None else f"{deg:.1f}" for deg in (enough_deg, little_deg))
-    value = f"{row.objective.quantity.in_unit(row.objective.value):.4f}"
-    if row.status != Status.GAP_NOT_REACHED:
-        return value
-    return f"{value}\nupper bound {bound_text(row.objective, 2)}"
+    bound = f"\nupper bound {bound_text(row.objective, 2)}" if row.status == Status.GAP_NOT_REACHED else ""
+    return f"{row.objective.quantity.in_unit(row.objective.value):.4f}{bound}"

@@ -18,8 +18,10 @@ def write_map(result: Result, field: Field, folder: Path, width: str | None = No
     Raises:
         OutputError: a file cannot be written.
     """
-    pictures = write_figure(draw_value_map(result, field, width), folder / "map.png", folder / "map.pdf")
-    return (field.write_csv(folder / "map.csv"), *pictures)
+    return (
+        field.write_csv(folder / "map.csv"),
+        *write_figure(draw_value_map(result, field, width), folder / "map.png", folder / "map.pdf"),
+    )
 
 
 def map_view(result: Result, field: Field) -> View:

@@ -7,6 +7,7 @@ import math
 from nullpose.physics import Geodetic
 from nullpose.scenario import Airframe, Array, Eavesdropper, Jammer, Origin, Scenario
 from nullpose.solver import Result
+from nullpose.study.case import degrees_text
 
 
 def airframe_words(airframe: Airframe, tilt_rad: float | None = None) -> str:
@@ -17,7 +18,7 @@ def airframe_words(airframe: Airframe, tilt_rad: float | None = None) -> str:
         tilt_rad: how far it is tilted, if it is at a pose.
     """
     is_limited = airframe.tilt_max_rad < math.pi
-    limit = f"at most {_degrees(airframe.tilt_max_rad)} deg" if is_limited else "without limit"
+    limit = f"at most {degrees_text(airframe.tilt_max_rad)} deg" if is_limited else "without limit"
     used = "tilts" if tilt_rad is None else f"tilted by {abs(math.degrees(tilt_rad)):.3f} deg,"
     preset = f"{airframe.preset}: " if airframe.preset else ""
     return f"{preset}{used} {limit}; dipole {airframe.mount_deg:g} deg from upright on the body"
@@ -28,7 +29,7 @@ def reach_words(airframe: Airframe | None) -> str:
     low, high = (0.0, 1.0) if airframe is None else airframe.axis_band
     if (low, high) == (0.0, 1.0):
         return "any axis direction"
-    least, greatest = (_degrees(math.acos(math.sqrt(cosine_squared))) for cosine_squared in (high, low))
+    least, greatest = (degrees_text(math.acos(math.sqrt(cosine_squared))) for cosine_squared in (high, low))
     return f"axes {least} to {greatest} deg from the vertical"
 
 
@@ -65,9 +66,10 @@ def requirement_words(result: Result) -> str:
     That no pose meets them is said where the bound proves it.
     """
     nodes, bound = result.scenario.terminals, result.objective.upper_bound
-    pairs = zip(result.links, nodes, strict=True)
     spare = sorted(
-        (link.sinr_db - node.min_sinr_db, link.node) for link, node in pairs if node.min_sinr_db is not None
+        (link.sinr_db - node.min_sinr_db, link.node)
+        for link, node in zip(result.links, nodes, strict=True)
+        if node.min_sinr_db is not None
     )
     missed = [margin for margin in spare if margin[0] < 0.0]
     words = ", ".join(
@@ -83,13 +85,11 @@ def requirement_words(result: Result) -> str:
     )
 
 
-def _degrees(angle_rad: float) -> str:
-    return f"{round(math.degrees(angle_rad), 6):g}"
-
-
 def channel_words(scenario: Scenario) -> str | None:
     """Describe the channel, and those of points that have their own; None where none is stated."""
     channels = {"": scenario.channel} | {f"{point.name}: ": point.channel for point in scenario.points}
     among = scenario.prisms is not None
-    words = (f"{name}{each.describe(among_buildings=among)}" for name, each in channels.items() if each)
-    return "; ".join(words) or None
+    return (
+        "; ".join(f"{name}{each.describe(among_buildings=among)}" for name, each in channels.items() if each)
+        or None
+    )

@@ -132,9 +132,8 @@ def answer_of(version: int, case: PoseCase, result: Result) -> Answer:
         # whose guarantee is the value
         worst = frozenset({min(robust.guarantee.ratios, key=lambda ratio: ratio.lower).node})
         note = f"Worst case: {robust.worst_case}"
-    stopped = f"The proof stopped: {result.reason}" if result.reason else ""
-    said = ". ".join(filter(None, (note, stopped)))
-    return Answer(version=version, case=case, result=result, worst_nodes=worst, note=said)
+    note = ". ".join(filter(None, (note, result.reason and f"The proof stopped: {result.reason}")))
+    return Answer(version=version, case=case, result=result, worst_nodes=worst, note=note)
 
 
 def with_errors(answer: Answer) -> Answer:

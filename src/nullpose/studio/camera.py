@@ -94,8 +94,10 @@ def aim(
         )
     camera.fov = _FOV_RAD
     corners_px = (wide, 0.0), (0.0, high + _SECOND_PX * (cases - 1))
-    fits = [_position_m(canvas, free, matter, frame, np.array(corner_px)) for corner_px in corners_px]
-    camera.position = max(fits, key=_AHEAD.__matmul__)
+    camera.position = max(
+        [_position_m(canvas, free, matter, frame, np.array(corner_px)) for corner_px in corners_px],
+        key=_AHEAD.__matmul__,
+    )
     # on the ground, about which a hand turns it
     camera.look_at = camera.position - _AHEAD * camera.position[2] / _AHEAD[2]
     # in most scenes beyond the one metre at which viser keeps a pane for background images, whose pixels it

@@ -63,7 +63,6 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
     x, y, _ = (body @ mount).T @ np.subtract(eye_m, place_m)
     azimuth_rad = math.atan2(y, x)
     ink = look.colours[("drone", "compared")[slot]]
-    at_label_m = place_m + size_m * np.array(_LABEL_AT[slot])
     shapes = {
         "body": frame(place_m, body),
         "body/hull": mesh(BODY, ink, flat_shading=True, scale=0.055 * size_m, opacity=(None, 0.5)[slot]),
@@ -71,7 +70,9 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
         "body/antenna": frame(rotation=mount),
         "body/antenna/rod": mesh(ROD, look.colours["null"], scale=0.2 * size_m),
         "drop": lines([place_m * [[1.0, 1.0, 1.0], [1.0, 1.0, 0.0]]], look.colours["wire"], 1.2),
-        "label": label(drone_text(state, slot), at_label_m, 1.2, _ANCHORS[slot]),
+        "label": label(
+            drone_text(state, slot), place_m + size_m * np.array(_LABEL_AT[slot]), 1.2, _ANCHORS[slot]
+        ),
     }
     if state.has_pattern and slot == 0:
         turn_rad = 0.0 if antenna.is_axisymmetric else _TURN_RAD * round(azimuth_rad / _TURN_RAD)
@@ -113,8 +114,10 @@ def _null(
     }
     if is_first:
         others = result.scenario.interferers  # which alone a null is for
-        angles = [(axis_angle_rad(result.pose, point.position_m), point.name) for point in others]
-        angle_rad, name = min(angles, default=(0.0, ""))
+        angle_rad, name = min(
+            [(axis_angle_rad(result.pose, point.position_m), point.name) for point in others],
+            default=(0.0, ""),
+        )
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""
         shapes["angle"] = frame(0.35 * place_m + 0.65 * ends[1])
         if len(result.links) <= CROWD:
@@ -154,8 +157,10 @@ def _tubes(ends_m: NDArray[np.float64], radius_m: NDArray[np.float64]) -> Mesh:
 
 def _coincides(pose: Pose, first: Pose, size_m: float) -> bool:
     """Tell whether a pose's cone would be drawn into that of the first drone."""
-    away_m = np.linalg.norm(pose.position_m - first.position_m)
-    return bool(away_m < _SAME * size_m and abs(pose.antenna_axis @ first.antenna_axis) > math.cos(_SAME))
+    return bool(
+        np.linalg.norm(pose.position_m - first.position_m) < _SAME * size_m
+        and abs(pose.antenna_axis @ first.antenna_axis) > math.cos(_SAME)
+    )
 
 
 def _has_null(antenna: AnyAntenna) -> bool:

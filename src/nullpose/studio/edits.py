@@ -112,8 +112,10 @@ def with_added(state: State, what: str, place_m: ArrayLike, size_m: float) -> St
         values |= {"centre_m": (east, north), "radius_m": float(f"{0.08 * size_m:.1g}")}
     else:
         alike = (*state.scenario.nodes, *members)[-1]
-        keys = table.model_fields.keys() & type(alike).model_fields.keys() & set(_ALIKE)
-        values |= {key: getattr(alike, key) for key in keys} | {"position_m": (east, north, 0.0)}
+        values |= {
+            key: getattr(alike, key)
+            for key in table.model_fields.keys() & type(alike).model_fields.keys() & set(_ALIKE)
+        } | {"position_m": (east, north, 0.0)}
     return state.with_members(kind, (*members, table.from_dict(values)))
 
 
@@ -159,8 +161,10 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
     kind, index = key
     member, path = state.members(kind)[index], f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
     path = path.replace("destinations[0]", "destination")
-    labels = {"name": "name"} | _keys(member)
-    entries = [Entry(f"{path}.{key}", label, _text(getattr(member, key))) for key, label in labels.items()]
+    entries = [
+        Entry(f"{path}.{key}", label, _text(getattr(member, key)))
+        for key, label in ({"name": "name"} | _keys(member)).items()
+    ]
     if isinstance(member, NoFlyZone):
         return tuple(entries)
     place = [
@@ -169,8 +173,7 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
     ]
     # a profile needs a table, which is not typed
     kinds = tuple(kind for kind in GROUND_ANTENNAS if kind != "profile" or kind == member.antenna)
-    antenna = Entry(f"{path}.antenna", "antenna", member.antenna, kinds)
-    return (entries[0], *place, *entries[1:], antenna)
+    return (entries[0], *place, *entries[1:], Entry(f"{path}.antenna", "antenna", member.antenna, kinds))
 
 
 def _keys(member: GroundPoint | NoFlyZone) -> dict[str, str]:
@@ -194,8 +197,10 @@ def _vehicle_entries(scenario: Scenario) -> tuple[Entry, ...]:
         airspace.margin_m,
         airspace.keep_out_m,
     )
-    rows = zip(_VEHICLE.items(), values, strict=True)
-    return tuple(Entry(path, label, _text(value)) for (path, label), value in rows)
+    return tuple(
+        Entry(path, label, _text(value))
+        for (path, label), value in zip(_VEHICLE.items(), values, strict=True)
+    )
 
 
 def _text(value: object) -> str:

@@ -31,8 +31,7 @@ _CROSS = np.array([[[-1, 0, 0], [1, 0, 0]], [[0, -1, 0], [0, 1, 0]]])
 
 def scene_size_m(scenario: Scenario) -> float:
     """Return the larger side of the ground that the points take up with their margin, metres."""
-    low, high = map_extent_m(scenario, scenario.node_positions_m.mean(axis=0))
-    return float(np.max(high - low))
+    return float(np.max(np.ptp(map_extent_m(scenario, scenario.node_positions_m.mean(axis=0)), axis=0)))
 
 
 def grid_m(scenario: Scenario) -> tuple[FloatArray, FloatArray, float]:
@@ -120,8 +119,9 @@ def _ring_radius_m(key: Key, state: State, size_m: float) -> float:
     powers_w = state.scenario.jammer_powers_w
     if state.power_db is None or powers_w[key[1]] <= 0.0:
         return 0.0
-    power_db = state.power_db + to_db(powers_w[key[1]] / powers_w.max())
-    return size_m * float(np.interp(power_db, POWER_DB, _RING_SIZES))
+    return size_m * float(
+        np.interp(state.power_db + to_db(powers_w[key[1]] / powers_w.max()), POWER_DB, _RING_SIZES)
+    )
 
 
 def ticks_m(scenario: Scenario) -> list[tuple[str, float, float]]:
@@ -145,11 +145,10 @@ def _grid(scenario: Scenario, look: Look) -> Shapes:
     east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low, high, strict=True))
     segments = [[[x, low[1], 0.0], [x, high[1], 0.0]] for x in east]
     segments += [[[low[0], y, 0.0], [high[0], y, 0.0]] for y in north]
-    ticks = {
+    return {
         f"/ground/tick-{i}": label(text.replace("-", MINUS), (x, y, 0.0), 0.8, "center-center")
         for i, (text, x, y) in enumerate(ticks_m(scenario))
-    }
-    return ticks | {"/ground/grid": lines(segments, look.colours["grid"], 1.2)}
+    } | {"/ground/grid": lines(segments, look.colours["grid"], 1.2)}
 
 
 def _airspace(scenario: Scenario, look: Look) -> Shapes:
@@ -181,8 +180,10 @@ def _buildings(buildings: tuple[Building, ...], colour: Rgb) -> Shapes:
         edges += [prism_edges(ring, *ends) for ring in (each.outline_m, *each.courtyard_outlines_m)]
     if not solids:
         return {}
-    bodies = mesh(merged(solids), colour, opacity=0.45, side="double", flat_shading=True)
-    return {"/buildings/bodies": bodies, "/buildings/edges": lines(np.concatenate(edges), colour, 1.4)}
+    return {
+        "/buildings/bodies": mesh(merged(solids), colour, opacity=0.45, side="double", flat_shading=True),
+        "/buildings/edges": lines(np.concatenate(edges), colour, 1.4),
+    }
 
 
 def _label(key: Key, point: GroundPoint, state: State) -> tuple[str, bool]:

@@ -116,8 +116,10 @@ def level_mesh(area_m: BaseGeometry, height_m: float = 0.0) -> Mesh:
         area_m: shapely's polygon, or several, metres.
         height_m: where it is, metres.
     """
-    triangles = shapely.constrained_delaunay_triangles(area_m)
-    corners = [shapely.get_coordinates(triangle)[:3] for triangle in shapely.orient_polygons(triangles).geoms]
+    corners = [
+        shapely.get_coordinates(triangle)[:3]
+        for triangle in shapely.orient_polygons(shapely.constrained_delaunay_triangles(area_m)).geoms
+    ]
     return Mesh(_raised(np.vstack(corners), height_m), np.arange(3 * len(corners)).reshape(-1, 3))
 
 
@@ -138,8 +140,10 @@ def prism_mesh(area_m: shapely.Polygon, low_m: float, high_m: float) -> Mesh:
 def _wall_mesh(ring_m: NDArray[np.float64], ends_m: tuple[float, float]) -> Mesh:
     """Build the wall on a line that ends where it begins, (n, 2), its outside on the right."""
     below, count = np.arange(len(ring_m) - 1), len(ring_m)
-    faces = np.add.outer(below, [[0, 1, count], [1, count + 1, count]]).reshape(-1, 3)
-    return Mesh(np.vstack([_raised(ring_m, height_m) for height_m in ends_m]), faces)
+    return Mesh(
+        np.vstack([_raised(ring_m, height_m) for height_m in ends_m]),
+        np.add.outer(below, [[0, 1, count], [1, count + 1, count]]).reshape(-1, 3),
+    )
 
 
 def _raised(outline_m: NDArray[np.float64], height_m: float) -> NDArray[np.float64]:

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 LOOPBACK = "127.0.0.1"
 """The address that only programs on this machine reach."""
 
-_INSTALL = f"the studio needs viser, which is not installed; {install_command('studio')}"
-
 
 @contextmanager
 def unannounced() -> Iterator[None]:
@@ -43,7 +41,9 @@ def require_viser() -> None:
     try:
         import viser  # noqa: F401  only whether it is installed
     except ImportError as error:
-        raise UsageError(_INSTALL) from error
+        raise UsageError(
+            f"the studio needs viser, which is not installed; {install_command('studio')}"
+        ) from error
 
 
 def open_server(host: str, port: int) -> tuple[ViserServer, str]:

@@ -37,8 +37,7 @@ class Panel(SimpleNamespace):
 
     def __init__(self, gui: GuiApi, on_typed: Callable[[Entry, str], object], *, dark: bool = False) -> None:
         super().__init__()
-        shown = {"show_logo": False, "show_share_button": False}
-        gui.configure_theme(control_width="large", dark_mode=dark, **shown)
+        gui.configure_theme(control_width="large", dark_mode=dark, show_logo=False, show_share_button=False)
         gui.main_panel.dock_right()
         gui.set_panel_label("nullpose studio")
         # these three are not in the panel: the frame's script shows two, and tells where the pointer is
@@ -66,8 +65,9 @@ class Panel(SimpleNamespace):
                     self._add(gui, control)
             else:
                 kind, label, hint, more = control
-                add = getattr(gui, f"add_{kind}")
-                setattr(self, name, add(label, **more | ({"hint": hint} if hint else {})))
+                setattr(
+                    self, name, getattr(gui, f"add_{kind}")(label, **more | ({"hint": hint} if hint else {}))
+                )
 
     def render(self, history: History) -> None:
         """Show the present state, and whether there is a step to undo or to redo.

@@ -87,8 +87,10 @@ def attitude_words(pose: Pose) -> str:
     Args:
         pose: of the drone.
     """
-    angles = np.degrees([pose.roll_rad, pose.pitch_rad, pose.yaw_rad, pose.tilt_rad])
-    roll, pitch, yaw, tilt = (f"{signed(angle, 1)}\N{DEGREE SIGN}" for angle in angles)
+    roll, pitch, yaw, tilt = (
+        f"{signed(angle, 1)}\N{DEGREE SIGN}"
+        for angle in np.degrees([pose.roll_rad, pose.pitch_rad, pose.yaw_rad, pose.tilt_rad])
+    )
     return f"roll {roll}, pitch {pitch}, yaw {yaw} (tilt {tilt})"
 
 

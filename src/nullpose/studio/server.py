@@ -25,7 +25,6 @@ _RELOAD_S = 10.0  # a page that is loaded again comes before its old self is gon
 
 _FULL = f"{MOST_PAGES} pages are open, and a studio serves no more. Close one, and load this one again."
 
-_FAULT = "The page could not be made; the terminal says why."
 
 _log = logging.getLogger("nullpose.studio")
 
@@ -78,7 +77,9 @@ class Studio:
         except Exception:
             self._places.release()
             _log.exception("a page could not be made")
-            client.add_notification("Not opened", _FAULT, color="red")
+            client.add_notification(
+                "Not opened", "The page could not be made; the terminal says why.", color="red"
+            )
             return
         with self._lock:
             gone = self._closed or client.client_id not in self._server.get_clients()

@@ -73,8 +73,9 @@ class History:
         events = {key: event for key, event in self.present.events.items() if key[1] in shown}
         key = state.selected
         is_gone = key is not None and key[1] >= len(state.members(key[0]))
-        selected = None if is_gone else key
-        return replace(state, version=self.present.version + 1, events=events, selected=selected)
+        return replace(
+            state, version=self.present.version + 1, events=events, selected=None if is_gone else key
+        )
 
 
 class Session:

@@ -47,14 +47,15 @@ def _shapes(answer: Answer, size_m: float, kinds: tuple[tuple[str, Rgb], ...]) -
     hatching = _hatching(box_m, _HATCH * size_m)
     for kind, colour in kinds:
         for index, point in enumerate(getattr(scenario, kind)):
-            outlines_m = shadow_outlines_m(scenario, point, altitude_m, box_m)
-            pieces = [shapely.Polygon(outline_m) for outline_m in outlines_m]
+            pieces = [
+                shapely.Polygon(outline_m)
+                for outline_m in shadow_outlines_m(scenario, point, altitude_m, box_m)
+            ]
             area = shapely.union_all([piece for piece in pieces if piece.area > 0.0])  # a corner may be left
             strings = area & hatching
             if not point.is_interferer and area.area > 0.0:
-                ends_m = np.column_stack([box_m, [0.0, 2.0 * size_m]])
                 shapes[f"/shadows/{kind}-{index}"] = _filled(
-                    area, colour, _LIFT * size_m * len(shapes), ends_m
+                    area, colour, _LIFT * size_m * len(shapes), np.column_stack([box_m, [0.0, 2.0 * size_m]])
                 )
             elif strings.length > 0.0:
                 shapes[f"/shadows/{kind}-{index}"] = _hatched(strings, colour)

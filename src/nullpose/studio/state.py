@@ -116,8 +116,7 @@ class State:
     def status(self, case: PoseCase) -> str:
         """Say how far the solve of a case has come."""
         answer = self.current(case)
-        compiling = self.latest(Notice) if answer is None else None
-        notice = self.present(Notice, case) or compiling
+        notice = self.present(Notice, case) or (self.latest(Notice) if answer is None else None)
         return status_words(answer) if notice is None else notice.words
 
     @property

@@ -82,8 +82,9 @@ class Worker:
                     return
                 state, self._pending = self._pending, None
             try:
-                compiling = Notice(version=state.version, case=None, words=_COMPILING)
-                with announce_compiling(partial(self._publish, compiling)):
+                with announce_compiling(
+                    partial(self._publish, Notice(version=state.version, case=None, words=_COMPILING))
+                ):
                     self._serve(state)
             except _SupersededError:
                 continue

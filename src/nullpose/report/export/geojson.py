@@ -32,8 +32,10 @@ def solution_geojson(solution: Result) -> PlainTable:
     points = (
         _point(origin, np.asarray(place_m), properties) for place_m, properties in marked_points(solution)
     )
-    polygons = (_polygon(origin, *outline) for outline in _outlines(solution.scenario))
-    return {"type": "FeatureCollection", "features": [*points, *polygons]}
+    return {
+        "type": "FeatureCollection",
+        "features": [*points, *(_polygon(origin, *outline) for outline in _outlines(solution.scenario))],
+    }
 
 
 def geojson_file(solution: Result) -> bytes:
@@ -82,8 +84,10 @@ def _polygon(
     rings = []
     for corners_m in rings_m:
         places_m = np.column_stack([corners_m, np.full(len(corners_m), height_m)])
-        places = geodetic_from_enu(places_m, origin.geodetic).tolist()
-        ring = [[round(lon_deg, 9), round(lat_deg, 9)] for lat_deg, lon_deg, _ in places]
+        ring = [
+            [round(lon_deg, 9), round(lat_deg, 9)]
+            for lat_deg, lon_deg, _ in geodetic_from_enu(places_m, origin.geodetic).tolist()
+        ]
         rings.append([*ring, ring[0]])
     return _feature("Polygon", rings, properties)
 

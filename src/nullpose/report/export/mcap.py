@@ -48,8 +48,9 @@ def mcap_file(result: Result) -> bytes:
     entities = [messages.SceneEntity(**parts, **at) for parts in _entities(result)]
     with open_mcap(stream, context=context):
         channels.PoseInFrameChannel("/pose", context=context).log(pose, log_time=0)
-        scene = messages.SceneUpdate(entities=entities)
-        channels.SceneUpdateChannel("/scene", context=context).log(scene, log_time=0)
+        channels.SceneUpdateChannel("/scene", context=context).log(
+            messages.SceneUpdate(entities=entities), log_time=0
+        )
     return stream.getvalue()
 
 
@@ -60,9 +61,11 @@ def _entities(result: Result) -> Iterator[PlainTable]:
     points, pose = list(marked_points(result)), result.pose
     size_m = _SIZE * float(np.ptp([np.asarray(position_m) for position_m, _ in points], axis=0).max())
     is_even = result.scenario.antenna_record.is_even
-    along = Pose(pose.position_m, 0.0, tilt_rad(pose, is_even) - math.pi / 2.0, azimuth_rad(pose, is_even))
     arrow = ArrowPrimitive(
-        pose=_pose_message(result, along),
+        pose=_pose_message(
+            result,
+            Pose(pose.position_m, 0.0, tilt_rad(pose, is_even) - math.pi / 2.0, azimuth_rad(pose, is_even)),
+        ),
         shaft_length=4.0 * size_m,
         shaft_diameter=0.3 * size_m,
         head_length=size_m,
@@ -72,12 +75,13 @@ def _entities(result: Result) -> Iterator[PlainTable]:
     yield {"id": "antenna axis", "arrows": [arrow]}
     for position_m, properties in points:
         kind, name = properties["kind"], properties["name"]
-        place = _pose_message(result, Pose(np.asarray(position_m), 0.0, 0.0))
-        looks = {"pose": place, "color": Color(**_COLOURS.get(kind, _COLOURS["jammer"]))}
-        sphere = SpherePrimitive(size=Vector3(x=size_m, y=size_m, z=size_m), **looks)
+        looks = {
+            "pose": _pose_message(result, Pose(np.asarray(position_m), 0.0, 0.0)),
+            "color": Color(**_COLOURS.get(kind, _COLOURS["jammer"])),
+        }
         yield {
             "id": f"{kind} {name}",
-            "spheres": [sphere],
+            "spheres": [SpherePrimitive(size=Vector3(x=size_m, y=size_m, z=size_m), **looks)],
             "texts": [TextPrimitive(text=name, font_size=0.5 * size_m, **looks)],
         }
 

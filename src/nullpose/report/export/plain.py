@@ -33,7 +33,9 @@ def json_file(result: Result) -> bytes:
         "upper_bound": None if bound is None else quantity.in_unit(bound),
         "status": result.status.value,
         "rigour": result.rigour.value,
-        "certificate_sha256": _certificate_digest(result),
+        "certificate_sha256": sha256(certificate_text(certificate_of(result)).encode()).hexdigest()
+        if result.rigour is Rigour.VERIFIED
+        else None,  # as --certificate writes it, uncompressed
     }
     return f"{json_text(content)}\n".encode()
 
@@ -56,10 +58,3 @@ def csv_file(result: Result) -> bytes:
 
 def _angles_deg(frame: FramePose) -> dict[str, float]:
     return {f"{name}_deg": math.degrees(getattr(frame, f"{name}_rad")) for name in ("roll", "pitch", "yaw")}
-
-
-def _certificate_digest(result: Result) -> str | None:
-    """Hash the certificate as ``--certificate`` writes it, uncompressed; None if none was checked."""
-    if result.rigour is not Rigour.VERIFIED:
-        return None
-    return sha256(certificate_text(certificate_of(result)).encode()).hexdigest()

@@ -34,23 +34,28 @@ def plan_file(result: Result) -> bytes:
     origin = require_origin(result.scenario)
     place = map_place(origin, result.pose.position_m)
     frame, mode = _OVER_SEA if place.is_over_sea else _OVER_HOME
-    waypoint = {
-        "type": "SimpleItem",
-        "command": _HOVER,
-        "frame": frame,
-        "params": [0, 0, 0, _heading_deg(result), place.lat_deg, place.lon_deg, place.altitude_m],
-        "Altitude": place.altitude_m,
-        "AltitudeMode": mode,
-        "AMSLAltAboveTerrain": None,
-        "autoContinue": True,
-        "doJumpId": 1,
-    }
     content = {
         "fileType": "Plan",
         "groundStation": "QGroundControl",
         "mission": {
-            "items": [waypoint],
-            "plannedHomePosition": [*origin.geodetic.tolist()[:2], _home_m(origin)],
+            "items": [
+                {
+                    "type": "SimpleItem",
+                    "command": _HOVER,
+                    "frame": frame,
+                    "params": [0, 0, 0, _heading_deg(result), place.lat_deg, place.lon_deg, place.altitude_m],
+                    "Altitude": place.altitude_m,
+                    "AltitudeMode": mode,
+                    "AMSLAltAboveTerrain": None,
+                    "autoContinue": True,
+                    "doJumpId": 1,
+                }
+            ],
+            # its altitude is over the sea, as a plan has it, or else over the ellipsoid
+            "plannedHomePosition": [
+                *origin.geodetic.tolist()[:2],
+                float(origin.geodetic[2]) if origin.alt_msl_m is None else origin.alt_msl_m,
+            ],
             "firmwareType": _PX4,
             "vehicleType": _MULTIROTOR,
             "cruiseSpeed": 5,
@@ -71,9 +76,9 @@ def loss_words(result: Result) -> str:
         UsageError: the scenario has no origin.
     """
     scenario, pose, quantity = result.scenario, result.pose, result.objective.quantity
-    level = Pose(pose.position_m, 0.0, 0.0, pose.yaw_rad, pose.mount_rad)
     values = [
-        quantity.in_unit(objective_of_links(scenario, evaluate(scenario, each))) for each in (level, pose)
+        quantity.in_unit(objective_of_links(scenario, evaluate(scenario, each)))
+        for each in (Pose(pose.position_m, 0.0, 0.0, pose.yaw_rad, pose.mount_rad), pose)
     ]
     left, whole = (with_unit(value, quantity) for value in values)
     sentences = [
@@ -90,11 +95,6 @@ def loss_words(result: Result) -> str:
     return "; ".join(sentences)
 
 
-def _home_m(origin: Origin) -> float:
-    """Return the altitude of home [m]: over the sea, as a plan has it, or else over the ellipsoid."""
-    return float(origin.geodetic[2]) if origin.alt_msl_m is None else origin.alt_msl_m
-
-
 def _heading_deg(result: Result) -> float:
     """Convert the yaw to degrees clockwise from north, in [0, 360)."""
     return math.degrees(pose_frames(result.scenario, result.pose).ned.yaw_rad) % 360.0
@@ -102,14 +102,17 @@ def _heading_deg(result: Result) -> float:
 
 def _fence(origin: Origin, airspace: Airspace, pose: Pose) -> PlainTable:
     """List the geofence to stay in, and the zones to stay out of, as polygons and circles."""
-    zones = [zone for zone in airspace.no_fly if not _is_over_or_under(zone, pose)]
-    shapes: list[PlainTable] = [_shape(origin, zone) for zone in zones]
+    shapes: list[PlainTable] = [
+        _shape(origin, zone) for zone in airspace.no_fly if not _is_over_or_under(zone, pose)
+    ]
     if airspace.geofence_m is not None:
         shapes.insert(
             0, {"polygon": _corners(origin, airspace.geofence_outline_m), "inclusion": True, "version": 1}
         )
-    parts = {f"{kind}s": [shape for shape in shapes if kind in shape] for kind in ("polygon", "circle")}
-    return {**parts, "version": 2}
+    return {
+        **{f"{kind}s": [shape for shape in shapes if kind in shape] for kind in ("polygon", "circle")},
+        "version": 2,
+    }
 
 
 def _shape(origin: Origin, zone: NoFlyZone) -> PlainTable:

@@ -17,7 +17,7 @@ from nullpose.report.comparison import numbers_of
 from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, Look, house_style, inches
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import bound_text, capitalised, number
-from nullpose.study import ResultRow, ResultTable
+from nullpose.study import ResultTable
 from nullpose.study.case import OMNIDIRECTIONAL
 
 _ROW_INCH, _SENTENCE_INCH, _PRINTED = 0.33, 0.3, 0.66  # on a screen; height in print over that
@@ -77,7 +77,8 @@ def draw_dots(axes: Axes, comparison: ResultTable) -> None:
     axes.plot([], [], "o", color=GREY, label="value found")
     for place, row, value, at in zip(places, found, values, shown, strict=True):
         mark, at = (">", 0.5 * (high + right)) if value > high else ("o", at) if value >= low else ("<", left)
-        axes.plot(at, place, mark, color=_colour(row), **dots)
+        curve = {**CURVES, **VEHICLES}.get("array" if row.case.array else row.name)
+        axes.plot(at, place, mark, color=curve.colour if curve else INK, **dots)
     marks: dict[str, tuple[FloatArray, Look]] = {
         "upper bound": (
             np.where(is_far, math.nan, bounds),
@@ -142,11 +143,6 @@ def _frame(
         xlabel=f"{capitalised(quantity.smallest_over)} ({quantity.unit})",
     )
     return float(low), float(high)
-
-
-def _colour(row: ResultRow) -> str:
-    look = {**CURVES, **VEHICLES}.get("array" if row.case.array else row.name)
-    return INK if look is None else look.colour
 
 
 def _difference_words(value: float, whole: float, quantity: Quantity) -> str:

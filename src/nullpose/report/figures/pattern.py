@@ -58,8 +58,9 @@ def _draw_cut(
     closed = np.append(np.arange(len(at_deg)), 0)
     axes.plot(np.radians(at_deg[closed]), values_dbi[closed], color=NODE, linewidth=1.6)
     axes.set_ylim(top_dbi - _RANGE_DB, top_dbi)
-    names = [f"{degrees if turn > 0 else min(degrees, 360 - degrees)}°" for degrees in _SPOKES_DEG]
-    axes.set_thetagrids(_SPOKES_DEG, names)
+    axes.set_thetagrids(
+        _SPOKES_DEG, [f"{degrees if turn > 0 else min(degrees, 360 - degrees)}°" for degrees in _SPOKES_DEG]
+    )
     rings = np.arange(top_dbi - _RANGE_DB + _RING_DB, top_dbi + 1.0, _RING_DB)
     axes.set_rgrids(rings, [])
     look: Look = {"color": GREY, "fontsize": 7.5, "ha": "center"}

@@ -52,8 +52,9 @@ def draw_panels(
     share = (_COLUMN_SHARES if is_narrow else _PAGE_SHARES)[count > 1]
     with house_style(width), rc_context({"text.parse_math": False}):
         figure = Figure(figsize=inches(usual, width, share), layout="constrained")
-        plans = figure.subplots(1, count, squeeze=False)[0]
-        for axes, pose, title in zip(plans, scene.poses, titles, strict=True):
+        for axes, pose, title in zip(
+            figure.subplots(1, count, squeeze=False)[0], scene.poses, titles, strict=True
+        ):
             axes.set_title(
                 title.replace(", ", "\n") if is_narrow else title,
                 fontsize="small" if is_narrow else "medium",
@@ -98,8 +99,10 @@ def _draw_legend(figure: Figure, scene: PlanScene) -> None:
 
 def draw_poses(scenario: Scenario, rows: Sequence[ResultRow]) -> Figure:
     """Draw several best poses side by side, each at its own jamming level, in a scenario with a jammer."""
-    titles = [f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows]
-    return draw_panels(PlanScene(scenario=scenario, poses=tuple(row.pose for row in rows)), titles=titles)
+    return draw_panels(
+        PlanScene(scenario=scenario, poses=tuple(row.pose for row in rows)),
+        titles=[f"$P_M/P$ = {row.value:g}\n{_words(scenario, row.objective, row.pose)}" for row in rows],
+    )
 
 
 def draw_result(result: Result, width: str | None = None) -> Figure:
@@ -118,8 +121,9 @@ def draw_result(result: Result, width: str | None = None) -> Figure:
         yaw = f"{math.degrees(result.pose.yaw_rad):.1f}°".replace("-", MINUS)
         words = f"{result.label}: {words}, yaw {yaw}"
     words = "\n".join(filter(None, (words, sensitivity_caption(result))))
-    scene = PlanScene.of(result, is_narrow=is_column(width))
-    return draw_panels(scene, head=f"{result.scenario.name}\n{words}", width=width)
+    return draw_panels(
+        PlanScene.of(result, is_narrow=is_column(width)), head=f"{result.scenario.name}\n{words}", width=width
+    )
 
 
 def _draw_robust(result: Result, details: RobustDetails, width: str | None) -> Figure:

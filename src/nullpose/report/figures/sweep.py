@@ -38,10 +38,8 @@ _MARKERS = 13  # at most so many markers on a curve, so that they do not merge i
 
 def value_label(table: ResultTable) -> str:
     """Name what a sweep found, with its unit."""
-    quantity = table.rows[0].objective.quantity
-    if table.rows[0].tilt:
-        return "Least tilt (deg)"
-    return f"{capitalised(quantity.smallest_over)} ({quantity.unit})"
+    quantity, tilt = table.rows[0].objective.quantity, table.rows[0].tilt
+    return "Least tilt (deg)" if tilt else f"{capitalised(quantity.smallest_over)} ({quantity.unit})"
 
 
 def _numbers(rows: Iterable[ResultRow]) -> FloatArray:

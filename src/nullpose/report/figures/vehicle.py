@@ -87,8 +87,7 @@ def _draw_losses(axes: Axes, angles_deg: FloatArray, shares: FloatArray) -> None
         lines = axes.contour(
             _TILTS_DEG, _MOUNTS_DEG, loss_db, levels=[*seen], colors=[*seen.values()], linewidths=0.9
         )
-        longest = (max(parts, key=len) for parts in lines.allsegs)
-        middles = [tuple(part[len(part) // 2]) for part in longest]
+        middles = [tuple(part[len(part) // 2]) for part in (max(parts, key=len) for parts in lines.allsegs)]
         inside = [middle for middle in middles if min(middle) > _EDGE_DEG]
         axes.clabel(lines, fmt=lambda level: f"{level:g} dB", fontsize="small", manual=inside)
     axes.set(xlabel="Largest tilt (deg)", ylabel="Mount of the antenna (deg)")

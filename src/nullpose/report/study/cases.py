@@ -58,8 +58,10 @@ def report_cases(spec: StudySpec, against: str | None = None) -> pd.DataFrame:
     for _, group in cases.groupby("robust"):
         members = [placed[name] for name in group.index]
         first = max(members, key=lambda case: (case.name == against, case.usual == LEVEL, case.is_level))
-        whole = next((case.name for case in members if case.usual == OMNIDIRECTIONAL), "")
-        cases.loc[group.index, ["against", "whole"]] = first.name, whole
+        cases.loc[group.index, ["against", "whole"]] = (
+            first.name,
+            next((case.name for case in members if case.usual == OMNIDIRECTIONAL), ""),
+        )
     return cases
 
 

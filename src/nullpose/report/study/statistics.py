@@ -102,8 +102,10 @@ def bootstrap(statistic: Callable[[FloatArray], FloatArray], values: FloatArray)
     count, generator = len(values), np.random.default_rng(_SEED)
     if count < FEW_SCENES:
         return np.full((2, *np.shape(statistic(values))), math.nan)
-    replicates = min(_MOST_REPLICATES, max(_FEWEST_REPLICATES, _DRAWN // count))
-    drawn = [statistic(values[generator.integers(count, size=count)]) for _ in range(replicates)]
+    drawn = [
+        statistic(values[generator.integers(count, size=count)])
+        for _ in range(min(_MOST_REPLICATES, max(_FEWEST_REPLICATES, _DRAWN // count)))
+    ]
     return np.apply_along_axis(_percentiles, 0, np.array(drawn))
 
 

@@ -160,12 +160,11 @@ def _divided(part: FloatArray, whole: FloatArray) -> FloatArray:
 def _reached(at: Mapping[str, FloatArray]) -> Columns:
     """Count rows by status, and compute the quantiles of their values."""
     value, null_gain = at["value"], at["null_gain"]
-    counts = {
-        name.replace("-", "_"): np.sum(at["status"] == code, axis=0) for code, name in enumerate(STATUSES)
-    }
     return {
         "scenes": len(value),
-        **counts,
+        **{
+            name.replace("-", "_"): np.sum(at["status"] == code, axis=0) for code, name in enumerate(STATUSES)
+        },
         **_quantiles("worst_tenth", value, WORST_TENTH),
         **_quantiles("median", value, MEDIAN),
         "best_tenth": quantiles(value, 1.0 - WORST_TENTH),

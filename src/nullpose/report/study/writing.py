@@ -119,18 +119,17 @@ def report_study(
     }
     sentences = _rendered("sentences.txt.jinja", page).splitlines()
     page["sentences"] = sentences
-    files = (
-        write_text(target / "report.md", _rendered("report.md.jinja", page)),
-        write_text(target / "report.html", _rendered("report.html.jinja", page)),
-        write_text(target / "summary.csv", _csv(summary.table(), header=True)),
-        data,
-        *(path for pair in figures.values() for path in pair),
-    )
     return StudyReport(
         answer=sentences[0],
         notes=tuple(filter(None, (unfinished, *sentences[1:]))),
         summary=summary,
-        files=files,
+        files=(
+            write_text(target / "report.md", _rendered("report.md.jinja", page)),
+            write_text(target / "report.html", _rendered("report.html.jinja", page)),
+            write_text(target / "summary.csv", _csv(summary.table(), header=True)),
+            data,
+            *(path for pair in figures.values() for path in pair),
+        ),
     )
 
 
