@@ -49,8 +49,8 @@ def inner_kernel(function: Callable[..., object]):
 def small_kernel(function: Callable[..., object]):
     """Return such a kernel that is put into each of its callers.
 
-    For a few operations, and where a family is handed on: to copy its arrays onto the stack takes as long as
-    forty multiplications.
+    For a few operations, and where a family is handed on: what a kernel uses of its arrays is copied onto the
+    stack.
     """
     return _compiled(function, _LEAN | {"forceinline": True}, is_part=True)
 

@@ -37,6 +37,13 @@ class _Whole(JITCodeLibrary):
         if isinstance(library, _Part):  # which holds nothing but itself
             self._linking_libraries += library._linking_libraries
 
+    def _optimize_final_module(self) -> None:
+        """Optimise; parts, which nothing else can call, lose the arguments that they do not use."""
+        for function in self._final_module.functions:
+            if function.linkage == binding.Linkage.linkonce_odr:
+                function.linkage = binding.Linkage.internal
+        super()._optimize_final_module()
+
 
 class _Part(_Whole):
     """Code of one kernel, to be linked into others."""
