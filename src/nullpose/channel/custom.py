@@ -72,10 +72,12 @@ class Custom:
         turns_rad = np.abs(np.diff(elevation_rad, axis=0)[0]), np.abs(np.diff(azimuth_rad, axis=0)[0])
         low, high = self._log_range(np.log(distance_m[1] / distance_m[0])[None], *turns_rad)
         change = excess[1] - excess[0]
-        wrong = np.flatnonzero((change < low - _ROUNDING) | (change > high + _ROUNDING))
-        if len(wrong):
-            keys = {"distances of {} m": distance_m, "elevations of {} rad": elevation_rad}
-            keys["azimuths of {} rad"] = azimuth_rad
+        if len(wrong := np.flatnonzero((change < low - _ROUNDING) | (change > high + _ROUNDING))):
+            keys = {
+                "distances of {} m": distance_m,
+                "elevations of {} rad": elevation_rad,
+                "azimuths of {} rad": azimuth_rad,
+            }
             at = [
                 words.format("{:.6g} and {:.6g}".format(*x[:, wrong[0]].tolist()))
                 for words, x in keys.items()
@@ -162,7 +164,8 @@ class Custom:
         """
         assert self.exponents is not None, "the caller asks"
         assert self.db_per_deg is not None, "likewise"
-        turned = self.db_per_deg * np.abs(elevation_rad) + self.azimuth_db_per_deg * np.abs(azimuth_rad)
-        turned = turned * _LOG_PER_RAD
+        turned = _LOG_PER_RAD * (
+            self.db_per_deg * np.abs(elevation_rad) + self.azimuth_db_per_deg * np.abs(azimuth_rad)
+        )
         by_distance = np.multiply.outer(2.0 - np.asarray(self.exponents), log_distances)
         return by_distance.min(axis=(0, 1)) - turned, by_distance.max(axis=(0, 1)) + turned

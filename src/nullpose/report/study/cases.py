@@ -71,8 +71,7 @@ def _scenes_airframe(spec: StudySpec) -> Airframe | None:
         return None
     scenes = spec.scene.scenarios or (spec.scene,)
     airframes = {scene.airframe or _ANY for scene in scenes}
-    is_same = len(airframes) == 1 and all(scene.array is None for scene in scenes)
-    return airframes.pop() if is_same else None
+    return airframes.pop() if len(airframes) == 1 and all(scene.array is None for scene in scenes) else None
 
 
 def shown_points(spec: StudySpec) -> list[int]:
