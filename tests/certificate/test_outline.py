@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from tests.certificate.plain import seeds
 
-from nullpose.certificate.outline import Outline, Point, clipped, corners, exact, may_meet
+from nullpose.certificate.outline import Outline, Point, clipped, corners, may_meet
+from nullpose.certificate.pose_value import exact
 
 
 def star(rng: np.random.Generator, on_grid: bool) -> np.ndarray:
@@ -65,12 +66,12 @@ def samples(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, edges: 
     points = list(corners(*rectangle))
     for x, y in rng.integers(0, 9, (12, 2)):
         share_x, share_y = Fraction(int(x), 8), Fraction(int(y), 8)
-        points.append(tuple(a + s * (b - a) for a, b, s in zip(*rectangle, (share_x, share_y), strict=True)))
+        points.append(rectangle[0] + np.array([share_x, share_y]) * (rectangle[1] - rectangle[0]))
     for edge in edges:
-        ends = clipped(exact(edge), *rectangle)
+        ends = sorted(map(tuple, clipped(exact(edge), *rectangle)))
         points += ends
         if ends:
-            points.append(tuple((a + b) / 2 for a, b in zip(min(ends), max(ends), strict=True)))
+            points.append(tuple((a + b) / 2 for a, b in zip(ends[0], ends[-1], strict=True)))
     return points
 
 

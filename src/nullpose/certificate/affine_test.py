@@ -46,24 +46,23 @@ def link(
     r = points.T - p
     o, m = field.offset[:, None], field.matrix
     u = p[0] * m[:, [0]] + p[1] * m[:, [1]] + p[2] * m[:, [2]] + o
-    near, has = r.squared().total().of(inverse), np.any(axes != 0.0, axis=1)
-    kept, across = (1.0 - Interval(leak)) if leak > 0.0 else 1.0, cross(u, r)
+    near, square, across = r.squared().total().of(inverse), u.squared().total(), cross(u, r)
     f = across.squared().total()
     if leak > 0.0:
         f = f + (u * r).total().squared() * leak
-    f = f * near * near / u.squared().total()
-    if np.any(has):
+    f = f * near * near / square
+    if np.any(has := np.any(axes != 0.0, axis=1)):
         beside = cross(r, Interval(axes.T))
-        of_dipole = (across * beside).total().squared() * near / u.squared().total() * kept
+        of_dipole = (across * beside).total().squared() * near / square
         if leak > 0.0:
-            of_dipole = of_dipole + beside.squared().total() * leak
+            of_dipole = of_dipole * (1.0 - Interval(leak)) + beside.squared().total() * leak
         f = chosen(has, of_dipole * near * near, f)
     f = f.within(0.0, near.over.value)  # the gain is at most 1
     return f if gain is None else f * gain
 
 
 def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Check which boxes their leaf's multipliers exclude under the axis field.
+    """Check which boxes their leaf's multipliers exclude under the axis field: lemma 3.
 
     Args:
         family: the ratios.

@@ -52,11 +52,11 @@ def negative_where_allowed(
         return holds
     steep = gradient()
     holds[left] = True
-    for alternative in zone_alternatives(family, leaves.ball[left] - balls, boxes.chosen(left)):
-        named = left[alternative.rows]
+    for rows, constraints in zone_alternatives(family, leaves.ball[left] - balls, boxes.chosen(left)):
+        named = left[rows]
         excluded = np.zeros(len(named), dtype=bool)
-        for multipliers in _guesses(alternative.constraints, steep[:, named]):
-            excluded |= test(named, list(zip(multipliers, alternative.constraints, strict=True)))
+        for multipliers in _guesses(constraints, steep[:, named]):
+            excluded |= test(named, list(zip(multipliers, constraints, strict=True)))
         holds[named[~excluded]] = False  # a box may be named twice
     return holds
 

@@ -78,19 +78,35 @@ def boxes_of(root_m: FloatArray, leaves: Leaves) -> Boxes:
 
 def parts(boxes: Boxes) -> Boxes:
     """Cut into the eight parts of each box, a hair larger than an eighth."""
-    signs = np.array([[1.0 if c >> i & 1 else -1.0 for i in range(3)] for c in range(8)])
-    centre = (boxes.centre[:, None, :] + 0.5 * signs * boxes.half[:, None, :]).reshape(-1, 3)
+    for side in range(3):
+        boxes = halved(boxes, np.full(len(boxes), side))
+    return boxes
+
+
+def halved(boxes: Boxes, side: IntArray) -> Boxes:
+    """Cut into the lower and then the upper half of each box, a hair larger than half of it.
+
+    Args:
+        boxes: b of them.
+        side: (b,) the axis of each to cut across; others than x, y and z change nothing.
+    """
+    across = np.arange(3) == side[:, None]
     slack = 4e-16 * (np.abs(boxes.centre) + boxes.half)
     # the step upwards counts where the slack is too small to be a number
-    half = np.repeat(np.nextafter(0.5 * boxes.half + slack, np.inf), 8, axis=0)
-    return Boxes(leaf=np.repeat(boxes.leaf, 8), centre=centre, half=half)
+    half = np.where(across, np.nextafter(0.5 * boxes.half + slack, np.inf), boxes.half)
+    step = np.where(across, 0.5 * boxes.half, 0.0)
+    both = [Boxes(leaf=boxes.leaf, centre=boxes.centre + sign * step, half=half) for sign in (-1.0, 1.0)]
+    return Boxes(
+        **{name: np.concatenate([getattr(b, name) for b in both]) for name in ("leaf", "centre", "half")}
+    )
 
 
 def uncovered(leaves: Leaves) -> str:
     """Find a region of the root that the leaves do not cover; an empty string if there is none.
 
-    A region is covered if one leaf holds it, or if it can be halved across a direction in which every leaf
-    in it is finer, and both halves are covered. The regions of as many cuts are looked at together.
+    Coverage in whole numbers: a region is covered if one leaf holds it, or if it can be halved across a
+    direction in which every leaf in it is finer, and both halves are covered. The regions of as many cuts
+    are looked at together.
 
     Args:
         leaves: to be checked; depths and indices in range. Those for an antenna that is the same all round
@@ -113,23 +129,25 @@ def uncovered(leaves: Leaves) -> str:
         finer = (least > depth[start]) & ((np.arange(5) < 3) | (on_face[start] >= 0)[:, None])
         parted = by_face | np.any(finer, axis=1)
         holds = np.all(depths[leaf] <= depth, axis=1) & ((faces[leaf] < 0) | (on_face >= 0))
-        side = np.argmax(finer, axis=1)[group]
-        rows = np.arange(len(leaf))
-        beyond = depths[leaf, side] - depth[rows, side] - 1
-        half = indices[leaf, side] >> np.maximum(beyond, 0) & 1
+        rows, side = np.arange(len(leaf)), np.argmax(finer, axis=1)[group]
+        half = indices[leaf, side] >> np.maximum(depths[leaf, side] - depth[rows, side] - 1, 0) & 1
         key = 3 * group + np.where(by_face[group], faces[leaf], half)
         found = np.bincount(np.unique(key) // 3, minlength=len(start))
         enough = found >= np.where(by_face, 1 if is_profile else 3, 2)
         covered = np.where(parted, enough, np.logical_or.reduceat(holds, start))
         if not np.all(covered):
-            row = start[np.argmin(covered)]
+            gap = int(np.argmin(covered))
+            row = start[gap]
             index = indices[leaf[row]] >> depths[leaf[row]] - depth[row]
-            parts = zip("xyzab", index, 1 << depth[row], strict=True)
-            place = ", ".join(f"{name} {i + 1} of {count}" for name, i, count in parts if count > 1)
-            return f"the leaves do not cover the root: they leave out some of its part {place or 'all'}"
-        depth[rows, side] += np.where(by_face[group], 0, 1)
+            sides = zip("xyzab", index, 1 << depth[row], strict=True)
+            lost = (
+                min({0, 1, 2} - set((key[group == gap] - 3 * gap).tolist())) if by_face[gap] else on_face[row]
+            )
+            names = [f"{name} {i + 1} of {count}" for name, i, count in sides if count > 1]
+            part = ", ".join(names + ([f"face{lost}"] if lost >= 0 else [])) or "all of it"
+            return f"the leaves do not cover the root: they leave out, at least in part, {part}"
+        depth[rows, side] += ~by_face[group]
         on_face = np.where(by_face[group], faces[leaf], on_face)
-        order = np.argsort(key, kind="stable")
-        order = order[parted[group[order]]]
+        order = np.argsort(np.where(parted[group], key, -1), kind="stable")[np.sum(~parted[group]) :]
         leaf, region, depth, on_face = leaf[order], key[order], depth[order], on_face[order]
     return ""

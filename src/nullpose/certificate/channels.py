@@ -7,7 +7,6 @@ A new kind of channel is one more formula.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 
@@ -154,30 +153,15 @@ def elevation(q: Taylor) -> tuple[Taylor, Interval]:
     return Taylor(q.half, angle, slopes, bends).tightened(), tangent
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Amplitude:
-    """The amplitudes of links over their boxes, the roots of their excess gains.
-
-    Args:
-        value: (b,) at the centres; or the end of its range that makes the bound valid, with no slope.
-        gradient: (3, b) by the position, at the centres.
-        most: (b,) the largest in the box.
-        slope: (b,) a bound on the first derivative along any unit direction.
-        bend: (b,) likewise on the second.
-    """
-
-    value: Interval
-    gradient: Interval
-    most: Interval
-    slope: Interval
-    bend: Interval
-
-
 @np.errstate(over="ignore", invalid="ignore")  # directly over a point nothing is known: infinity less that
-def amplitude(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Amplitude | None:
-    """Return the amplitude of one point for each box; None where all are in free space.
+def amplitude(
+    family: Family, boxes: Boxes, point: IntArray, is_above: bool
+) -> tuple[Interval, Interval, Interval]:
+    """Bound the amplitude of one point over each box, the root of its excess gain.
 
-    An end of the range stands for all of it, where that leaves out less.
+    An end of the range stands for all of it, with no slope, where that leaves out less.
+    Returns its value at the centres, (b,), its gradient there, (3, b), and bounds, (3, b), on it and on its
+    first two derivatives along any unit direction.
 
     Args:
         family: with its channels.
@@ -185,14 +169,12 @@ def amplitude(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> 
         point: (b,).
         is_above: whether the link is to be bounded from above, else from below.
     """
-    if not len(family.channels):
-        return None
     rows = family.channels[point].T
     distance, angle, tangent = _sight(family.points_m[point], boxes, rows)
     at, d = stack([distance.at.value, angle.at.value]), distance.over.value
     polar = coordinates(at, stack([d, angle.over.value]))
     h = (_log_gain(rows, polar[0], polar[1]) * 0.5).of(exponential)
-    # derivatives along the way, as the elevation grows, and across both
+    # derivatives along the line of sight, as the elevation grows, and across both
     value, slopes, bends = h.over
     out, up = slopes[0], slopes[1] / d
     outwards, turned, mixed = bends[0], (bends[1] / d + out) / d, (bends[2] - up) / d
@@ -202,18 +184,13 @@ def amplitude(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> 
     slope = (out.squared() + up.squared()).sqrt()
     gradient = distance.at.slopes * h.at.slopes[0] + angle.at.slopes * h.at.slopes[1]
     h0, h1, h2 = (x.most().high for x in (value, slope, bend))
-    end, closeness, square = value.high if is_above else value.low, 1.0 / d.low, 0.5 * boxes.half2.low
+    end, closeness, square = _end(h, is_above), 1.0 / d.low, 0.5 * boxes.half2.low
     b0, b1 = h0 * closeness, (h0 * closeness + h1) * closeness
     left_out = square * (b1 * b1 + b0 * (2.0 * b1 + h2) * closeness)
     by_end = np.abs(end**2 - h.at.value.middle() ** 2) * closeness**2 + 3.0 * square * end**2 * closeness**4
     use = left_out < by_end
-    return Amplitude(
-        where(use, h.at.value, end),
-        where(use, gradient, 0.0),
-        where(use, h0, end),
-        where(use, h1, 0.0),
-        where(use, h2, 0.0),
-    )
+    sizes = stack([where(use, size, alone) for size, alone in ((h0, end), (h1, 0.0), (h2, 0.0))])
+    return where(use, h.at.value, end), where(use, gradient, 0.0), sizes
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -221,6 +198,16 @@ def _gain(family: Family, boxes: Boxes, point: IntArray) -> Taylor:
     """Return the excess gains of one point for each box."""
     rows = family.channels[point].T
     return _log_gain(rows, *_sight(family.points_m[point], boxes, rows)[:2]).of(exponential)
+
+
+def _end(gain: Taylor, is_above: bool) -> FloatArray:
+    """Take the end of a range over boxes that bounds it from above, or from below."""
+    return gain.over.value.high if is_above else gain.over.value.low
+
+
+def excess_end(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Interval | float:
+    """Bound the excess gains of one point over each box from above, or from below."""
+    return Interval(_end(_gain(family, boxes, point), is_above)) if len(family.channels) else 1.0
 
 
 def excess(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Taylor | None:
@@ -231,7 +218,7 @@ def excess(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Tay
     if not len(family.channels):
         return None
     gain, half = _gain(family, boxes, point), boxes.half.T
-    end = gain.over.value.high if is_above else gain.over.value.low
+    end = _end(gain, is_above)
     weight = np.where(IDENTITY > 0.0, 0.25, 0.5)[:, None] * half[ROW] * half[COLUMN]
     bends = gain.over.bends
     use = np.sum((bends.high - bends.low) * weight, axis=0) < np.abs(end - gain.at.value.middle())

@@ -1,4 +1,4 @@
-"""Sums of forms where points have dipoles: an upper bound over each box, linear in the position.
+"""Sums of forms where points have dipoles: an upper bound over each box, linear in the position ("The sum").
 
 Links are squares of link vectors, which are bounded as such (see :func:`square_over`): near a null the square
 is never below zero, which the derivatives of the form alone do not know.
@@ -10,13 +10,12 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import Leaves
-from nullpose.certificate.channels import excess
+from nullpose.certificate.channels import excess_end
 from nullpose.certificate.forms import COLUMN, IDENTITIES, IDENTITY, ROW, Linear, outer, squares, top_vectors
 from nullpose.certificate.interval import Interval, stack, swapped, where
-from nullpose.certificate.shear import Shear, link_vector, shear_of, way_to
+from nullpose.certificate.shear import Shear, link_vector, offset_to, shear_of
 from nullpose.certificate.taylor import Taylor, chosen, cross
 from nullpose.certificate.weighted_sum import weighted_sum
-from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.family import Family
 
@@ -26,7 +25,7 @@ _TINY = 1e-290
 
 
 def dipole_sum(family: Family, leaves: Leaves, boxes: Boxes, constant: Interval) -> tuple[Linear, Shear]:
-    """Return an upper bound on a leaf's sum over its box, linear in the position, and its coordinates.
+    """Bound the sum of a leaf from above over its box, linear in the position, in coordinates that turn.
 
     Args:
         family: the ratios.
@@ -40,8 +39,8 @@ def dipole_sum(family: Family, leaves: Leaves, boxes: Boxes, constant: Interval)
     rest, leaking = whole.alike(Interval(np.zeros((6, len(boxes))))), whole[0].alike(identity)
     links: list[tuple[Taylor, Interval, Interval, float]] = []
     for point, plain, sign in terms:
-        scale = plain * _excess_end(family, boxes, point, sign)
-        r, near = way_to(family.points_m[point], boxes)
+        scale = plain * excess_end(family, boxes, point, sign > 0.0)
+        r, near = offset_to(family.points_m[point], boxes)
         axes = family.ground_axes[point]
         if family.leak > 0.0:
             leaking = leaking + _gain(r, near, axes) * (scale * (sign * family.leak))
@@ -64,12 +63,6 @@ def dipole_sum(family: Family, leaves: Leaves, boxes: Boxes, constant: Interval)
     for vector, third, scale, sign in links:
         total = total + square_over(vector, third, top, scale, sign)
     return total, shear
-
-
-def _excess_end(family: Family, boxes: Boxes, point: IntArray, sign: float) -> Interval | float:
-    """Bound the excess gain in each box by its largest or least: what a link's form is bounded with."""
-    gain = excess(family, boxes, point, sign > 0.0)
-    return 1.0 if gain is None else Interval(gain.over.value.high if sign > 0.0 else gain.over.value.low)
 
 
 def _gain(r: Taylor, near: Taylor, axes: FloatArray) -> Taylor:

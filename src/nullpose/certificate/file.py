@@ -199,15 +199,13 @@ Reader: TypeAlias = Callable[[object, str], Any]
 _MISSING = object()
 
 
-def _refusal(value: object, path: str, words: str) -> CertificateError:
-    what = "is missing" if value is _MISSING else "is wrong"
-    return CertificateError(f"{path}: {what}; must be {words}")
+def _refusal(value: object, path: str, words: str) -> str:
+    return f"{path}: {'is missing' if value is _MISSING else 'is wrong'}; must be {words}"
 
 
 def _plain(value: object, path: str, kinds: type | UnionType, words: str) -> Any:
     """Return a value that is as it should be if it is of some kind."""
-    if not isinstance(value, kinds):
-        raise _refusal(value, path, words)
+    _require(isinstance(value, kinds), _refusal(value, path, words))
     return value
 
 
@@ -226,7 +224,7 @@ def _numbers(value: Any, path: str, shape: tuple[int, ...] = (), kind: type = fl
             if np.all(np.isfinite(array := np.array(flat, dtype=np.int64 if kind is int else float))):
                 return array.reshape(shape) if shape else array.item()
     sizes = "".join("a list, each " if n < 0 else f"a list of {n}, each " for n in shape)
-    raise _refusal(value, path, f"{sizes}a {'whole' if kind is int else 'finite'} number")
+    raise CertificateError(_refusal(value, path, f"{sizes}a {'whole' if kind is int else 'finite'} number"))
 
 
 def _list_of(read: Reader) -> Reader:
@@ -240,8 +238,8 @@ def _mixes(value: Any, path: str) -> tuple[dict[int, float], ...]:
     _numbers(pairs, path, (-1, 2))
     mixes = tuple(dict(mix) for mix in value)
     of_ratios = all(type(ratio) is int and ratio >= 0 for mix in mixes for ratio in mix)
-    if not of_ratios or sum(map(len, mixes)) != len(pairs):
-        raise _refusal(value, path, "lists of [ratio, weight] with different ratios")
+    is_right = of_ratios and sum(map(len, mixes)) == len(pairs)
+    _require(is_right, _refusal(value, path, "lists of [ratio, weight] with different ratios"))
     return mixes
 
 

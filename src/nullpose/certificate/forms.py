@@ -28,8 +28,7 @@ COUNTED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 def squares(x: Interval) -> Interval:
     """Return ``x x^T`` of vectors along the first axis; what is squared is never below zero."""
     products = x[ROW] * x[COLUMN]
-    np.maximum(products.low[:3], 0.0, out=products.low[:3])
-    return products
+    return Interval(np.concatenate([np.maximum(products.low[:3], 0.0), products.low[3:]]), products.high)
 
 
 def outer(x: Interval, y: Interval) -> Interval:
@@ -79,7 +78,7 @@ def gram(basis: Interval) -> Interval:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Linear:
-    """Symmetric matrices ``Q + sum_i x_i Q_i`` of the step x from a box's centre.
+    """Symmetric matrices ``Q + sum_i x_i Q_i`` of the step x from a box's centre: the test of a box.
 
     Args:
         value: (6, b) Q.

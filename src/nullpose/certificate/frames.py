@@ -16,7 +16,7 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, Leaves
-from nullpose.certificate.channels import Amplitude, amplitude
+from nullpose.certificate.channels import amplitude
 from nullpose.certificate.forms import COLUMN, Linear, congruence, gram, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
 from nullpose.certificate.lemmas import DIRECTION_BEND
@@ -93,7 +93,7 @@ def axes_across(third: FloatArray, mask: np.ndarray) -> FloatArray:
 def expansion(
     family: Family, frames: Frames, boxes: Boxes, point: IntArray, is_above: bool
 ) -> tuple[Linear, Interval, Interval]:
-    """Return the form of one point for each box, and bounds on two second derivatives, (b,) each.
+    """Expand the form of one point for each box, and bound two second derivatives, (b,) each: lemmas 1 and 2.
 
     The first bounds the form's from above, or minus it, as ``is_above`` says, and multiplies the identity;
     for the anchor of a turning frame, what its form is made of: :func:`anchor_shape`. The second bounds the
@@ -118,10 +118,14 @@ def expansion(
     pull = frames.direction * 2.0 / (s * frames.rho)
     slopes = where(anchored, shape[:, None] * pull, slopes)
     near = boxes.nearest(points_m)
-    field = amplitude(family, boxes, point, is_above)
     rate = where(frames.turning & ~anchored, 1.0 / frames.rho_least, 0.0)
     # the rules invert, scale and turn: bounds on the link vector and on its first two derivatives
-    h0, h1, h2 = (1.0, 0.0, 0.0) if field is None else (field.most, field.slope, field.bend)
+    link, (h0, h1, h2) = Linear(form, slopes), (Interval(size) for size in (1.0, 0.0, 0.0))
+    if len(family.channels):
+        h, gradient, sizes = amplitude(family, boxes, point, is_above)
+        square, change = h.squared(), gradient * h * 2.0
+        link = Linear(form * square, slopes * square + form[:, None] * change)
+        h0, h1, h2 = (sizes[i] for i in range(3))
     length = h0 / near
     slope = (length + h1) / near
     bend = (slope * 2.0 + h2) / near
@@ -133,14 +137,7 @@ def expansion(
     else:
         falling = (slope + h1 / near + h2) / near * length
         second = where(anchored, falling, length * seen_bend) * 2.0
-    result = Linear(form, slopes) if field is None else _scaled(Linear(form, slopes), field)
-    return result, second.most(), seen_bend.most()
-
-
-def _scaled(link: Linear, field: Amplitude) -> Linear:
-    """Return a form multiplied by the square of an amplitude."""
-    square, change = field.value.squared(), field.gradient * field.value * 2.0
-    return Linear(link.value * square, link.slopes * square + link.value[:, None] * change)
+    return link, second.most(), seen_bend.most()
 
 
 def anchor_shape(family: Family, frames: Frames) -> Interval:

@@ -27,6 +27,8 @@ _LARGEST_ETA = 0.5
 def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Check which boxes their leaf's multipliers exclude, whatever the axis in the leaf's cell and the band.
 
+    Weak duality: where the sum is negative definite, no axis has all ratios at the level.
+
     Where every axis is horizontal, the sum need only be negative on the horizontal plane.
 
     Args:
@@ -104,7 +106,7 @@ def sharper(
     bend: Interval,
     plain: Interval,
 ) -> tuple[FloatArray, Interval]:
-    """Return each box's eta and the remainder near a null, or zero and the plain one where that is smaller.
+    """Choose each box's eta and the remainder near a null, or zero and the plain one where that is smaller.
 
     Args:
         form: of one point, at the centres, in the frames' bases.

@@ -7,6 +7,7 @@ floating-point numbers on either side enclose the exact result. Nothing else is 
 from __future__ import annotations
 
 from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -20,24 +21,19 @@ _LARGEST = float(np.finfo(float).max)
 
 def _step(x: FloatArray) -> FloatArray:
     """Take more than half of the way to either neighbour, so that its rounding leads there at least."""
-    step = np.abs(x)
-    step *= _MORE
-    step += _LEAST
-    return step
+    return np.abs(x) * _MORE + _LEAST
 
 
 def _down(x: FloatArray) -> FloatArray:
-    """Bound from below the numbers to which x are nearest; what is too large for one is no less than that."""
-    end = np.minimum(x, _LARGEST)
-    end -= _step(end)
-    return end
+    """Bound from below the numbers to which x are nearest."""
+    x = np.minimum(x, _LARGEST)  # what is too large for a number is no less than that
+    return x - _step(x)
 
 
 def _up(x: FloatArray) -> FloatArray:
     """Bound from above the numbers to which x are nearest."""
-    end = np.maximum(x, -_LARGEST)
-    end += _step(end)
-    return end
+    x = np.maximum(x, -_LARGEST)
+    return x + _step(x)
 
 
 def above(x: FloatArray) -> FloatArray:
@@ -109,11 +105,10 @@ class Interval:
         return Interval(*(end.T for end in self.ends))
 
     def squared(self) -> Interval:
-        """Return the squares, never below zero."""
+        """Square the numbers; what is squared is never below zero."""
         a, b = self.low * self.low, self.high * self.high
-        across = (self.low < 0.0) & (self.high > 0.0)
-        low = np.where(across, 0.0, np.maximum(_down(np.minimum(a, b)), 0.0))
-        return Interval(low, _up(np.maximum(a, b)))
+        low = np.where((self.low < 0.0) & (self.high > 0.0), 0.0, _down(np.minimum(a, b)))
+        return Interval(np.maximum(low, 0.0), _up(np.maximum(a, b)))
 
     def sqrt(self) -> Interval:
         """Return the square roots of numbers that are not negative."""
@@ -139,10 +134,7 @@ class Interval:
 
     def total(self) -> Interval:
         """Return the sum over the first axis."""
-        result = self[0]
-        for i in range(1, len(self.low)):
-            result = result + self[i]
-        return result
+        return reduce(add, (self[i] for i in range(len(self.low))))
 
 
 ANY = Interval(-np.inf, np.inf)
@@ -155,7 +147,7 @@ def as_interval(value: Interval | ArrayLike) -> Interval:
 
 
 def common(a: Interval, b: Interval) -> Interval:
-    """Return what two enclosures of the same numbers have in common; undefined ends do not count."""
+    """Intersect two enclosures of the same numbers; undefined ends do not count."""
     return Interval(np.fmax(a.low, b.low), np.fmin(a.high, b.high))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
@@ -10,14 +9,10 @@ from typing import TypeAlias
 import numpy as np
 
 from nullpose.certificate.interval import Interval
+from nullpose.certificate.pose_value import Exact, exact
 from nullpose.physics.types import FloatArray
 
-Point: TypeAlias = tuple[Fraction, ...]
-
-
-def exact(numbers: Iterable[float]) -> Point:
-    """Return floating-point numbers as fractions."""
-    return tuple(Fraction(float(x)) for x in numbers)
+Point: TypeAlias = Exact
 
 
 def may_meet(edges: FloatArray, low: FloatArray, high: FloatArray) -> np.ndarray:
@@ -48,7 +43,7 @@ class Outline:
         is_fence: whether it is the outside.
     """
 
-    edges: tuple[Point, ...]
+    edges: Exact
     is_fence: bool
 
     @classmethod
@@ -59,7 +54,7 @@ class Outline:
             edges: (e, 4).
             is_fence: whether the outside is forbidden.
         """
-        return cls(tuple(exact(edge) for edge in edges), is_fence)
+        return cls(exact(edges), is_fence)
 
     def allowance(self, edge: int, point: Point) -> Fraction:
         """Return a multiple of how far a point is on the allowed side of an edge's line.
@@ -128,19 +123,19 @@ class Outline:
         if not region:
             return True
         # the mean of its vertices is beyond a line if any of them is
-        mean = tuple(sum(each, Fraction(0)) / len(region) for each in zip(*region, strict=True))
+        mean = np.sum(region, axis=0) / len(region)
         return any(self.allowance(edge, mean) >= 0 for edge in (first, second)) or self.forbids(mean)
 
 
 def left_of(edge: Point, point: Point) -> Fraction:
     """Return a multiple of how far a point is to the left of an edge's line."""
     x1, y1, x2, y2 = edge
-    return (x2 - x1) * (point[1] - y1) - (y2 - y1) * (point[0] - x1)
+    return Fraction((x2 - x1) * (point[1] - y1) - (y2 - y1) * (point[0] - x1))
 
 
 def corners(low: Point, high: Point) -> list[Point]:
     """Return the corners of a rectangle in order around it, the lower one first."""
-    return [low, (high[0], low[1]), high, (low[0], high[1])]
+    return [low, np.array([high[0], low[1]]), high, np.array([low[0], high[1]])]
 
 
 def cut(region: list[Point], values: list[Fraction]) -> list[Point]:
@@ -155,7 +150,7 @@ def cut(region: list[Point], values: list[Fraction]) -> list[Point]:
         before, other = values[i - 1], region[i - 1]
         if before * value < 0:
             share = before / (before - value)
-            part.append(tuple(a + share * (b - a) for a, b in zip(other, point, strict=True)))
+            part.append(other + share * (point - other))
         if value >= 0:
             part.append(point)
     return part

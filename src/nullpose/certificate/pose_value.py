@@ -178,7 +178,7 @@ def ratios_at(
 
 
 def value_of(family: Family, ratios: Exact) -> Fraction:
-    """Return what is maximised from the ratios at a pose: the smallest, of pairs too, or less than the mean.
+    """Evaluate the objective from the ratios at a pose: the smallest, of pairs too, or less than the mean.
 
     The bound is as near as logarithms are.
     """

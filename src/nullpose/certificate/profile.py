@@ -9,10 +9,11 @@ from fractions import Fraction
 from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from nullpose.antenna import PatternAntenna
 from nullpose.certificate.interval import Interval
-from nullpose.certificate.pose_value import sine_cosine
+from nullpose.certificate.pose_value import exact, sine_cosine
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
@@ -38,7 +39,8 @@ class Profile:
         at = np.array([(2 * i + 1 - _CELLS) * unit // _CELLS for i in range(_CELLS)], dtype=object)
         self.middles: FloatArray = (2.0 * np.arange(_CELLS) + 1.0) / _CELLS - 1.0
         self.terms = [_values(self.powers, order, at) for order in range(_ORDER + 1)]  # over the factorials
-        self.rest = _upwards(_most(weights, _ORDER + 1) / math.factorial(_ORDER + 1))
+        rest = _most(weights, _ORDER + 1) / math.factorial(_ORDER + 1)
+        self.rest = float(np.nextafter(float(rest), np.inf))
         whole = Interval(np.full(_CELLS, -1.0 / _CELLS), np.full(_CELLS, 1.0 / _CELLS))
         self.spans = [_spans(self._series(order, np.arange(_CELLS), whole)) for order in range(3)]
         self.peak = float(self.within(0, Interval([-1.0], [1.0])).high[0])
@@ -167,18 +169,8 @@ def _ends(scenario: Scenario) -> tuple[tuple[float, float], tuple[float, float]]
 
 
 def _powers(weights: FloatArray) -> list[Fraction]:
-    """Return the coefficients of the powers of c, exactly."""
-    total = [Fraction(0)] * len(weights)
-    before, current = [Fraction(0)] * len(weights), [Fraction(0)] * len(weights)
-    current[0] = Fraction(1)
-    for n, weight in enumerate(weights.tolist()):
-        total = [t + Fraction(weight) * a for t, a in zip(total, current, strict=True)]
-        ahead = [Fraction(0), *current[:-1]]
-        before, current = (
-            current,
-            [((2 * n + 1) * a - n * b) / (n + 1) for a, b in zip(ahead, before, strict=True)],
-        )
-    return total
+    """Sum Legendre polynomials with weights: the coefficients of the powers of c, exactly."""
+    return list(legendre.leg2poly(exact(weights)))
 
 
 def _values(powers: list[Fraction], order: int, at: np.ndarray) -> Interval:
@@ -191,17 +183,8 @@ def _values(powers: list[Fraction], order: int, at: np.ndarray) -> Interval:
 
 
 def _most(weights: FloatArray, order: int) -> Fraction:
-    """Return a bound on a derivative's magnitude: those of Legendre polynomials are largest at 1."""
-    total = Fraction(0)
-    for n, weight in enumerate(weights.tolist()):
-        if n >= order:
-            at_one = Fraction(math.factorial(n + order), 2**order * math.factorial(order))
-            total += abs(Fraction(weight)) * at_one / math.factorial(n - order)
-    return total
-
-
-def _upwards(x: Fraction) -> float:
-    return float(np.nextafter(float(x), np.inf))
+    """Bound a derivative's magnitude: those of Legendre polynomials are largest at 1."""
+    return sum((a * math.perm(n, order) for n, a in enumerate(_powers(np.abs(weights)))), Fraction(0))
 
 
 def _spans(bounds: Interval) -> tuple[FloatArray, FloatArray]:

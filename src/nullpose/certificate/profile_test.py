@@ -1,4 +1,4 @@
-"""Leaves of an antenna that is the same all round: a weighted sum, negative whatever position and axis.
+"""Leaves of rotationally symmetric antennas: a weighted sum that is negative whatever position and axis.
 
 With r the vector from a position to the leaf's anchor, a ground point, an axis is given by the angle u from r
 to it and a spin s about r. With ``w_j = r + d_j`` the vector to point j and x, y, z the coordinates of r in
@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nullpose.certificate.boxes import Boxes
+from nullpose.certificate.boxes import Boxes, halved
 from nullpose.certificate.certificate import DEEPEST, Leaves
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.plain_tests import kept_out_holds
@@ -92,17 +92,11 @@ def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Bo
 
 def _halved(cells: _Cells, side: IntArray) -> _Cells:
     """Cut into both halves of each cell, across a coordinate: x, y, z, the angle or the spin."""
-    sign, side = np.repeat([-1.0, 1.0], len(side)), np.tile(side, 2)
-    both = cells.chosen(np.tile(np.arange(len(cells.boxes)), 2))
-    centre, half, turn = both.boxes.centre, both.boxes.half, both.turn
-    at = np.flatnonzero(side < 3), side[side < 3]
-    slack = 4e-16 * (np.abs(centre[at]) + half[at])
-    centre[at] += sign[at[0]] * 0.5 * half[at]
-    half[at] = np.nextafter(0.5 * half[at] + slack, np.inf)
-    rows, depth = np.flatnonzero(side >= 3), 2 * (side[side >= 3] - 3)
+    turn, rows = np.tile(cells.turn, (2, 1)), np.flatnonzero(np.tile(side, 2) >= 3)
+    depth = 2 * (np.tile(side, 2)[rows] - 3)
     turn[rows, depth] += 1
-    turn[rows, depth + 1] = 2 * turn[rows, depth + 1] + (sign[rows] > 0.0)
-    return both
+    turn[rows, depth + 1] = 2 * turn[rows, depth + 1] + (rows >= len(side))
+    return _Cells(halved(cells.boxes, side), turn)
 
 
 def _excluded(
@@ -113,10 +107,8 @@ def _excluded(
     side = np.zeros(len(cells.boxes), dtype=np.int64)
     key = leaves.point * 3 + leaves.face
     for shared in np.unique(key):
-        rows = np.flatnonzero((key == shared) & ~excluded)
-        for start in range(0, len(rows), _CHUNK):
-            block = rows[start : start + _CHUNK]
-            excluded[block], side[block] = _negative(family, field, leaves.chosen(block), cells.chosen(block))
+        if len(rows := np.flatnonzero((key == shared) & ~excluded)):
+            excluded[rows], side[rows] = _negative(family, field, leaves.chosen(rows), cells.chosen(rows))
     return excluded, side
 
 
@@ -132,11 +124,7 @@ def _negative(
     span = np.array([[0.5 if field.even else 1.0], [2.0]])  # of both angles, in multiples of pi
     half = np.vstack([cells.boxes.half.T[order], (PI * (span * np.ldexp(0.5, -depth))).high])
     turns = [sine_cosine(x) for x in span * np.ldexp(index + 0.5, -depth) - [[0.0], [1.0]]]
-    if np.any(missed := _out_of_reach(field, offset, turns, half, (2 - chart) % 3)):
-        side, left = np.zeros(len(missed), dtype=np.int64), ~missed
-        if np.any(left):
-            missed[left], side[left] = _negative(family, field, leaves.chosen(left), cells.chosen(left))
-        return missed, side
+    missed = _out_of_reach(field, offset, turns, half, (2 - chart) % 3)
     bound, shares = _largest(family, field.profile, leaves, links_of(apart, anchor, offset, turns, half))
     # a gain that hardly changes needs no cuts across the turn: what adds most is halved
     length_m = np.linalg.norm(offset.middle(), axis=0)
@@ -144,7 +132,7 @@ def _negative(
     # without a multiplier the leaf is out of the airframe's reach, whatever the sum
     tells = np.all(np.isfinite(shares), axis=0) & np.any(shares > _NOTHING, axis=0)
     side = np.argmax(np.where(tells, shares, sizes), axis=0)
-    return bound < 0.0, np.where(side < 3, order[np.minimum(side, 2)], side)
+    return missed | (bound < 0.0), np.where(side < 3, order[np.minimum(side, 2)], side)
 
 
 def _largest(
@@ -158,9 +146,10 @@ def _largest(
         leaves: with multipliers and level.
         links: of each point.
     """
-    identity, factors = _factors(family, leaves)
-    total = links[0][0].alike(identity)
-    for (cosine, near), weight in zip(links, factors, strict=True):
+    _, identity, terms = weighted_sum(family, leaves)
+    zero, total = Interval(np.zeros(len(leaves))), links[0][0].alike(identity)
+    for j, (cosine, near) in enumerate(links):
+        weight = sum((where(point == j, scale * sign, 0.0) for point, scale, sign in terms), zero)
         at, over = cosine.at.value, cosine.over.value
         gain = cosine.composed(*(joined(profile.near(n, at), profile.within(n, over)) for n in range(3)))
         total = total + gain * near * weight
@@ -214,12 +203,3 @@ def _out_of_reach(
         )
         missed &= below | above
     return missed
-
-
-def _factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval]]:
-    """Return a sum's constant, and what each point's gain over squared distance is multiplied by."""
-    _, identity, terms = weighted_sum(family, leaves)
-    zero, points = Interval(np.zeros(len(leaves))), range(len(family.points_m))
-    return identity, [
-        sum((where(point == j, scale * sign, 0.0) for point, scale, sign in terms), zero) for j in points
-    ]

@@ -63,21 +63,26 @@ class Shear:
         mixed = bend * most[1] * 3.0 + slope * most[2] * 3.0 + near * most[3]
         # the basis' columns are longer than one by rounding alone
         whole = (third * (most[0] + 1.0) + mixed) * ROUNDING
-        return (self.columns.at_centres() * vector[:, None]).total(), whole.most()
+        turned = (self.columns.at_centres() * vector[:, None]).total() if np.any(self.on) else vector
+        return turned, whole.most()
 
     def identity(self) -> Taylor:
         """Return ``basis^T (I + E + E^T) basis``, (6, b)."""
+        if not np.any(self.on):
+            return self.columns[0, 0].alike(self.gram)
         both = self.columns[:, ROW] * self.basis[:, COLUMN] + self.columns[:, COLUMN] * self.basis[:, ROW]
         return both.total() - self.gram
 
     def form(self, q: Interval) -> Taylor:
         """Return ``basis^T (I + E)^T Q (I + E) basis`` of constant forms, (6, b)."""
+        if not np.any(self.on):
+            return self.columns[0, 0].alike(q)
         image = (self.columns[:, None] * q[PLACE][:, :, None]).total()
         return (self.columns[:, ROW] * image[:, COLUMN]).total()
 
 
-def way_to(points_m: FloatArray, boxes: Boxes) -> tuple[Taylor, Taylor]:
-    """Return the way r from boxes to points, (3, b), and ``1 / |r|``."""
+def offset_to(points_m: FloatArray, boxes: Boxes) -> tuple[Taylor, Taylor]:
+    """State the vector r from boxes to points, (3, b), and ``1 / |r|``."""
     r = points_m.T - coordinates(Interval(boxes.centre.T), boxes.hull)
     return r, r.squared().total().of(inverse_root)
 
@@ -89,19 +94,23 @@ def link_vector(r: Taylor, near: Taylor, axes: FloatArray) -> Taylor:
 
 
 def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
-    """Return the coordinates of boxes, each with its leaf."""
+    """Find coordinates that turn for boxes, each with its leaf; with a fixed frame they stand still."""
     turning = leaves.test == TOWARDS
     anchor = np.where(turning, leaves.point, 0)
+    if not np.any(turning):
+        none, still = Interval(np.zeros((6, len(boxes)))), coordinates(Interval(boxes.centre.T), boxes.hull)
+        basis = Interval(np.tile(UNIT, len(boxes)))
+        return Shear(turning, anchor, none[:4], basis, gram(basis), still.alike(basis), still.alike(none))
     axes = family.ground_axes[anchor]
     is_dipole = np.any(axes != 0.0, axis=1)
-    r, near = way_to(family.points_m[anchor], boxes)
+    r, near = offset_to(family.points_m[anchor], boxes)
     a = chosen(is_dipole, link_vector(r, near, axes), r)
     a0 = a.at.value
     length = a0.squared().total().sqrt()
     d0 = a0 / length
     along = (a * d0).total()
     on = turning & ((along.over.value / length).low > _UPRIGHT) & (d0.radius().max(axis=0) < _SHARP)
-    # (a0 - a) / (a.d0) of a dipole's link vector a, r / (r.d0) - d0 of the way to another point
+    # (a0 - a) / (a.d0) of a dipole's link vector a, r / (r.d0) - d0 of the vector to another point
     w = chosen(is_dipole, -(a - a0), a) / along - where(is_dipole, 0.0, d0)
     w = chosen(on, w, w.alike(Interval(np.zeros((3, len(on))))))
     most = where(on, _sizes(w.over.value, along.over.value, near.over.value, is_dipole), 0.0)
@@ -119,7 +128,7 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
 def _sizes(w: Interval, along: Interval, near: Interval, is_dipole: np.ndarray) -> Interval:
     """Return bounds on w and its first three derivatives along a unit direction, by the quotient rule."""
     y, lean = Interval(along.low), w.squared().total().sqrt().most()
-    # of a link vector, or of the way to a point
+    # of a link vector, or of the vector to a point
     sizes = zip(vector_sizes(near), (1.0, 0.0, 0.0), strict=True)
     slope, bend, third = (where(is_dipole, *pair) for pair in sizes)
     rate = slope / y
@@ -132,7 +141,7 @@ def _sizes(w: Interval, along: Interval, near: Interval, is_dipole: np.ndarray) 
 
 
 def vector_sizes(near: Interval) -> tuple[Interval, ...]:
-    """Return bounds on the first three derivatives of a link vector, given ``1 / |r|``: lemma 5."""
+    """Bound the first three derivatives of a link vector, given ``1 / |r|``: lemma 5."""
     square = near.squared()
     sizes = square * VECTOR_SLOPE, square * near * VECTOR_BEND, square.squared() * VECTOR_THIRD
     return tuple(size.most() for size in sizes)

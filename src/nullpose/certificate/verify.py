@@ -164,12 +164,8 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
     """Find the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
     leaves = tree.leaves
     numbers = 2 * len(family.pairs) or len(family.numerator_point) + len(family.requirements)
-    no_point, no_mix = np.zeros((2, len(leaves)), dtype=bool)
-    for kind, test in _TESTS.items():
-        if test.points is not None:
-            no_point |= (leaves.test == kind) & _outside(leaves.point, test.points(family))
-        if test.has_mix:
-            no_mix |= (leaves.test == kind) & _outside(leaves.mix, len(leaves.mixes))
+    points = {kind: test.points(family) for kind, test in _TESTS.items() if test.points}
+    has_mix = np.isin(leaves.test, [kind for kind, test in _TESTS.items() if test.has_mix])
     depth, index = leaves.depths, leaves.indices
     faults = {
         "its level is above the bound": leaves.level > upper_bound,
@@ -178,8 +174,10 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
         "its test is for another antenna": (leaves.test == PROFILE) != isinstance(field, ProfileField),
         "its cell is that of a dipole": (leaves.test == PROFILE) & (leaves.face < 0),
-        "its point does not exist": no_point,
-        "its multipliers do not exist": no_mix,
+        "its point does not exist": np.any(
+            [(leaves.test == kind) & _outside(leaves.point, count) for kind, count in points.items()], axis=0
+        ),
+        "its multipliers do not exist": has_mix & _outside(leaves.mix, len(leaves.mixes)),
         "its keep-out ball or zone does not exist": leaves.ball >= _borders(family),
         "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
         "the band's multiplier is not a number": ~np.isfinite(leaves.band),
@@ -220,8 +218,8 @@ def _failing(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> 
 def _holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Check which boxes their leaves exclude."""
     holds, kinds = np.zeros(len(boxes), dtype=bool), leaves.test[boxes.leaf]
-    for check in dict.fromkeys(test.holds for test in _TESTS.values()):
-        if np.any(mask := np.isin(kinds, [kind for kind, test in _TESTS.items() if test.holds is check])):
+    for kind, test in _TESTS.items():
+        if np.any(mask := kinds == kind):
             tested = boxes.chosen(mask)
-            holds[mask] = check(family, field, leaves.chosen(tested.leaf), tested)
+            holds[mask] = test.holds(family, field, leaves.chosen(tested.leaf), tested)
     return holds

@@ -49,7 +49,7 @@ def mix_slots(leaves: Leaves) -> tuple[IntArray, FloatArray]:
 
 
 def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: FloatArray) -> Interval:
-    """Return by what the denominator is multiplied in the sum of a mean.
+    """Bound the denominator's factor in the sum of a mean: lemma 6.
 
     With ``X_k = a + N_k / D`` that is ``prod_k X_k^p_k``. Where it is at least t,
     ``sum_k q_k X_k >= t prod_k (q_k / p_k)^p_k`` for any positive q, as the arithmetic mean of the
@@ -74,7 +74,7 @@ def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: Float
 
 
 def pair_factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval]]:
-    """Return the identity's multiple in a sum of pairs, and by what each denominator is multiplied.
+    """Bound the identity's multiple in a sum of pairs, and each denominator's factor: lemma 7.
 
     That of an eavesdropper is added, that of a node is subtracted.
 
@@ -92,8 +92,8 @@ def pair_factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interva
     pairs, of, isotropic = family.pairs, family.denominator_of, family.denominator_isotropic
     beyond = Interval(family.numerator_isotropic) - isotropic[of]
     level = Interval(np.where(leaves.level >= 1.0, leaves.level, np.nan))
-    identity, nothing = Interval(np.zeros(len(leaves))), Interval(np.zeros(len(leaves)))
-    factors, used = [nothing] * len(isotropic), np.zeros((len(isotropic), len(leaves)), dtype=bool)
+    identity = Interval(np.zeros(len(leaves)))
+    factors = [identity] * len(isotropic)
     for q, (node, eavesdropper) in enumerate(pairs):
         multiplier, e0 = (np.sum(np.where(number == n, weight, 0.0), axis=0) for n in (q, q + len(pairs)))
         counts = multiplier > 0.0
@@ -103,12 +103,25 @@ def pair_factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interva
         for g, part, sign in ((of[node], Interval(multiplier), -1.0), (of[eavesdropper], share * heard, 1.0)):
             identity = where(counts, identity + part * (sign * isotropic[g]), identity)
             factors[g] = where(counts, factors[g] + part, factors[g])
-            used[g] |= counts
-    return identity, [where(mask, factor, 0.0) for mask, factor in zip(used, factors, strict=True)]
+    return identity, factors
+
+
+def level_factor(
+    family: Family, leaves: Leaves, number: IntArray, weight: FloatArray, denominator: int
+) -> Interval:
+    """Bound a denominator's factor, ``sum_k lambda_k t``, or that of a mean; 0 where it is not used."""
+    ratios = len(family.numerator_point)
+    ratio = number % ratios
+    mine = np.where(family.denominator_of[ratio] == denominator, weight, 0.0)
+    level = Interval(mine).total() * leaves.level
+    if len(family.shares):
+        least = np.append(family.requirements, 0.0)[np.where(number >= ratios, ratio, -1)]
+        level = mean_level(family, number, weight, leaves.level) + (Interval(weight) * least).total()
+    return where(np.any(mine > 0.0, axis=0), level, 0.0)
 
 
 def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Term]]:
-    """Return a sum's multiple of the identity, and its terms.
+    """State a sum's multiple of the identity, and its terms.
 
     A dipole of leak f is two points at one place: ``1 - f`` times the dipole, and f times an isotropic one.
     The family that is returned first has both.
@@ -117,7 +130,7 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         family: the ratios.
         leaves: with multipliers and level.
     """
-    ratios = len(family.numerator_point)
+    ratios, isotropic = len(family.numerator_point), family.denominator_isotropic
     leaks = np.zeros(len(family.points_m))
     leaks[: len(family.ground_leaks)] = family.ground_leaks * (family.ground_leaks < 1.0)
     leaky, twin = np.flatnonzero(leaks), np.cumsum(leaks > 0.0) + len(leaks) - 1
@@ -131,33 +144,24 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         return [dipole, Term(np.where(split, twin[point], point), leaking, sign)]
 
     number, weight = mix_slots(leaves)
-    ratio, is_required = number % ratios, number >= ratios
-    identity = Interval(np.zeros(len(leaves)))
+    ratio, identity = number % ratios, Interval(np.zeros(len(leaves)))
     terms: list[Term] = []
     if len(family.pairs):
         identity, factors = pair_factors(family, leaves)
-        ratio, weight = ratio[:0], weight[:0]
-        for g, factor in enumerate(factors):
-            sign = 1.0 if g in family.denominator_of[family.pairs[:, 1]] else -1.0
-            for e in range(*family.denominator_start[g : g + 2]):
-                point = np.full(len(leaves), family.denominator_point[e])
-                scale = where(factor.high > 0.0, factor * family.denominator_weight[e], 0.0)
-                terms += parts(point, scale, sign)
-    for k, w in zip(ratio, weight, strict=True):
-        identity = identity + Interval(w) * family.numerator_isotropic[k]
-        scale = Interval(w) * family.numerator_weight[k]
-        terms += parts(family.numerator_point[k], where(w > 0.0, scale, 0.0), 1.0)
-    for g, isotropic in enumerate(family.denominator_isotropic if len(ratio) else ()):
-        mine = np.where(family.denominator_of[ratio] == g, weight, 0.0)
-        counts = np.any(mine > 0.0, axis=0)
-        level = Interval(mine).total() * leaves.level
-        if len(family.shares):
-            least = np.append(family.requirements, 0.0)[np.where(is_required, ratio, -1)]
-            level = mean_level(family, number, weight, leaves.level) + (Interval(weight) * least).total()
-        identity = where(counts, identity - level * isotropic, identity)
+    else:
+        for k, w in zip(ratio, weight, strict=True):
+            identity = identity + Interval(w) * family.numerator_isotropic[k]
+            scale = Interval(w) * family.numerator_weight[k]
+            terms += parts(family.numerator_point[k], where(w > 0.0, scale, 0.0), 1.0)
+        factors = [level_factor(family, leaves, number, weight, g) for g in range(len(isotropic))]
+        for factor, below in zip(factors, isotropic, strict=True):
+            identity = where(factor.high != 0.0, identity - factor * below, identity)
+    for g, factor in enumerate(factors):
+        sign = 1.0 if len(family.pairs) and g in family.denominator_of[family.pairs[:, 1]] else -1.0
+        counts = factor.high != 0.0  # exactly zero where it does not count
         for e in range(*family.denominator_start[g : g + 2]) if np.any(counts) else ():
             point = np.full(len(leaves), family.denominator_point[e])
-            terms += parts(point, where(counts, level * family.denominator_weight[e], 0.0), -1.0)
+            terms += parts(point, where(counts, factor * family.denominator_weight[e], 0.0), sign)
     rows = family.channels
     if len(leaky):
         family = family.changed(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -58,21 +59,12 @@ class Constraint:
         return cls(value, away * 2.0, np.outer(counted, np.ones(value.low.shape)))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Alternative:
-    """One way for positions of some boxes to be allowed: constraints that all hold.
-
-    Args:
-        rows: (n,) which boxes.
-        constraints: on their positions; none if anything in them may be allowed.
-    """
-
-    rows: IntArray
-    constraints: tuple[Constraint, ...]
+Alternative: TypeAlias = tuple[IntArray, tuple[Constraint, ...]]
+"""Rows of boxes, and constraints, perhaps none, that all hold at positions which are allowed there."""
 
 
 def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alternative]:
-    """Return alternatives of which each allowed position of a box meets one that names the box.
+    """Find alternatives of which each allowed position of a box meets one that names the box: lemma 4.
 
     A box that none of them names is forbidden as a whole. Borders are allowed.
 
@@ -83,7 +75,7 @@ def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alte
     """
     hull, rows = boxes.hull, np.arange(len(boxes))
     floor, ceiling = family.zone_range_m[zone].T
-    found = []
+    found: list[Alternative] = []
     for mask, height, upwards in (
         (hull.high[2] >= ceiling, ceiling, 1.0),
         (hull.low[2] <= floor, floor, -1.0),
@@ -91,7 +83,7 @@ def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alte
         corner = np.outer(height[mask], [0.0, 0.0, 1.0])
         up = Interval(np.tile([[0.0], [0.0], [upwards]], len(corner)))
         away = (Interval(boxes.centre[mask]) - corner).T
-        found.append(Alternative(rows[mask], (Constraint.beyond(away, up),)))
+        found.append((rows[mask], (Constraint.beyond(away, up),)))
     is_cylinder = family.zone_kind[zone] == FORBIDDEN_CYLINDER
     found.append(_outside_cylinder(family, zone, boxes, rows[is_cylinder]))
     beyond = [
@@ -106,8 +98,8 @@ def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alte
         row, *edges = table.T
         sign = np.where(family.zone_kind[zone[row]] == FENCE, -1.0, 1.0)
         bounds = (_right_of(boxes.chosen(row), family.zone_edges[edge], sign) for edge in edges)
-        found.append(Alternative(row, tuple(bounds)))
-    return [alternative for alternative in found if len(alternative.rows)]
+        found.append((row, tuple(bounds)))
+    return [(row, bounds) for row, bounds in found if len(row)]
 
 
 def forbidden(family: Family, zone: IntArray, boxes: Boxes) -> np.ndarray:
@@ -119,8 +111,8 @@ def forbidden(family: Family, zone: IntArray, boxes: Boxes) -> np.ndarray:
         boxes: b of them.
     """
     holds = np.ones(len(boxes), dtype=bool)
-    for alternative in zone_alternatives(family, zone, boxes):
-        holds[alternative.rows] = False
+    for rows, _ in zone_alternatives(family, zone, boxes):
+        holds[rows] = False
     return holds
 
 
@@ -150,4 +142,4 @@ def _outside_cylinder(family: Family, zone: IntArray, boxes: Boxes, rows: IntArr
     out = ~(reach.squared().total().high < Interval(circle[:, 2]).squared().low)
     rows, circle = rows[out], circle[out]
     away = (Interval(boxes.centre[rows] * _FLAT) - circle[:, :3] * _FLAT).T
-    return Alternative(rows, (Constraint.outside(away, circle[:, 2], _FLAT),))
+    return rows, (Constraint.outside(away, circle[:, 2], _FLAT),)
