@@ -150,6 +150,9 @@ def _required(*extras: str) -> set[str]:
     return found
 
 
+_distributions = cache(packages_distributions)
+
+
 @pytest.mark.parametrize(
     ("files", "extras"),
     [
@@ -160,7 +163,7 @@ def _required(*extras: str) -> set[str]:
 )
 def test_imported_packages_are_required(files: str, extras: list[str]) -> None:
     """What the source imports is named in an extra, and what tests import in that of their target."""
-    distributions = cache(packages_distributions)()
+    distributions = _distributions()
     required = _required(*extras)
     missing = {
         name
