@@ -8,6 +8,7 @@ from tests.reference.plain_kernels import plain
 
 from nullpose.certificate.dipoles import dipole_sum
 from nullpose.certificate.forms import matrices
+from nullpose.certificate.interval import Interval
 from nullpose.certificate.shear import shear_of
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -129,7 +130,7 @@ def test_the_verifiers_sum_is_above_the_exact_one(kind: int, leak: float, seed: 
     mix = {0: weights[0], 1: weights[1]}
     leaves = make_leaves(1, test=kind, point=anchor, level=level, mixes=(mix,))
     boxes = boxes_at(centre[None], half)
-    total, shear = dipole_sum(family, leaves, boxes, [])
+    total, shear = dipole_sum(family, leaves, boxes, Interval(np.zeros((6, 1)), np.zeros((6, 1))))
     assert kind == TOWARDS_POINT or not shear.on[0]
     basis = shear.basis.middle()[:, :, 0]
     for _ in range(8):
