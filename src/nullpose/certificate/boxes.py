@@ -138,16 +138,22 @@ def uncovered(leaves: Leaves) -> str:
         if not np.all(covered):
             gap = int(np.argmin(covered))
             row = start[gap]
-            index = indices[leaf[row]] >> depths[leaf[row]] - depth[row]
-            sides = zip("xyzab", index, 1 << depth[row], strict=True)
-            lost = (
+            missing = (
                 min({0, 1, 2} - set((key[group == gap] - 3 * gap).tolist())) if by_face[gap] else on_face[row]
             )
-            names = [f"{name} {i + 1} of {count}" for name, i, count in sides if count > 1]
-            part = ", ".join(names + ([f"face{lost}"] if lost >= 0 else [])) or "all of it"
-            return f"the leaves do not cover the root: they leave out, at least in part, {part}"
+            index = indices[leaf[row]] >> depths[leaf[row]] - depth[row]
+            return f"the leaves do not cover the root: {_gap_words(index, 1 << depth[row], missing)}"
         depth[rows, side] += ~by_face[group]
         on_face = np.where(by_face[group], faces[leaf], on_face)
         order = np.argsort(np.where(parted[group], key, -1), kind="stable")[np.sum(~parted[group]) :]
         leaf, region, depth, on_face = leaf[order], key[order], depth[order], on_face[order]
     return ""
+
+
+def _gap_words(index: IntArray, count: IntArray, face: int) -> str:
+    """Name a region that leaves leave out: its index among equal parts of each side, and its face, or -1."""
+    sides = zip("xyzab", index, count, strict=True)
+    names = [f"{name} {i + 1} of {parts}" for name, i, parts in sides if parts > 1]
+    return (
+        f"they leave out, at least in part, {', '.join(names + [f'face{face}'] * (face >= 0)) or 'all of it'}"
+    )

@@ -81,7 +81,7 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
     """Find a face of a root box that leaves out what could beat the bound; an empty string if there is none.
 
     Beyond each of its faces lies nothing of the domain, or nothing within a node's reach: there
-    ``n + w / a^2 <= t d``, a being at least as long as the ways beyond the face and, along the other two
+    ``n + w / a^2 <= t d``, a being at least as long as the distances beyond the face and, along the other two
     axes, to the domain.
 
     Args:

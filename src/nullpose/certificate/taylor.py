@@ -82,7 +82,7 @@ class Taylor:
         return Orders(*(part[..., -1, :] for part in self._orders))
 
     def at_centres(self) -> Taylor:
-        """Leave out what is known all over the boxes."""
+        """Leave out what is known all over the boxes: of the result ``at`` holds, and ``over`` does not."""
         return Taylor(self.half, *(part[..., :1, :] for part in self._orders))
 
     def __getitem__(self, index: Any) -> Taylor:

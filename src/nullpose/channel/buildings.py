@@ -168,9 +168,8 @@ def shadows_of(prisms: Prisms, points_m: FloatArray, is_interferer: ArrayLike) -
     grown_m = np.where(is_low, -1.0, 1.0)[point, None] * [prisms.margin_m, prisms.margin_m + HAIR_M]
     first = np.flatnonzero(np.diff(point * len(prisms.base_m) + piece[row], prepend=-1))
     of_point = np.searchsorted(point[first], np.arange(len(points_m) + 1))
-    return Shadows(
-        of_point, np.append(first, len(row)), np.column_stack([normal, offset_m[:, None] + grown_m])
-    )
+    sides = np.column_stack([normal, offset_m[:, None] + grown_m])
+    return Shadows(of_point, np.append(first, len(row)), sides)
 
 
 def _planes(
@@ -210,7 +209,8 @@ def _corners(walls: FloatArray, onward: FloatArray) -> FloatArray:
     """List the corners in which walls meet others, (w, 2)."""
     det = walls[:, 0] * onward[:, 1] - onward[:, 0] * walls[:, 1]
     east = (walls[:, 2] * onward[:, 1] - onward[:, 2] * walls[:, 1]) / det
-    return np.column_stack([east, (walls[:, 0] * onward[:, 2] - onward[:, 0] * walls[:, 2]) / det])
+    north = (walls[:, 0] * onward[:, 2] - onward[:, 0] * walls[:, 2]) / det
+    return np.column_stack([east, north])
 
 
 def is_blocked(
@@ -248,10 +248,8 @@ def is_blocked(
     at_m, to_m = np.broadcast_arrays(at_m[..., None, :], to_m)
     links = at_m.reshape(-1, 3), to_m.reshape(-1, 3), np.broadcast_to(is_low, to_m.shape[:-1]).reshape(-1)
     count = 1 + to_m.size * len(prisms.sides) // _BLOCK
-    found = [
-        _is_each_blocked(prisms, *part)
-        for part in zip(*(np.array_split(each, count) for each in links), strict=True)
-    ]
+    parts_of_each = zip(*(np.array_split(each, count) for each in links), strict=True)
+    found = [_is_each_blocked(prisms, *part) for part in parts_of_each]
     return np.concatenate(found).reshape(to_m.shape[:-1])
 
 

@@ -66,10 +66,8 @@ def elevation_excess(
         azimuth_rad: of no effect.
     """
     p, n = sight_probability(row, elevation_rad), row[3]
-    return np.asarray(
-        np.where(row[4] == DB_AVERAGE, n ** (1.0 - p), n + (1.0 - n) * p)
-        * np.exp(log_gain(row, elevation_rad))
-    )
+    gain = np.where(row[4] == DB_AVERAGE, n ** (1.0 - p), n + (1.0 - n) * p)
+    return np.asarray(gain * np.exp(log_gain(row, elevation_rad)))
 
 
 def elevation_channel(

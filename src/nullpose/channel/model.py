@@ -106,16 +106,14 @@ class PointChannels(NamedTuple):
         """
         if self.prisms is None:
             return np.ones(np.broadcast_shapes(positions_m[..., None, :].shape, points_m.shape)[:-1])
-        return np.where(
-            is_blocked(self.prisms, positions_m, points_m, self.is_interferer), self.rows[:, BLOCKED], 1.0
-        )
+        blocked = is_blocked(self.prisms, positions_m, points_m, self.is_interferer)
+        return np.where(blocked, self.rows[:, BLOCKED], 1.0)
 
 
 def padded(rows: Iterable[Sequence[float] | FloatArray]) -> FloatArray:
     """Stack the rows of channels, (m, w), shorter ones with zeros behind."""
-    return np.ascontiguousarray(
-        np.array([*zip_longest(np.zeros(WIDTH), *rows, fillvalue=0.0)], dtype=np.float64).T[1:]
-    )
+    columns = zip_longest(np.zeros(WIDTH), *rows, fillvalue=0.0)
+    return np.ascontiguousarray(np.array([*columns], dtype=np.float64).T[1:])
 
 
 _ELEVATIONS_RAD = np.radians(np.linspace(-90.0, 90.0, 721))

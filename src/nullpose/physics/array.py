@@ -173,10 +173,8 @@ def array_ratios_under(scenario: Scenario, pose: Pose, case: ErrorCase) -> Float
     Returns:
         Array of shape ``(..., n_nodes)``, power ratios.
     """
-    return np.asarray(
-        digital_sinr(scenario, pose.position_m, placed_elements(scenario, pose), case)
-        / scenario.node_required_sinr
-    )
+    sinr = digital_sinr(scenario, pose.position_m, placed_elements(scenario, pose), case)
+    return np.asarray(sinr / scenario.node_required_sinr)
 
 
 def placed_elements(scenario: Scenario, pose: Pose) -> FloatArray:
@@ -246,9 +244,10 @@ def _both_channels(
 ) -> tuple[ComplexArray, ComplexArray]:
     """Evaluate the channels of the nodes and of the jammers."""
     case = ErrorCase.none(scenario) if case is None else case
+    elements = np.asarray(elements_wavelengths, dtype=float) @ np.swapaxes(case.rotation_world, -1, -2)
     channels = array_channels(
         np.asarray(position_m, dtype=float) + case.position_offset_m,
-        np.asarray(elements_wavelengths, dtype=float) @ np.swapaxes(case.rotation_world, -1, -2),
+        elements,
         case.sources_m(scenario),
         scenario.source_powers_w,
         scenario.reference_gain,

@@ -61,10 +61,8 @@ class Link:
 
     def to_dict(self) -> dict[str, object]:
         """Return the link as plain data for JSON, minus infinity as None."""
-        return {
-            "node": self.node,
-            **{name: None if value == -math.inf else value for name, value in self.values.items()},
-        }
+        numbers = {name: None if value == -math.inf else value for name, value in self.values.items()}
+        return {"node": self.node, **numbers}
 
 
 @overload

@@ -141,10 +141,8 @@ class Pose:
         """
         if antenna.is_quadratic:
             return self.antenna_axis
-        return np.asarray(
-            rotation_world_from_body(self.roll_rad, self.pitch_rad, self.yaw_rad)
-            @ rotation_world_from_body(0.0, self.mount_rad, 0.0)
-        )
+        body = rotation_world_from_body(self.roll_rad, self.pitch_rad, self.yaw_rad)
+        return np.asarray(body @ rotation_world_from_body(0.0, self.mount_rad, 0.0))
 
     @property
     def tilt_rad(self) -> float:
@@ -156,12 +154,10 @@ class Pose:
 
     def to_dict(self) -> dict[str, object]:
         """Return the pose as plain data for JSON, angles in radians."""
+        angles = ("roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad")
         return {
             "position_m": [float(x) for x in self.position_m],
-            **{
-                name: getattr(self, name)
-                for name in ("roll_rad", "pitch_rad", "yaw_rad", "tilt_rad", "mount_rad")
-            },
+            **{name: getattr(self, name) for name in angles},
             "antenna_axis": [float(x) for x in self.antenna_axis],
         }
 
@@ -172,7 +168,5 @@ class Pose:
         return hash(self._key())
 
     def _key(self) -> tuple[float, ...]:
-        return (
-            *(float(x) for x in self.position_m),
-            *(self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad),
-        )
+        angles = (self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad)
+        return (*(float(x) for x in self.position_m), *angles)

@@ -65,9 +65,9 @@ class Poses:
             f"poses: given {', '.join(f'{name} of shape {shape}' for name, shape in shapes.items())}; "
             "allowed: position_m of shape (n, 3) or (3,), and angles of shape (n,) or one number",
         )
+        finite = all(np.all(np.isfinite(each)) for each in (*angles, mount))
         require_usage(
-            all(np.all(np.isfinite(each)) for each in (*angles, mount))
-            and np.all(np.abs(position_m) <= FARTHEST_M),
+            finite and np.all(np.abs(position_m) <= FARTHEST_M),
             f"poses: a number is not finite or beyond {FARTHEST_M:g} m",
         )
         count = counts.pop()

@@ -132,9 +132,8 @@ def allowed_value(scenario: Scenario, position_m: ArrayLike, axis: ArrayLike) ->
     value = record.value(scenario, numbers)
     if record.mean_offset is None:
         return value
-    return np.asarray(
-        np.where(np.all(numbers["sinr"] >= scenario.node_requirements, axis=-1), value, -np.inf)
-    )
+    is_met = np.all(numbers["sinr"] >= scenario.node_requirements, axis=-1)
+    return np.asarray(np.where(is_met, value, -np.inf))
 
 
 def node_values(reception: Reception) -> FloatArray:

@@ -76,7 +76,8 @@ def attitude_of(rotation: ArrayLike, tilt_max_rad: float = math.pi) -> tuple[flo
     tilt = min(np.arctan2(level, r[2, 2]), tilt_max_rad * (1.0 - 1e-15))
     forward, left = (r[2, :2] * (np.sin(tilt) / level) if level > 0.0 else np.zeros(2)) + 0.0
     pitch = np.arctan2(-forward, np.hypot(left, np.cos(tilt)))
-    return float(np.arctan2(left, np.cos(tilt))), float(pitch) + 0.0, float(np.arctan2(r[1, 0], r[0, 0]))
+    roll = np.arctan2(left, np.cos(tilt))
+    return float(roll), float(pitch) + 0.0, float(np.arctan2(r[1, 0], r[0, 0]))
 
 
 def antenna_axis(
@@ -121,7 +122,8 @@ def attitude_of_axis(
         is_even: whether ``u`` and ``-u`` are the same antenna.
     """
     x, y, z = np.asarray(axis, dtype=float).tolist()
-    if is_even and ((x, -y, z) if mount_rad == math.pi / 2.0 else (z, x, -y)) < (0.0, 0.0, 0.0):
+    order = (x, -y, z) if mount_rad == math.pi / 2.0 else (z, x, -y)
+    if is_even and order < (0.0, 0.0, 0.0):
         x, y, z = -x, -y, -z
     across, limit = math.hypot(x, y), tilt_max_rad * (1.0 - 1e-15)  # rounded again, it is not beyond
     tilt = math.atan2(across, z) - mount_rad
@@ -162,4 +164,5 @@ def attitude_from_axis(axis: ArrayLike, yaw_rad: ArrayLike = 0.0) -> tuple[Float
     flip = (up < 0.0) | ((up == 0.0) & ((forward < 0.0) | ((forward == 0.0) & (left > 0.0))))
     sign = 1.0 - 2.0 * flip
     forward, left, up = sign * forward, sign * left, np.abs(up)
-    return np.arctan2(-left, np.hypot(forward, up)), np.arctan2(forward, up)
+    roll = np.arctan2(-left, np.hypot(forward, up))
+    return roll, np.arctan2(forward, up)

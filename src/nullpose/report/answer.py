@@ -58,7 +58,8 @@ def answer_lines(comparison: ResultTable) -> list[str]:
         *(
             f"{capitalised(row.case.phrase)} {_VERDICTS[verdict_on(comparison, row)]}: "
             f"it {_reach(comparison, row)}."
-            for row in [row for row in comparison.rows if row.name == FILE_VEHICLE]
+            for row in comparison.rows
+            if row.name == FILE_VEHICLE
         ),
         "The least tilt for each mount of the dipole: nullpose vehicle FILE",
     ]

@@ -62,7 +62,6 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
         counted[heading] = [f"{quantity.in_unit(quantity.at(link)):.6g}" for link in links]
     if scenario.objective_record.transmits:
         counted["noise (dBm)"] = [f"{30.0 + noise_db:.2f}" for noise_db in to_db(scenario.node_noise_w)]
-
     columns: dict[str, Sequence[str | None]] = {
         "node": [link.node for link in links],
         **counted,

@@ -205,7 +205,7 @@ class PointArrays:
         return tuple(getattr(self, self.objective_record.interferers))
 
     def of_interferers(self, key: str) -> Any:
-        """Return what there is of the interferers by such a key, as in ``"positions_m"``."""
+        """Look up an array of the interferers by its key, such as ``"positions_m"``."""
         return getattr(self, f"{self.interferer}_{key}")
 
     def is_unwanted(self, point: GroundPoint) -> bool:

@@ -56,8 +56,8 @@ def members_of(text: str) -> dict[str, Any]:
     require(is_known, "type", f'got {described(kind)}, must be "FeatureCollection", "Feature" or a geometry')
     require(listed, "features", f"got {described(members)}, must be a list of one feature or more")
     if "crs" in data:
-        stated = value_of(data["crs"], "properties") or data["crs"]
-        require_wgs84(str(value_of(stated, "name") or value_of(stated, "code") or described(stated)))
+        reference = value_of(data["crs"], "properties") or data["crs"]
+        require_wgs84(str(value_of(reference, "name") or value_of(reference, "code") or described(reference)))
     require(
         not any(value_of(each, "exceededTransferLimit") for each in (data, data.get("properties")))
         and data.get("numberMatched") in (None, "unknown", len(listed)),

@@ -273,10 +273,12 @@ FREE = ["free", "band", "cone", "level"]
 AFFINE_FIELDS = ["vertical", "towards", "broadside"]
 
 
-@pytest.mark.parametrize("cases", and_slow([40], [64]))
+@pytest.mark.parametrize(("cases", "share", "by_sum"), and_slow([(40, 0.55, 0.35)], [(64, 0.6, 0.4)]))
 @pytest.mark.parametrize("border", ["none", "ball", "zone", "fence"])
 @pytest.mark.parametrize("family", ["shared", "groups", "turned"])
-def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str, cases: int) -> None:
+def test_the_best_pose_of_a_box_is_not_excluded(
+    family: str, border: str, cases: int, share: float, by_sum: float
+) -> None:
     """Whatever the axes, the cell, the denominators, the turns and the borders; and much is excluded."""
     rng = np.random.default_rng([["shared", "groups", "turned"].index(family), len(border), ord(border[0])])
     for fields in (FREE, AFFINE_FIELDS):
@@ -289,8 +291,8 @@ def test_the_best_pose_of_a_box_is_not_excluded(family: str, border: str, cases:
             met += kind >= 0
             excluded[kind] += is_excluded
         assert met >= 0.375 * cases
-        assert excluded.total() >= 0.55 * met
+        assert excluded.total() >= share * met
         if fields is AFFINE_FIELDS:
-            assert excluded[AFFINE] >= 0.55 * met
+            assert excluded[AFFINE] >= share * met
         else:
-            assert excluded.total() - excluded[FAR] - excluded[OFF_BAND] >= 0.35 * met
+            assert excluded.total() - excluded[FAR] - excluded[OFF_BAND] >= by_sum * met

@@ -126,7 +126,7 @@ def test_a_client_killed_several_times(
 
     The pool's processes end with the client, even if it is killed alone.
     """
-    options: tuple[object, ...] = ("--workers", 1)
+    options: tuple[object, ...] = ("--workers", min(times, 2))
     if where == "cluster":
         farm.scheduler()
         farm.worker()

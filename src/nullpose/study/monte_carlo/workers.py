@@ -44,7 +44,7 @@ class WorkerDiedError(Exception):
     """A worker that died of its work."""
 
 
-class _Here(Executor):
+class _ThisProcess(Executor):
     """This process alone, which works at once."""
 
     def submit(self, function: Callable[..., Answer], /, *arguments: object) -> Future[Answer]:  # type: ignore[override]
@@ -194,7 +194,7 @@ def workers_of(scheduler: str | None, workers: int | None, on_look: OnLook) -> I
         with _quiet(), _connected(scheduler) as client:
             yield Workers(client.get_executor(pure=False), scheduler, on_look, count=-1, client=client)
     elif workers == 0:
-        yield Workers(_Here(), "this machine", on_look, ahead=1)
+        yield Workers(_ThisProcess(), "this machine", on_look, ahead=1)
     else:
         count = workers or processors()
         with _Pool(count) as pool:

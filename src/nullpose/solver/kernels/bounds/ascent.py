@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.objectives import FloatArray
 from nullpose.solver.kernels.bounds.node import CENTRE, COUNT, HALF, INDEX, LEVEL, WEIGHT
 from nullpose.solver.kernels.bounds.whitened import axis_of, fill_values, ratio_form
 from nullpose.solver.kernels.compiler.jit import inner_kernel
@@ -35,8 +36,6 @@ _PIVOTS = 12
 _ADDED = 3  # forms taken in at a step
 _GOOD_ENOUGH = 0.95  # of the level: multipliers below it may be kept although they are not the best
 _OUTSIDE = 1e-6  # how far a constraint may be missed, in units of the denominator
-
-FloatArray = NDArray[np.float64]
 
 
 class Pool(NamedTuple):

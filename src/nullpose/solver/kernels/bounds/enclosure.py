@@ -209,8 +209,8 @@ def link_jet(family, j, is_above, axis_field, centre, half, jet):
     rows, more, scale = scratch(EXCESS, 3), 0.0, 1.0
     excess = rows[:0]  # none without a channel
     if family.channels.shape[0] > 0:
-        channel, way = family.channels[j], minus(row(family.points_m, j), centre)
-        fill_excess(channel, way, is_above, family.points_m[j], centre, half, rows)
+        channel, to_point = family.channels[j], minus(row(family.points_m, j), centre)
+        fill_excess(channel, to_point, is_above, family.points_m[j], centre, half, rows)
         excess = rows
         if channel[0] == BY_DISTANCE:
             more, scale = -0.5 * channel[1], channel[2] ** -channel[1]

@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from nullpose.channel.model import BY_DISTANCE
+from nullpose.objectives import FloatArray
 from nullpose.solver.kernels.bounds.constants import VECTOR_BEND, VECTOR_SLOPE
 from nullpose.solver.kernels.bounds.error_cells import SLACK, ahead, axis_at, farthest
 from nullpose.solver.kernels.bounds.link_field import Reach, distance_amplitude, times_amplitude
@@ -13,7 +14,6 @@ from nullpose.solver.kernels.compiler.jit import inner_kernel
 from nullpose.solver.kernels.linear_algebra.channel import excess_in_sight
 from nullpose.solver.kernels.linear_algebra.vectors import corner_of, cross, dot, minus, norm, row, scaled
 from nullpose.solver.kernels.search.set_links import ROUND, has_dipole
-from nullpose.solver.kernels.search.worst_case import FloatArray
 from nullpose.solver.kernels.search.worst_case_links import strongest_link
 
 

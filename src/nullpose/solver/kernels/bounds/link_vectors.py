@@ -15,8 +15,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nullpose.objectives import FloatArray
 from nullpose.solver.kernels.bounds.constants import DIRECTION_THIRD, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
 from nullpose.solver.kernels.compiler.jit import inner_kernel
@@ -27,8 +27,6 @@ from nullpose.solver.kernels.linear_algebra.symmetric import add_scaled, entry
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, norm, row, scaled, store
 
 _UPRIGHT = 0.4  # of the anchor's vector along its value at the centre: what must be left all over the box
-
-FloatArray = NDArray[np.float64]
 
 
 class Shear(NamedTuple):

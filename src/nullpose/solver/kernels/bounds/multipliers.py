@@ -183,9 +183,9 @@ def sparse_dual(forms, every, sides, total, level, stop, gap, start, pool, matri
 
 @inner_kernel
 def multiplier_accuracy(coarseness):
-    """Return how accurate an interior point's multipliers are to be: less exact where a box is large.
+    """Choose the accuracy of an interior point's multipliers: less where a box is large.
 
-    Those as sloppy as that exclude a box so small no sooner than its halves, for ever.
+    Multipliers as inaccurate as the box is large exclude a box so small no sooner than its halves, for ever.
     """
     return max(_INTERIOR * coarseness, min(_FINE, max(_FINEST, coarseness)))
 

@@ -135,7 +135,7 @@ def log_most_share(family, k, square):
 
 @inner_kernel
 def row_count(family):
-    """Return how many numbers the smallest is taken of, or have multipliers: pairs, or ratios."""
+    """Count the numbers of which the smallest is taken, or that have multipliers: pairs, or ratios."""
     pairs = family.pairs.shape[0]
     return pairs if pairs > 0 else family.numerator_point.shape[0]
 
@@ -148,7 +148,7 @@ def pair_log(family, q, logs):
 
 @inner_kernel
 def pair_signal(family, q, which):
-    """Return what a pair's node (0) or eavesdropper (1) receives: its numerator less its denominator."""
+    """Evaluate the signal of a pair's node (0) or eavesdropper (1): its numerator less its denominator."""
     k = family.pairs[q, which]
     return family.numerator_isotropic[k] - family.denominator_isotropic[family.denominator_of[k]]
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from nullpose.objectives import FloatArray
 from nullpose.objectives.ratios import Ratios
 from nullpose.problem.records import BAND_AXIS, CONE_AXIS, NARROW_AXIS, Axes, Domain
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel, rare_kernel
@@ -55,8 +56,6 @@ _EASE = 0.1  # of the least gap over a requirement that is left when the pose ha
 _BAND_EDGE = 1e-12  # an axis put on the end of a band is off it by rounding
 _ACTIVE = 1e-5  # the least multiplier of a face on which a pose is put
 _FACE_LOSS = 1e-12  # what that may cost
-
-FloatArray = NDArray[np.float64]
 
 
 class Problem(NamedTuple):

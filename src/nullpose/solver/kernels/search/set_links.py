@@ -9,9 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from nullpose.objectives import FloatArray
 from nullpose.solver.kernels.compiler.jit import inner_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import excess_jet
@@ -20,8 +18,6 @@ from nullpose.solver.kernels.linear_algebra.vectors import along, cross, dot, sc
 ROUND = 4e-15  # of a cross product of two vectors, relative to the product of their lengths
 ROUNDING = 1e-13  # of a bound: what its few operations may lose
 ORIGIN = (0.0, 0.0, 0.0)
-
-FloatArray = NDArray[np.float64]
 
 
 class Sets(NamedTuple):

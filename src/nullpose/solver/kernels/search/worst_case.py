@@ -9,9 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from nullpose.objectives import FloatArray
 from nullpose.solver.kernels.compiler.jit import inner_kernel
 from nullpose.solver.kernels.linear_algebra.vectors import (
     along,
@@ -34,8 +32,6 @@ _STEPS = 200
 _TRIES = 40
 _SMALL = 1e-13
 _NO_OFFSET = (0.0, 0.0, 0.0)
-
-FloatArray = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 
