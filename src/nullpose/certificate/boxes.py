@@ -154,6 +154,5 @@ def _gap_words(index: IntArray, count: IntArray, face: int) -> str:
     """Name a region that leaves leave out: its index among equal parts of each side, and its face, or -1."""
     sides = zip("xyzab", index, count, strict=True)
     names = [f"{name} {i + 1} of {parts}" for name, i, parts in sides if parts > 1]
-    return (
-        f"they leave out, at least in part, {', '.join(names + [f'face{face}'] * (face >= 0)) or 'all of it'}"
-    )
+    names += [f"face{face}"] if face >= 0 else []
+    return f"they leave out, at least in part, {', '.join(names) or 'all of it'}"
