@@ -227,9 +227,16 @@ def test_every_fault_is_there(run: Run, paper: str) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-@pytest.mark.parametrize("verb", [("--version",), ("--help",), ("schema",), ("check", "examples/paper.toml")])
-@pytest.mark.parametrize("stream", [">/dev/full", ">&-"])
-def test_an_output_that_takes_nothing_is_one_line(verb: tuple[str, ...], stream: str) -> None:
+@pytest.mark.parametrize(
+    ("stream", "verb"),
+    [
+        (">/dev/full", ("--version",)),
+        (">&-", ("--help",)),
+        (">/dev/full", ("schema",)),
+        (">&-", ("check", "examples/paper.toml")),
+    ],
+)
+def test_an_output_that_takes_nothing_is_one_line(stream: str, verb: tuple[str, ...]) -> None:
     """A full disk or a closed output ends with a line on standard error and the code of bad input."""
     command = f'"$0" -m nullpose "$@" {stream}'
     done = subprocess.run(["sh", "-c", command, sys.executable, *verb], capture_output=True, text=True)

@@ -1,6 +1,7 @@
 """What is printed: letters that an encoding lacks are replaced, and lines end between words."""
 
 import io
+import json
 import os
 import subprocess
 import sys
@@ -14,45 +15,62 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 NAME = "Größe \N{MINUS SIGN} ∞ ☃"
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
     """Returns a folder with a scenario whose file, title and node have names beyond ASCII."""
-    folder = tmp_path_factory.mktemp("words")
     text = (EXAMPLES / "paper.toml").read_text(encoding="utf-8").replace('"S1"', '"Knötchen"')
     title = text.index("name = "), text.index("\n", text.index("name = "))
-    (folder / "ü.toml").write_text(f'{text[: title[0]]}name = "{NAME}"{text[title[1] :]}', encoding="utf-8")
-    return folder
+    (tmp_path / "ü.toml").write_text(f'{text[: title[0]]}name = "{NAME}"{text[title[1] :]}', encoding="utf-8")
+    return tmp_path
 
 
-@pytest.mark.parametrize(
-    ("encoding", "arguments", "code"),
-    [
-        ("ascii", ("check", "ü.toml"), 0),
-        ("cp1252", ("check", "ü.toml"), 0),
-        ("ascii", ("check", "ü.toml", "--json"), 0),
-        ("ascii", ("check", "ü.toml", "--set", "nodes.Knötchen.power_w=0"), 2),
-        ("cp1252", ("check", "miß☃.toml"), 2),
-        ("ascii", ("solve", "ü.toml", "--fast", "--figure", "∞.svg"), 0),
-        ("ascii", ("map", "ü.toml", "--fast", "--cells", "5", "--out", "☃"), 0),
-        ("ascii", ("solve", "ü.toml", "--schäme", "x"), 2),
-        ("ascii", ("☃",), 2),
+# A fork for each command, so that nothing is imported twice.
+FORKS = """
+import json, os, sys
+from nullpose.cli.app import main
+for number, words in enumerate(json.loads(sys.argv[1])):
+    if not os.fork():
+        for stream, name in (1, "out"), (2, "err"):
+            os.dup2(os.open(f"{number}.{name}", os.O_CREAT | os.O_WRONLY), stream)
+        sys.argv[1:] = words
+        main()
+        sys.exit()
+    print(os.waitstatus_to_exitcode(os.wait()[1]))
+"""
+SHOWN = {"ascii": "Gro?e - inf ?", "cp1252": "Größe - inf ?"}
+COMMANDS: dict[str, list[tuple[int, tuple[str, ...]]]] = {
+    "cp1252": [(0, ("check", "ü.toml")), (2, ("check", "miß☃.toml"))],
+    "ascii": [
+        (0, ("check", "ü.toml")),
+        (0, ("check", "ü.toml", "--json")),
+        (2, ("check", "ü.toml", "--set", "nodes.Knötchen.power_w=0")),
+        (0, ("solve", "ü.toml", "--fast", "--figure", "∞.svg", "--export", "☃.tum")),
+        (2, ("solve", "ü.toml", "--schäme", "x")),
+        (2, ("☃",)),
     ],
-)
-def test_an_encoding_that_lacks_letters(
-    folder: Path, arguments: tuple[str, ...], code: int, encoding: str
-) -> None:
+}
+
+
+@pytest.mark.parametrize("encoding", COMMANDS)
+def test_an_encoding_that_lacks_letters(folder: Path, encoding: str) -> None:
     """Every verb ends as it does elsewhere, without a traceback, and what it prints is in the encoding."""
-    environment = os.environ | {"PYTHONIOENCODING": encoding}
-    command = [sys.executable, "-m", "nullpose", *arguments]
-    done = subprocess.run(command, capture_output=True, env=environment, cwd=folder, check=False, timeout=600)
-    assert done.returncode == code
-    assert b"Traceback" not in done.stderr
-    shown, _ = done.stdout.decode(encoding), done.stderr.decode(encoding)
-    if "--json" not in arguments and code == 0 and arguments[0] != "map":
-        assert ("Gro?e - inf ?" if encoding == "ascii" else "Größe - inf ?") in shown
-    if "∞.svg" in arguments:
-        (figure,) = folder.glob("*.svg")
-        assert "DOCTYPE" in figure.read_text(encoding="utf-8")
+    codes, words = zip(*COMMANDS[encoding], strict=True)
+    done = subprocess.run(
+        [sys.executable, "-c", FORKS, json.dumps(words)],
+        capture_output=True,
+        env=os.environ | {"PYTHONIOENCODING": encoding},
+        cwd=folder,
+        timeout=600,
+    )
+    assert tuple(map(int, done.stdout.split())) == codes
+    for number, (code, options) in enumerate(COMMANDS[encoding]):
+        shown, told = ((folder / f"{number}.{name}").read_bytes().decode(encoding) for name in ("out", "err"))
+        assert "Traceback" not in told
+        if code == 0 and "--json" not in options:
+            assert SHOWN[encoding] in shown
+    if encoding == "ascii":
+        assert "DOCTYPE" in (folder / "∞.svg").read_text(encoding="utf-8")
+        assert (folder / "☃.tum").exists()
 
 
 @pytest.mark.parametrize("width", [20, 40, 80])

@@ -14,21 +14,21 @@ import nullpose
 from nullpose.problem.build import build_family
 from nullpose.solver.kernels.compiler.jit import LINKED_BEFORE, LINKED_FROM
 from nullpose.solver.kernels.compiler.notices import OTHER_NUMBA
-from nullpose.solver.kernels.linear_algebra.axis import best_axis
+from nullpose.solver.kernels.search.domain import walls
 
 ROOT = Path(__file__).parents[3]
 SCENES = ("paper", "eavesdropper", "no-fly")
 
 OTHER = "import numba; numba.__version__ = '0.99.0'\n"
 
-BEST_AXIS = """
+WALLS = """
 import sys
 import numpy as np
 from nullpose import load
 from nullpose.problem.build import build_family
-from nullpose.solver.kernels.linear_algebra.axis import best_axis
-family = build_family(load(sys.argv[1]))
-print(float(best_axis(family.arrays, np.array([1.0, 20.0, 9.0]), np.empty(3))))
+from nullpose.solver.kernels.search.domain import walls
+distance_m, ways = walls(build_family(load(sys.argv[1])).domain, np.array([1.0, 20.0, 9.0]))
+print(*distance_m, *ways.flat)
 """
 
 SOLVE = """
@@ -58,11 +58,11 @@ def lines_of(program: str, folder: Path, *arguments: str) -> list[str]:
 
 
 def test_kernels_are_compiled_with_another_numba(tmp_path: Path) -> None:
-    """Same value of the best axis at a place."""
-    family = build_family(nullpose.load(ROOT / "examples" / "paper.toml"))
-    expected = best_axis(family.arrays, np.array([1.0, 20.0, 9.0]), np.empty(3))
-    (line,) = lines_of(BEST_AXIS, tmp_path, str(ROOT / "examples" / "paper.toml"))
-    assert float(line) == pytest.approx(expected, rel=1e-12)
+    """Same distances from what the airspace excludes, and ways out."""
+    path = str(ROOT / "examples" / "no-fly.toml")
+    distance_m, ways = walls(build_family(nullpose.load(path)).domain, np.array([1.0, 20.0, 9.0]))
+    (line,) = lines_of(WALLS, tmp_path, path)
+    assert [float(word) for word in line.split()] == pytest.approx([*distance_m, *ways.flat], rel=1e-12)
 
 
 @pytest.mark.slow

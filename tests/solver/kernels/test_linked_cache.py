@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -149,6 +150,26 @@ def test_a_folder_without_locks_keeps_kernels(tmp_path: Path) -> None:
     done = run(NO_LOCKS, tmp_path)
     assert (done.stdout, done.stderr) == ("2.0\n", "")
     assert list((tmp_path / "kernels").rglob("tiny.twice*.nbc"))
+
+
+GOES_ON = """
+from nullpose.solver.background_compiler import BackgroundCompiler
+from tiny import twice
+
+with BackgroundCompiler().in_use():
+    print(twice(1.0))
+"""
+
+
+def test_compiling_goes_on_after_the_program(tmp_path: Path) -> None:
+    """Python has the answer at once, and the kernel is kept although its program has ended."""
+    assert run(GOES_ON, tmp_path).stdout == "2.0\n"
+    kept = lambda: list((tmp_path / "kernels").rglob("tiny.twice*.nbc"))  # noqa: E731
+    assert not kept()
+    end = time.monotonic() + 600.0
+    while not kept() and time.monotonic() < end:
+        time.sleep(0.05)
+    assert kept()
 
 
 SLOW = """

@@ -1,4 +1,4 @@
-"""The local polish: where it ends, a Karush-Kuhn-Tucker point holds, recomputed by other means."""
+"""The polish, a climb without a search: where it ends, a Karush-Kuhn-Tucker point holds, by other means."""
 
 import math
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.linear_algebra.axis import best_axis
 from nullpose.solver.kernels.linear_algebra.links import log_objective
-from nullpose.solver.kernels.search.polish import polish
+from nullpose.solver.multistart import climb
 
 SEEDS = st.integers(0, 2**32 - 1)
 VERTICAL = AxisField.affine([0.0, 0.0, 1.0], np.zeros((3, 3)))
@@ -31,12 +31,12 @@ def polished(
 
 def run(family: Family, field: AxisField, p: np.ndarray, u: np.ndarray) -> tuple[float, np.ndarray]:
     """Polishes a pose in place; returns its value and the multipliers, which must be a convex mixture."""
-    multipliers = np.empty(len(family.numerator_point))
-    value, steps = polish(family.arrays, family.domain, field.arrays, p, u, 0.1, 200, multipliers)
-    assert 0 <= steps <= 200
-    assert np.all(multipliers >= 0.0)
-    assert np.sum(multipliers) == pytest.approx(1.0, abs=1e-6)
-    return value, multipliers
+    found = climb(family, field, p, u, mu=0.1, steps=200)
+    p[:], u[:] = found.position_m, found.axis
+    assert 0 <= found.evaluations <= 200
+    assert np.all(found.multipliers >= 0.0)
+    assert np.sum(found.multipliers) == pytest.approx(1.0, abs=1e-6)
+    return found.log_value, found.multipliers
 
 
 def value_at(family: Family, p: np.ndarray, u: np.ndarray) -> float:

@@ -179,7 +179,8 @@ class Inner:
         entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
         points = family.denominator_point[entries]
         noise, node = float(family.denominator_isotropic[group]), family.numerator_point[ratio]
-        channels = family.channels[[*points, node]] if len(family.channels) else family.channels
+        # a copy, also of none: a kernel is compiled again for what is read-only
+        channels = family.channels[[*points, node] if len(family.channels) else []]
         numbers = Ratio(
             isotropic=float(family.numerator_isotropic[ratio]) / noise,
             weight=float(family.numerator_weight[ratio]) / noise,
