@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from sizes import few_examples
 from tests.certificate.plain import boxes_at, make_leaves
 from tests.reference.plain_kernels import plain
 
@@ -124,6 +125,7 @@ def test_the_solvers_sum_is_above_the_exact_one(kind: int, leak: float, seed: in
 
 @pytest.mark.parametrize("kind", [WORLD, TOWARDS_POINT])
 @given(leak=LEAKS, seed=SEEDS)
+@few_examples(20)
 def test_the_verifiers_sum_is_above_the_exact_one(kind: int, leak: float, seed: int) -> None:
     """Likewise, with the coordinates that it names itself."""
     rng, family, weights, level, anchor, centre, half = case_of(seed, leak)

@@ -46,8 +46,9 @@ def boxes(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
     return [(rng.uniform(low, high), 10.0 ** rng.uniform(-2.5, 0.4, size=3)) for _ in range(count)]
 
 
-@pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
-@pytest.mark.parametrize("leak", [0.0, 0.01])
+@pytest.mark.parametrize(
+    ("field", "leak"), list(zip(FIELDS.values(), (0.0, 0.01, 0.0), strict=True)), ids=FIELDS
+)
 def test_a_jet_encloses_the_link(
     field: AxisField, leak: float, channel: LinkChannel | None, ratios_over: Callable[..., Ratios]
 ) -> None:
@@ -62,7 +63,7 @@ def test_a_jet_encloses_the_link(
             return float(free * excess_gain(PointChannels.of([channel]), POINT - p)[0] / channel.strength)
 
         ratios = ratios_over(POINT, leak, dipole, through, channel)
-        for centre, half in boxes(3 + number, 3):
+        for centre, half in boxes(3 + number, 2):
             link_jet(ratios, 0, True, field.arrays, centre, half, jet)
             if channel is not None and jet[0] > at(centre) * (1.0 + 1e-9):
                 assert np.max(half) > 0.3  # the end of its range, in a large box

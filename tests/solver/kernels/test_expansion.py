@@ -14,11 +14,11 @@ from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
 expand_point, frame_at = plain(expansion.expand_point), plain(expansion.frame_at)
 POINTS = np.array([[0.0, 0.0, 0.0], [40.0, 10.0, 2.0], [17.0, 15.0, 4.0], [-20.0, 30.0, 1.0]])
 FIRST = np.zeros(1, dtype=np.int64)
-FRAMES = [(WORLD, -1), (TOWARDS_POINT, 2)]
 
 
-@pytest.mark.parametrize("leak", [0.0, 0.01, 0.5])
-@pytest.mark.parametrize(("kind", "anchor"), FRAMES)
+@pytest.mark.parametrize(
+    ("kind", "anchor", "leak"), [(WORLD, -1, 0.01), (TOWARDS_POINT, 2, 0.0), (TOWARDS_POINT, 2, 0.5)]
+)
 def test_expansion_encloses_the_forms(
     kind: int, anchor: int, leak: float, channel: LinkChannel | None, ratios_over: Callable[..., Ratios]
 ) -> None:
