@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +21,7 @@ from nullpose.channel.elevation import elevation_channel, with_profile
 from nullpose.channel.free_space import constant_channel
 from nullpose.channel.power_law import power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
-from nullpose.solver import SolveOptions
+from nullpose.solver import SolveOptions, array_search
 from nullpose.solver.compiling import precompile
 from nullpose.solver.kernels.bounds.pattern_branch import branch_pattern
 
@@ -60,6 +60,15 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         scenes = [array], ["paper antenna.kind=half-wave", "robust"]
         at_work = [subprocess.Popen([sys.executable, "-c", COMPILE, *each]) for each in scenes]
         assert [each.wait() for each in at_work] == [0, 0]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _few_climbs(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Where arrays are only shown, a search climbs from a tenth of the states; tests/solver has them all."""
+    with pytest.MonkeyPatch.context() as patch:
+        if {"cli", "docs", "report", "study"} & set(request.path.parts):
+            patch.setattr(array_search, "_CLIMBED", 4)
+        yield
 
 
 @pytest.fixture(scope="session")

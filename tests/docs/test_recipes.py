@@ -11,8 +11,7 @@ from nullpose.cli.app import app
 PAGE = (Path(__file__).parents[2] / "docs" / "recipes.md").read_text(encoding="utf-8")
 RECIPES = {part.splitlines()[0]: part for part in PAGE.split("\n## ")}
 WIDE = ["--gap", "0.1"]
-NO_ARRAYS = ["--set", "objective=sum-rate"]  # which are left out then: each takes seconds
-QUICK = {"solve": WIDE, "sweep": WIDE, "compare": WIDE + NO_ARRAYS}
+QUICK = {"solve": WIDE, "sweep": WIDE, "compare": WIDE}
 
 
 def _blocks(recipe: str) -> list[tuple[str, str]]:
