@@ -38,7 +38,7 @@ def test_an_environment_has_its_three_numbers(
 ) -> None:
     """The share of the ground, the number on it and the heights are those of the recommendation."""
     study = spec(scenes=10**6, buildings=FAR | {"environment": environment})
-    scenes = [draw_scene(study, index) for index in range(60)]
+    scenes = [draw_scene(study, index) for index in range(30)]
     counts = np.array([len(scene.buildings) for scene in scenes])
     assert counts.mean() == pytest.approx(per_km2 * 0.06, rel=0.05)
     areas_m2 = np.array([shape.area for scene in scenes for shape in _shapes(scene)])
@@ -59,13 +59,13 @@ def test_the_grid_lies_and_is_turned_at_random(spec: Spec) -> None:
     """The turn is uniform over a right angle, and no place is more often built on than another."""
     study = spec(scenes=10**6, buildings=FAR | {"environment": "urban"})
     turns, shares = [], []
-    for index in range(300):
+    for index in range(150):
         shapes = _shapes(draw_scene(study, index))
         (x0, y0), (x1, y1) = shapes[0].exterior.coords[:2]
         turns.append(math.atan2(y1 - y0, x1 - x0) % (math.pi / 2.0) / (math.pi / 2.0))
         shares.append(any(shape.contains(shapely.Point(250.0, 200.0)) for shape in shapes))
     assert stats.kstest(turns, "uniform").pvalue > 0.01
-    assert np.mean(shares) == pytest.approx(0.3, abs=0.08)
+    assert np.mean(shares) == pytest.approx(0.3, abs=0.1)
 
 
 @given(index=st.integers(0, 10**6))

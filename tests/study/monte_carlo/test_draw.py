@@ -66,7 +66,7 @@ def test_a_known_scene_stays_what_it_is(spec: Spec) -> None:
 
 def test_a_disc_is_filled_evenly(spec: Spec) -> None:
     """Squared distances from the centre and bearings are uniform."""
-    offsets_m = _plane_m(_drawn(spec(scenes=10**6), "jammers", 1000)) - [0.0, 25.0]
+    offsets_m = _plane_m(_drawn(spec(scenes=10**6), "jammers", 500)) - [0.0, 25.0]
     shares = np.sum(offsets_m**2, axis=1) / 60.0**2
     bearings = np.arctan2(offsets_m[:, 1], offsets_m[:, 0]) / (2.0 * math.pi) + 0.5
     assert shares.max() <= 1.0
