@@ -1,9 +1,11 @@
-"""The smallest scenario as plain data, and the faults of others."""
+"""The smallest scenario as plain data, the faults of others, and the best poses of the examples."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,9 @@ import pytest
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import Scenario, load
+from nullpose.solver import Result, solve
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 NODE: dict[str, Any] = {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}
 
 
@@ -57,3 +61,9 @@ def star(rng: np.random.Generator, count: int, size_m: float) -> np.ndarray:
     gaps = rng.uniform(0.5, 1.0, count)
     angles = np.cumsum(gaps) * 2.0 * np.pi / gaps.sum()
     return size_m * rng.uniform(0.1, 1.0, (count, 1)) * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+@cache
+def best_found(name: str, *, robust: bool = False) -> Result:
+    """Return the best pose found in an example, for tests of what is shown of it."""
+    return solve(load(EXAMPLES / f"{name}.toml"), robust=robust, certify=False)

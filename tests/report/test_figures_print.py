@@ -1,7 +1,6 @@
 """Figures for print: as wide as a column or a page, with embedded letters that do not touch."""
 
 from collections.abc import Callable
-from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -11,7 +10,7 @@ from hypothesis import given, strategies as st
 from matplotlib.figure import Figure
 from sizes import few_examples
 
-from nullpose import Pose, Result, Scenario, compare_airframes, load, solve, sweep
+from nullpose import Pose, Scenario, compare_airframes, load, solve, sweep
 from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan, draw_value_map
@@ -20,21 +19,16 @@ from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.style import WIDTHS_MM, house_style, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.study import compare_schemes, value_map
+from scenes import best_found
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WIDTHS = pytest.mark.parametrize("width", list(WIDTHS_MM))
 
 
-@cache
-def solved(name: str) -> Result:
-    """Return the best pose found in an example."""
-    return solve(load(EXAMPLES / f"{name}.toml"), robust=name == "robust", certify=False)
-
-
 @pytest.fixture(scope="module")
 def drawings(paper: Scenario) -> list[Callable[[str], Figure]]:
     """Return what draws each kind of figure in a width."""
-    result, table = solved("paper"), sweep(paper, "jammers.M.power_w", [0.5, 2.0], certify=False)
+    result, table = best_found("paper"), sweep(paper, "jammers.M.power_w", [0.5, 2.0], certify=False)
     values = value_map(result, cells=15)
     tables = compare_schemes(paper, certify=False), compare_airframes(paper, certify=False)
     return [
@@ -60,7 +54,7 @@ def test_every_figure_has_the_width(drawings: list[Callable[[str], Figure]], wid
 @pytest.mark.parametrize("name", ["paper", "no-fly", "field", "array", "robust"])
 def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
     """Names of points, names of axes and the legend are on the paper; names of points do not run together."""
-    figure = draw_result(solved(name), width)
+    figure = draw_result(best_found(name, robust=name == "robust"), width)
     figure.draw_without_rendering()
     legend = figure.legends[0].get_window_extent()
     assert legend.x0 >= 0.0
@@ -78,7 +72,7 @@ def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
 
 def test_the_plan_is_to_scale_and_has_every_name() -> None:
     """A metre is as long to the east as to the north; every point and the drone are named."""
-    (plan,) = draw_result(solved("paper")).axes
+    (plan,) = draw_result(best_found("paper")).axes
     assert {text.get_text() for text in plan.texts} == {"S1 0.98 dB", "S2 0.98 dB", "M", "drone 8 m up"}
     across, along = plan.transData.transform([[1.0, 0.0], [0.0, 1.0]]) - plan.transData.transform([0.0, 0.0])
     assert across[0] == pytest.approx(along[1], rel=1e-6)
@@ -88,7 +82,7 @@ def test_the_plan_is_to_scale_and_has_every_name() -> None:
 def test_the_same_figure_gives_the_same_file(tmp_path: Path, kind: str) -> None:
     """To the byte; the fonts of a PDF are in it, as TrueType."""
     first, again = (
-        write_figure(draw_result(solved("paper"), "column"), tmp_path / f"{name}.{kind}")[0].read_bytes()
+        write_figure(draw_result(best_found("paper"), "column"), tmp_path / f"{name}.{kind}")[0].read_bytes()
         for name in "ab"
     )
     assert first == again
@@ -98,7 +92,7 @@ def test_the_same_figure_gives_the_same_file(tmp_path: Path, kind: str) -> None:
 @pytest.mark.parametrize("name", ["paper", "town", "whips", "requirements"])
 def test_a_name_stands_nearest_its_own_point(name: str) -> None:
     """In a column, where names are close to each other, none stands at the mark of another point."""
-    figure = draw_result(solved(name), "column")
+    figure = draw_result(best_found(name), "column")
     figure.draw_without_rendering()
     plan = figure.axes[0]
     names = [text for text in plan.texts if text.get_fontstyle() != "italic"]
