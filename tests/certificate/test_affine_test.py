@@ -4,7 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings, strategies as st
+from hypothesis import assume, given, strategies as st
+from sizes import few_examples
 from tests.certificate.plain import (
     boxes_at,
     dense_ratios,
@@ -77,7 +78,7 @@ def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.
         assert ends(ranged)[0] <= there <= ends(ranged)[1]
 
 
-@settings(max_examples=30)
+@few_examples(10)
 @given(field=FIELD, is_above=st.booleans(), seed=seeds)
 def test_expansions_bound_the_links_of_channels(
     field: AxisField, is_above: bool, channel: LinkChannel | None, seed: int
@@ -138,7 +139,7 @@ def test_negative_quadratics_are_negative() -> None:
     assert missed < passed
 
 
-@settings(max_examples=8)
+@few_examples(2)
 @given(field=FIELD, groups=st.sampled_from([1, 3]), seed=seeds)
 def test_no_position_of_an_excluded_box_reaches_the_level(
     field: AxisField, groups: int, channel: LinkChannel | None, seed: int

@@ -9,15 +9,16 @@ from math import factorial
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from sizes import and_slow
 
 from nullpose.certificate import elementary
 from nullpose.certificate.elementary import arctan, exp, log
 from nullpose.certificate.interval import Interval
 
-COUNT = 100_000
 LARGEST = float(np.finfo(float).max)
 SMALLEST = 5e-324
 UNIT = Fraction(1, 2**53)
+COUNTS = pytest.mark.parametrize("count", and_slow([10_000], [100_000]))
 
 ONE = 1 << 220  # arctangents are checked in integers, in units of 2^-220
 SLACK = 1 << 20  # more units than their floors lose
@@ -60,13 +61,14 @@ def relative_width(result: Interval) -> np.ndarray:
     return (result.high - result.low) / np.minimum(np.abs(result.low), np.abs(result.high))
 
 
-def test_exponentials_contain_the_exact_ones() -> None:
+@COUNTS
+def test_exponentials_contain_the_exact_ones(count: int) -> None:
     """From where they are nearly the smallest number to nearly the largest one, to 14 digits."""
     rng = np.random.default_rng(1)
     x = np.concatenate(
         [
-            rng.uniform(-700.0, 700.0, COUNT),
-            signed_powers(rng, -20.0, 0.0, COUNT // 10),
+            rng.uniform(-700.0, 700.0, count),
+            signed_powers(rng, -20.0, 0.0, count // 10),
             (np.arange(-2000, 2000) + 0.5) / 2.0 * np.log(2.0),  # halfway between multiples of ln 2
             [1.0, -1.0, 709.782712893384, -708.3],
         ]
@@ -92,14 +94,15 @@ def test_exponentials_at_the_ends_of_the_numbers() -> None:
     assert np.all((one.low < 1.0) & (one.high > 1.0) & (one.high - one.low < 1e-15))
 
 
-def test_logarithms_contain_the_exact_ones() -> None:
+@COUNTS
+def test_logarithms_contain_the_exact_ones(count: int) -> None:
     """Over all numbers to 14 digits, also near 1, where they vanish."""
     rng = np.random.default_rng(2)
     x = np.concatenate(
         [
-            10.0 ** rng.uniform(-300.0, 300.0, COUNT),
-            rng.uniform(0.5, 2.0, COUNT // 10),
-            1.0 + signed_powers(rng, -15.6, -0.3, COUNT // 10),
+            10.0 ** rng.uniform(-300.0, 300.0, count),
+            rng.uniform(0.5, 2.0, count // 10),
+            1.0 + signed_powers(rng, -15.6, -0.3, count // 10),
             0.7 * 2.0 ** np.arange(-100, 100),
             [SMALLEST, 3 * SMALLEST, 2.2250738585072014e-308, LARGEST, 2.0, 0.5, 1.0 - 2.0**-53],
         ]
@@ -121,14 +124,15 @@ def test_logarithms_at_the_ends_of_the_numbers() -> None:
     assert -1e-320 < result.low[4] < 0.0 < result.high[4] < 1e-320
 
 
-def test_arctangents_contain_the_exact_ones() -> None:
+@COUNTS
+def test_arctangents_contain_the_exact_ones(count: int) -> None:
     """From a billionth of a billionth to its inverse, to 13 digits, with either sign."""
     rng = np.random.default_rng(3)
     x = np.concatenate(
         [
-            signed_powers(rng, -12.0, 12.0, COUNT),
-            rng.uniform(-1e12, 1e12, COUNT // 10),
-            signed_powers(rng, -18.0, 18.0, COUNT // 10),
+            signed_powers(rng, -12.0, 12.0, count),
+            rng.uniform(-1e12, 1e12, count // 10),
+            signed_powers(rng, -18.0, 18.0, count // 10),
             np.arange(1, 500) / 16.0,
             [-1.0, 2.0**0.5 - 1.0, 1e30],
         ]

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 from tests.certificate.plain import (
     carried,
     excess_over,
@@ -30,7 +31,7 @@ def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator
     return frames_of(family, leaves, boxes)
 
 
-@settings(max_examples=30)
+@few_examples(10)
 @given(turning=st.booleans(), is_above=st.booleans(), seed=seeds)
 def test_expansions_enclose_the_forms(
     turning: bool, is_above: bool, channel: LinkChannel | None, seed: int

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings, strategies as st
+from hypothesis import assume, given, strategies as st
+from sizes import few_examples
 from tests.certificate.plain import (
     boxes_at,
     carried,
@@ -147,7 +148,7 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
 def test_the_remainder_near_a_null_is_a_bound(turning: bool, channel: LinkChannel | None) -> None:
     """Along any axis a link is at least what the smaller remainder leaves of its expansion."""
     rng = np.random.default_rng(7)
-    used, cases = 0, 50
+    used, cases = 0, 20
     for _ in range(cases):
         family, boxes = random_family(rng, 2, 2, channel=channel), one_box(rng)
         centre, half = boxes.centre[0], boxes.half[0]
@@ -182,7 +183,7 @@ def mixes_of(rng: np.random.Generator, ratios: int, count: int) -> tuple[dict[in
     return tuple({int(k): float(w) for k, w in enumerate(row) if w > 1e-3} for row in drawn)
 
 
-@settings(max_examples=5)
+@few_examples(2)
 @given(groups=st.sampled_from([1, 3]), keep_out_m=st.sampled_from([1.0, 20.0]), seed=seeds)
 def test_no_pose_of_an_excluded_box_reaches_the_level(
     groups: int, keep_out_m: float, channel: LinkChannel | None, seed: int
