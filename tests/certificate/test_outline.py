@@ -4,7 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
+from sizes import few_examples
 from tests.certificate.plain import seeds
 
 from nullpose.certificate.outline import Outline, Point, clipped, corners, may_meet
@@ -77,7 +78,7 @@ def samples(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, edges: 
 
 @pytest.mark.parametrize("is_fence", [False, True])
 @pytest.mark.parametrize("on_grid", [False, True])
-@settings(max_examples=150)
+@few_examples(50)
 @given(seed=seeds)
 def test_allowed_points_meet_an_alternative(is_fence: bool, on_grid: bool, seed: int) -> None:
     """Of one of the tuples every edge is kept to; without tuples nothing is allowed."""

@@ -88,7 +88,7 @@ def test_a_solution_keeps_its_promises(
     one = scene(nodes, jammers, **airspace)
     # a best position high on two keep-out balls takes more boxes than are kept for a gap of 1e-6
     hard = scheme is Scheme.ZERO_INTERFERENCE and "keep_out_m" in airspace
-    gap = 1e-4 if hard else default_gap(len(nodes))
+    gap = 1e-3 if hard else default_gap(len(nodes))
     solution = solve(one, scheme, gap=gap)
     check(solution)
     provable = scheme is not Scheme.MAXIMUM_GAIN or len(nodes) == 2

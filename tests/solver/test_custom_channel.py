@@ -48,11 +48,11 @@ TILTING = {"airframe": {"tilt_max_deg": 20.0}}
 )
 def test_a_power_law_as_a_function_has_the_value_of_the_model(scheme: str, more: dict[str, Any]) -> None:
     """Under two schemes, with and without an airframe."""
-    law = nullpose.solve(scene(power_law(3.0), **more), scheme, gap=5e-2)
+    law = nullpose.solve(scene(power_law(3.0), **more), scheme, gap=0.2)
     model = nullpose.solve(scene({"model": "power-law", "exponent": 3.0}, **more), scheme, gap=1e-4)
     assert (law.status, law.rigour) == ("certified", "floating-point")
     assert law.objective.value == pytest.approx(model.objective.value, rel=1e-4)
-    assert model.objective.value <= law.objective.upper_bound <= 1.0501 * law.objective.value
+    assert model.objective.value <= law.objective.upper_bound <= 1.2001 * law.objective.value
 
 
 def test_sight_by_elevation_as_a_function_has_the_value_and_a_bound_above_it() -> None:
@@ -60,7 +60,7 @@ def test_sight_by_elevation_as_a_function_has_the_value_and_a_bound_above_it() -
     channel = Custom(gain=urban, exponents=(2.0, 2.0), db_per_deg=0.6)
     model = {"model": "elevation", "environment": "urban", "average": "power"}
     best = nullpose.solve(scene(model), gap=1e-4).objective
-    found = nullpose.solve(scene(channel), gap=0.5).objective
+    found = nullpose.solve(scene(channel), gap=1.0).objective
     assert found.value == pytest.approx(best.value, rel=1e-4)
     assert best.value <= found.upper_bound
 
@@ -68,7 +68,7 @@ def test_sight_by_elevation_as_a_function_has_the_value_and_a_bound_above_it() -
 def test_a_limit_leaves_the_bound_that_was_reached() -> None:
     """The status says that the gap was not reached."""
     channel = Custom(gain=urban, exponents=(2.0, 2.0), db_per_deg=0.6)
-    found = nullpose.solve(scene(channel), gap=1e-3, node_limit=2000)
+    found = nullpose.solve(scene(channel), gap=1e-3, node_limit=500)
     assert found.status == "gap-not-reached"
     assert 1e-3 < found.objective.relative_gap < math.inf
 
@@ -79,7 +79,7 @@ def test_an_interrupt_leaves_the_bound_that_was_reached() -> None:
 
     def interrupt(gap: float, boxes: int) -> None:
         calls.append(gap)
-        if len(calls) == 50:
+        if len(calls) == 10:
             raise KeyboardInterrupt
 
     channel = Custom(gain=urban, exponents=(2.0, 2.0), db_per_deg=0.6)
@@ -100,7 +100,7 @@ def test_a_jammer_may_have_one_of_its_own() -> None:
     """Only nodes in free space then bound how far away a pose can be."""
     jammer = {"position_m": [17, 15, 4], "power_w": 1.0, "channel": power_law(3.0)}
     free = scene(None).to_dict()
-    found = nullpose.solve(Scenario.from_dict({**free, "jammers": [jammer]}), gap=1e-2)
+    found = nullpose.solve(Scenario.from_dict({**free, "jammers": [jammer]}), gap=0.2)
     model = {**jammer, "channel": {"model": "power-law", "exponent": 3.0}}
     best = nullpose.solve(Scenario.from_dict({**free, "jammers": [model]}), gap=1e-4)
     assert found.status == "certified"
@@ -124,6 +124,6 @@ def test_what_knows_no_functions_refuses_them_in_words() -> None:
     with pytest.raises(UsageError, match="function in Python"):
         nullpose.solve_many([scenario])
     with pytest.raises(UsageError, match="function in Python"):
-        nullpose.certificate_of(nullpose.solve(scenario, gap=0.1))
+        nullpose.certificate_of(nullpose.solve(scenario, gap=1.0))
     with pytest.raises(ScenarioError, match=r"channel\.model"):
         Scenario.from_dict(scenario.to_dict())

@@ -273,7 +273,7 @@ FREE = ["free", "band", "cone", "level"]
 AFFINE_FIELDS = ["vertical", "towards", "broadside"]
 
 
-@pytest.mark.parametrize(("cases", "share", "by_sum"), and_slow([(40, 0.55, 0.35)], [(64, 0.6, 0.4)]))
+@pytest.mark.parametrize(("cases", "share", "by_sum"), and_slow([(24, 0.5, 0.25)], [(64, 0.6, 0.4)]))
 @pytest.mark.parametrize("border", ["none", "ball", "zone", "fence"])
 @pytest.mark.parametrize("family", ["shared", "groups", "turned"])
 def test_the_best_pose_of_a_box_is_not_excluded(
