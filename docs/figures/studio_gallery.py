@@ -65,7 +65,8 @@ if __name__ == "__main__":
     into = Path(sys.argv[1]) if sys.argv[1:] else ROOT / "out" / "screens"
     found = sorted(path.stem for path in (ROOT / "examples").glob("*.toml"))
     for name in sys.argv[2:] or [one for one in found if not one.startswith(_NO_SCENE)]:
-        with studio(load(ROOT / "examples" / f"{name}.toml", allow_outside=True), port=0) as one:
+        scene = load(ROOT / "examples" / f"{name}.toml", allow_outside=True).still()
+        with studio(scene, port=0) as one:
             for sizes, scheme in product(DEVICES, SCHEMES):
                 paths = {(w, h): into / f"{w}x{h}-{scheme}" / f"{name}.png" for w, h in sizes}
                 take(one, paths, scheme)

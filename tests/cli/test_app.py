@@ -13,7 +13,7 @@ from nullpose.problem.schemes import Scheme
 Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
 
-SCENE, PROOF = "--set --allow-outside", "--gap --time-limit --node-limit --seed"
+SCENE, PROOF = "--set --allow-outside --at", "--gap --time-limit --node-limit --seed"
 VERBS = {
     "solve": f"{SCENE} {PROOF} --scheme --fast --robust --off --null-jammer --certificate --verify --export "
     "--figure --width --json",

@@ -66,4 +66,4 @@ def star(rng: np.random.Generator, count: int, size_m: float) -> np.ndarray:
 @cache
 def best_found(name: str, *, robust: bool = False) -> Result:
     """Return the best pose found in an example, for tests of what is shown of it."""
-    return solve(load(EXAMPLES / f"{name}.toml"), robust=robust, certify=False)
+    return solve(load(EXAMPLES / f"{name}.toml").still(), robust=robust, certify=False)

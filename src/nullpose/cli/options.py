@@ -50,6 +50,16 @@ Overrides = Annotated[
     ),
 ]
 
+At = Annotated[
+    float | None,
+    typer.Option(
+        "--at",
+        metavar="SECONDS",
+        help="Of a scene in motion: the instant that counts.",
+        show_default="0, if anything moves",
+    ),
+]
+
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the random starts.")]
 
 TimeLimit = Annotated[
@@ -111,12 +121,14 @@ class SceneOptions:
     file: ScenarioFile
     overrides: Overrides = None
     allow_outside: AllowOutside = False
+    at_s: At = None
 
     def read(self) -> Scenario:
-        """Read the scenario with its values changed; warn of what looks like a mistake.
+        """Read the scenario with its values changed, still at an instant; warn of what looks like a mistake.
 
         Raises:
             ScenarioError: with every fault of the file or of the changes.
+            UsageError: the instant is not in the scene.
         """
         from nullpose.scenario import doubts, load
 
@@ -128,7 +140,7 @@ class SceneOptions:
         )
         for warning in doubts(scenario):
             say(f"warning: {warning}", err=True)
-        return scenario
+        return scenario.still(self.at_s)
 
     def check_outputs(self, outputs: Iterable[tuple[str, Path | None]]) -> None:
         """Make sure, before any work, that outputs can be written and take no input's place.

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from nullpose.cli.faults import signals_handled
-from nullpose.cli.options import AllowOutside, Overrides, SceneOptions
+from nullpose.cli.options import AllowOutside, At, Overrides, SceneOptions
 from nullpose.cli.printing import say
 
 _LOOPBACK = "127.0.0.1"
@@ -26,6 +26,7 @@ def studio(
     ] = None,
     overrides: Overrides = None,
     allow_outside: AllowOutside = False,
+    at_s: At = None,
     port: Annotated[int, typer.Option("--port", min=1, max=65535, help="Port of the page.")] = 8080,
     host: Annotated[
         str, typer.Option("--host", help="Address to listen at. 0.0.0.0 lets other machines in.")
@@ -43,7 +44,7 @@ def studio(
     if file is None:
         scenario, text = apply_overrides(new_scenario(), overrides or []), ""
     else:
-        scene = SceneOptions(file=file, overrides=overrides, allow_outside=allow_outside)
+        scene = SceneOptions(file=file, overrides=overrides, allow_outside=allow_outside, at_s=at_s)
         scenario, text = scene.read(), file_text(file)
 
     ended = threading.Event()

@@ -10,6 +10,7 @@ from nullpose.cli.options import (
     MOUNTS,
     REACH,
     AllowOutside,
+    At,
     Fast,
     JsonOutput,
     OutFolder,
@@ -44,6 +45,7 @@ def sweep(
     stop: Annotated[float, typer.Option("--to", help="Last value.", show_default=False)],
     out: OutFolder,
     allow_outside: AllowOutside = False,
+    at_s: At = None,
     points: Annotated[int, typer.Option("--points", help="Number of values, both ends included.")] = 37,
     log: Annotated[
         bool, typer.Option("--log/--linear", help="Space the values by a constant ratio, or evenly.")
@@ -97,7 +99,7 @@ def sweep(
     )
     # the varied key may be one without which the others make no scenario, as the exponent of a power law is
     fixed = [setting if "=" in setting else f"{setting}={start!r}" for setting in settings]
-    scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside)
+    scene = SceneOptions(file=file, overrides=fixed, allow_outside=allow_outside, at_s=at_s)
     scenario = scene.read()
     mounts_deg = None if reach is None and mount is None else mounts_of(mount or MOUNTS)
     if mounts_deg is not None:
@@ -105,8 +107,8 @@ def sweep(
     options = proof.keywords(fast)
     SolveOptions(**options)
     values = spaced(start, stop, points, log=log)
-    files = [f"sweep.{end}" for end in ("csv", "png", "svg", "pdf")]
-    scene.check_outputs((f"--out ({name})", out / name) for name in files)
+    names = [f"sweep.{end}" for end in ("csv", "png", "svg", "pdf")]
+    scene.check_outputs((f"--out ({name})", out / name) for name in names)
     schemes = [name.value for name in scheme] if scheme else None
     with compiling_announced(proof.time_limit), Ticker(f"sweep of {varied[0]}") as ticker:
         found = sweep_scenario(
@@ -123,4 +125,5 @@ def sweep(
         say("The swept cases have one dipole; the file's array is left out.", err=True)
     from nullpose.report.sweep import sweep_view, write_sweep
 
-    tell(found, sweep_view, json_output, files=write_sweep(found, out, log=log, width=width, bounds=bounds))
+    files = write_sweep(found, out, log=log, width=width, bounds=bounds)
+    tell(found, sweep_view, json_output, files=files, **scenario.instant)

@@ -80,7 +80,7 @@ def vehicle(
         with compiling_announced(proof.time_limit), Ticker("values by axis angle") as ticker:
             values = values_by_angle(found, on_progress=ticker, **proof.keywords())
         write_figure(draw_least_tilt(found, values, width), *figure)
-    tell(found, vehicle_view, json_output, files=figure or [])
+    tell(found, vehicle_view, json_output, files=figure or [], **scenario.instant)
 
 
 def _share(reach: float | None, loss_db: float | None) -> float:

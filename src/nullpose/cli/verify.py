@@ -46,7 +46,10 @@ def verify(
     from nullpose.scenario import load
 
     certificate = read_certificate(file)
-    unlike = () if scenario is None else differences(certificate, load(scenario, allow_outside=allow_outside))
+    unlike: tuple[str, ...] = ()
+    if scenario is not None:
+        scene = load(scenario, allow_outside=allow_outside)
+        unlike = differences(certificate, scene.still(certificate.scenario.at_s if scene.time else None))
     with Ticker("checking leaves") as ticker:
         verdict = verify_certificate(certificate, on_progress=ticker)
     if json_output:

@@ -44,7 +44,9 @@ def sweep_view(sweep: ResultTable) -> View:
     ]
     apart = [pair for pair, shared in zip(labelled, is_shared, strict=True) if not shared]
     absent = [(Scheme(name).label, f"not applicable: {reason}") for name, reason in sweep.left_out.items()]
+    instants = {row.scenario.at_s for row in sweep.rows} - {None}
     lines = [
+        *(f"The scene in motion at {at_s:g} s." for at_s in instants),
         *grouped([*absent, *((label, "") for label, _ in labelled)]),
         *([f"One row in {step} is shown."] if step > 1 else []),
         *(f"{line}." for line in certainty_lines(sweep)),

@@ -16,6 +16,7 @@ from nullpose.scenario.ground_points import (
 )
 from nullpose.scenario.json_schema import json_schema
 from nullpose.scenario.loading import load
+from nullpose.scenario.motion import Time
 from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.overrides import Override, apply_overrides, parse_override
@@ -42,6 +43,7 @@ __all__ = [
     "Scenario",
     "Source",
     "Terminal",
+    "Time",
     "Transmitter",
     "apply_overrides",
     "doubts",

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from nullpose.scenario.rules import ByName, Choice, Limits
 from nullpose.scenario.section import Section, optional
+from nullpose.scenario.units import Position
 from nullpose.scenario.ways import Ways, exactly_one
 
 PRESET_TILTS_DEG = {
@@ -34,6 +35,8 @@ class Airframe(Section):
         preset: an airframe by name, a key of ``PRESET_TILTS_DEG``; or else
         tilt_max_deg: largest angle between the body's vertical and the world's [deg].
         mount_deg: angle between the dipole and the body's vertical [deg].
+        speed_max_m_s: the largest speed [m/s], in a scene in motion.
+        start_m, end_m: where it is at the first and at the last instant of such a scene [m], (3,).
     """
 
     ways: ClassVar[tuple[Ways, ...]] = (exactly_one("preset", "tilt_max_deg"),)
@@ -56,6 +59,18 @@ class Airframe(Section):
         default=0.0,
         description="Angle between the dipole and the body's vertical, in degrees: 0 upright, 90 flat.",
         examples=[90.0],
+    )
+    speed_max_m_s: (
+        Annotated[float, Limits("a speed in m/s", 0.0, 1e5, "a speed is never negative; 36 km/h are 10 m/s")]
+        | None
+    ) = optional("Largest speed of the vehicle, in metres a second. In a scene with [time].", 5.0)
+    start_m: Position | None = optional(
+        "Where the vehicle is at t = 0, in metres: [east, north, up]. In a scene with [time].",
+        [0.0, 0.0, 10.0],
+    )
+    end_m: Position | None = optional(
+        "Where it is at the last instant, in metres: [east, north, up]. In a scene with [time].",
+        [50.0, 0.0, 10.0],
     )
 
     @property

@@ -29,10 +29,15 @@ if TYPE_CHECKING:
         Source,
         Terminal,
     )
+    from nullpose.scenario.motion import Time
     from nullpose.scenario.radio import Receiver
 
 
 Floats = NDArray[np.float64]
+_IN_MOTION = (
+    "scenario: given a scene in motion; allowed: a still one; call .at(t) with a time in seconds, as in "
+    "scenario.at(0.0), or .instants_s for all times"
+)
 
 
 def read_only(values: ArrayLike, shape: Sequence[int]) -> NDArray[np.float64]:
@@ -43,10 +48,13 @@ def read_only(values: ArrayLike, shape: Sequence[int]) -> NDArray[np.float64]:
 
 
 def _stacked(kinds: str, key: str, *shape: int) -> cached_property[Floats]:
-    """Make the array of what the points of some kinds have."""
-    return cached_property(
-        lambda table: read_only([getattr(point, key) for point in _points_of(table, kinds)], (-1, *shape))
-    )
+    """Make the array of what the points of some kinds have; of a scene in motion there are no positions."""
+
+    def stack(table: PointArrays) -> Floats:
+        require_usage(key != "position_m" or table.time is None, _IN_MOTION)
+        return read_only([getattr(point, key) for point in _points_of(table, kinds)], (-1, *shape))
+
+    return cached_property(stack)
 
 
 def _antennas(kinds: str) -> cached_property[GroundAntennas | None]:
@@ -95,6 +103,7 @@ class PointArrays:
         destination: Destination | None
         receiver: Receiver
         channel: Channel | None
+        time: Time | None
 
         @property
         def objective_record(self) -> ObjectiveRecord:

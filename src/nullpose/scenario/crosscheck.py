@@ -14,6 +14,7 @@ from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.channel import Channel, CustomChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of
 from nullpose.scenario.ground_points import GroundPoint, Node, Terminal
+from nullpose.scenario.motion import flight_faults, motion_faults
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.origin_faults import is_placed, origin_faults
 from nullpose.scenario.plausibility import too_small
@@ -64,6 +65,8 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
         *too_small(tables, [point.position_m for point in positioned.values()]),
     ]
     yield from misplaced
+    moved = list(motion_faults(scenario, points, raw))
+    yield from moved
     yield from _objective_faults(scenario, points)
     yield from _source_faults(scenario, points)
     for named in (points, zones, buildings):
@@ -86,6 +89,8 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
             receiver: Receiver | None = scenario.receiver
             outside = airspace.outside(each.zone for each in solid.values())
             yield from airspace_faults(outside, positioned, receiver.position_error_m if receiver else 0.0)
+            if not moved:
+                yield from flight_faults(scenario, outside, positioned)
 
 
 def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> list[tuple[Place, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
 from pydantic import Field, create_model
@@ -17,6 +17,7 @@ from nullpose.scenario.faults import ONLY_LOCAL, Place
 from nullpose.scenario.radio import NOISE, POWER, Noisy, Powered
 from nullpose.scenario.rules import Choice, Limits, ListOf
 from nullpose.scenario.section import Section, optional
+from nullpose.scenario.track import MOTION, Track, Velocity, track_faults, with_start
 from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
@@ -59,6 +60,7 @@ PLACE = Ways(
     fewest=0,
     most=2,
     twins=tuple((key, "alt_m") for key in ALTITUDE_KEYS[1:]),
+    instead=("track", "track_from"),
 )
 """The ways to state a place."""
 ALTITUDE = at_most_one(*ALTITUDE_KEYS)
@@ -66,7 +68,7 @@ ALTITUDE = at_most_one(*ALTITUDE_KEYS)
 
 
 class GroundPoint(Section):
-    """Someone at a fixed place, with an antenna.
+    """Someone at a place, with an antenna.
 
     Args:
         name: how results and overrides refer to it; a scenario names it by its place when left out.
@@ -74,6 +76,10 @@ class GroundPoint(Section):
         lat_deg, lon_deg, alt_m: the same place on the Earth, from which a scenario with an origin fills in
             position_m; None if the place was not stated so.
         alt_msl_m, alt_agl_m: in place of alt_m, the altitude over the sea or above the ground at the origin.
+        velocity_m_s: of a point that moves evenly from its place at t = 0: east, north and up [m/s], (3,).
+        track: (n, 4) times [s] and places of one that moves from row to row: in metres, or as lat_deg,
+            lon_deg and the altitude if its place is stated by these.
+        track_from: the name of a file that states the track, in whose place that comes when it is read.
         antenna: the kind of its antenna, a key of ``GROUND_ANTENNAS``.
         antenna_axis: the direction of a dipole's wire, (3,), of any length; None for an upright one.
         antenna_file: name of the file that a profile is from, relative to the scenario's.
@@ -84,7 +90,7 @@ class GroundPoint(Section):
         channel: of its link with the drone; None for the scenario's.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION)
     unstated: ClassVar[frozenset[str]] = frozenset({"antenna", "gain_dbi"})
     is_interferer: ClassVar[bool] = True
     """Whether its link is unwanted."""
@@ -97,7 +103,7 @@ class GroundPoint(Section):
     )
     position_m: Position = Field(
         description="Position in metres from the origin: [east, north, up]. Either this, or lat_deg, lon_deg "
-        "and an altitude in a scenario with an [origin].",
+        "and an altitude in a scenario with an [origin]. Of a point that moves: its place at t = 0.",
         examples=[[17.0, 15.0, 4.0]],
     )
     lat_deg: Latitude | None = optional(
@@ -122,6 +128,22 @@ class GroundPoint(Section):
         | None
     ) = optional(
         "Height in metres above the ground at the origin, which counts as level, in place of alt_m.", 2.0
+    )
+    velocity_m_s: Velocity | None = optional(
+        "How it moves from its place at t = 0, in metres a second: [east, north, up]. In a scene with "
+        "[time].",
+        [0.0, 5.0, 0.0],
+    )
+    track: Track | None = optional(
+        "How it moves, in place of velocity_m_s: rows [t, x, y, z] of seconds and metres, straight and even "
+        "from each to the next; or [t, lat, lon, alt] where its place is stated so. A row at t = 0 states "
+        "its place too.",
+        [[0.0, 17.0, 15.0, 4.0], [60.0, 17.0, 315.0, 4.0]],
+    )
+    track_from: Label | None = optional(
+        "Name of the file of its track, in the scenario's folder or below it: a CSV file of t, x, y, z or t, "
+        "lat, lon, alt, a GeoJSON LineString with times, or GPX.",
+        "drone.csv",
     )
     antenna: GroundAntennaKind = Field(
         default="isotropic",
@@ -166,9 +188,15 @@ class GroundPoint(Section):
         "free-space",
     )
 
+    @classmethod
+    def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
+        """Fill in the place at which a track in metres begins."""
+        return with_start(data)
+
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
-        """List the faults of the keys of an antenna where there is none, and of a profile."""
+        """List the faults of the keys of an antenna where there is none, of a profile and of a track."""
         yield from super().faults(raw)
+        yield from track_faults(self.track, raw)
         for key, (noun, owner) in _PARTS.items():
             if getattr(self, key) is not None and self.antenna in GROUND_ANTENNAS.keys() - {owner}:
                 yield (
@@ -329,6 +357,7 @@ class Node(Terminal, Powered, _Listener, GroundPoint):
     ways: ClassVar[tuple[Ways, ...]] = (
         PLACE,
         ALTITUDE,
+        MOTION,
         at_most_one("power_w", "power_dbm"),
         NOISE,
         _JAMMING,
@@ -347,7 +376,7 @@ class Destination(Terminal, GroundPoint):
     Its keys are those of a ground point and of a terminal.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, NOISE, _JAMMING)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, NOISE, _JAMMING)
 
     name: Label = Field(
         default="destination",
@@ -359,7 +388,7 @@ class Destination(Terminal, GroundPoint):
 class Jammer(Uncertain, Powered, GroundPoint):
     """A jammer whose signal drowns the nodes: a ground point that transmits and may be uncertain."""
 
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, POWER)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, POWER)
 
     header: ClassVar[str] = "a jammer, in a table of its own headed [[jammers]]"
     letter: ClassVar[str] = "M"
@@ -377,7 +406,7 @@ class Eavesdropper(Noisy, Uncertain, GroundPoint):
 
     header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
     letter: ClassVar[str] = "E"
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, NOISE)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, NOISE)
 
 
 class Source(Powered, GroundPoint):
@@ -392,4 +421,4 @@ class Source(Powered, GroundPoint):
     header: ClassVar[str] = "a source, in a table of its own headed [[sources]]"
     letter: ClassVar[str] = "A"
     is_interferer: ClassVar[bool] = False
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, POWER)
+    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, POWER)

@@ -16,9 +16,17 @@ from nullpose.scenario.overrides import Override, apply_overrides, overridden
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import file_text, tables_of, uploaded_text
 
-_FILE_KEYS = ("nodes_from", "geofence_from", "no_fly_from", "file", "buildings_from", "antenna_file")
+_FILE_KEYS = (
+    "nodes_from",
+    "geofence_from",
+    "no_fly_from",
+    "file",
+    "buildings_from",
+    "antenna_file",
+    "track_from",
+)
 _EARLY = re.compile(
-    r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b"
+    r"origin\b|airspace\.(?!no_fly\b)|nodes_from\b|\S*\.track_from\b"
     r"|buildings\S*\.(?:buildings_from|storey_height_m|missing_height_m|height_unit|\w+_property)\b"
 )
 _LOG = logging.getLogger("nullpose")

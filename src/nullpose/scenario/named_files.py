@@ -26,11 +26,14 @@ from nullpose.scenario.node_files import nodes_of_csv, nodes_of_features
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_content, file_text, inside
+from nullpose.scenario.track import MOTION
+from nullpose.scenario.track_files import TRACK_ENDINGS, track_of
 from nullpose.scenario.wording import described
 
 _NODES_KEY, _FENCE_KEY, _ZONES_KEY = "nodes_from", "geofence_from", "no_fly_from"
-_BUILDINGS_KEY = "buildings_from"
+_BUILDINGS_KEY, _TRACK_KEY = "buildings_from", "track_from"
 _NODES_FILE = FileKind("a file of nodes", "nodes.geojson", (*ENDINGS, ".csv"))
+_TRACK_FILE = FileKind("a file of a track", "drone.csv", TRACK_ENDINGS)
 _AREA_FILE = FileKind("a file of areas", "zones.geojson", (*ENDINGS, ".plan"))
 _STEP = re.compile(r"(?=[.\[])")
 _MEMBER = re.compile(r"[\w.]+\[\d+\]")
@@ -69,6 +72,14 @@ class NamedFiles:
             # The nodes take the place of the key, so that faults come in the order of the file.
             tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
             tables["nodes"] = self._nodes(tables["nodes"])
+        failures = len(self._faults)
+        for kind in (*POINT_LISTS, "destination"):
+            if isinstance(points := tables.get(kind), list):
+                tables[kind] = [self._with_track(each, f"{kind}[{i}]") for i, each in enumerate(points)]
+            elif points is not None:
+                tables[kind] = self._with_track(points, kind)
+        if len(self._faults) > failures:
+            raise_all(self._faults)  # nothing else is known of such a point
         profile = ("antenna_file", "antenna_profile", with_profile, ALIKE)
         for kind in POINT_LISTS:
             if isinstance(points := tables.get(kind), list):
@@ -141,6 +152,23 @@ class NamedFiles:
             self._note(file, notes)
             return filled
         return table | {product: instead}
+
+    def _with_track(self, table: object, place: str) -> object:
+        """Put the track of a file in place of the key of a raw point that names it."""
+        if not isinstance(table, dict) or MOTION.taken(table) != [(_TRACK_KEY,)]:
+            return table
+        rest = {key: value for key, value in table.items() if key != _TRACK_KEY}
+        label = f"{place}.{_TRACK_KEY}: {table[_TRACK_KEY]}"
+        with self._reading(label):
+            path = self._path(table[_TRACK_KEY], _TRACK_FILE)
+            track = track_of(path, file_content(path, _TRACK_FILE, self._folder))
+            self._places |= {f"{place}.track": label} | {
+                f"{place}.{key}": f"{label}: {where}"
+                for key, where in track.places.items()
+                if key not in rest
+            }
+            return rest | track.beside(rest)
+        return rest
 
     def _filled(
         self, key: str, file: object, fill: Callable[[list[Feature]], Filled[_Found]]

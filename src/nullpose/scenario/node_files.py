@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache
 from itertools import islice
+from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
 from shapely import Point
@@ -26,9 +27,10 @@ from nullpose.scenario.units import ALTITUDE_KEYS, GEODETIC_KEYS
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import printable, unknown
 
-_LOCAL = ("x_m", "y_m", "z_m")
-_PLACE = Ways((_LOCAL, GEODETIC_KEYS), twins=PLACE.twins)
-_COLUMNS = ("name", *_LOCAL, *(key for key in Node.model_fields if key not in ("name", "position_m")))
+LOCAL = ("x_m", "y_m", "z_m")
+"""The columns of a place in metres."""
+_PLACE = Ways((LOCAL, GEODETIC_KEYS), twins=PLACE.twins)
+_COLUMNS = ("name", *LOCAL, *(key for key in Node.model_fields if key not in ("name", "position_m")))
 _OF_KML = {"absolute": "alt_msl_m", "relativeToGround": "alt_agl_m"}  # by altitude mode
 _READ_HERE = {"Name", "altitudeMode", "extrude", "ele"}
 _TYPO = 0.75  # similarity from which an unknown property is taken for a key
@@ -65,51 +67,80 @@ def nodes_of_csv(text: str) -> ReadNodes:
     Raises:
         ScenarioError: no CSV, a header that cannot be used, or no line below it.
     """
-    reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
-    lines = ((reader.line_num, row) for row in ([cell.strip() for cell in row] for row in reader) if any(row))
-    try:
-        line, header = next(lines, (1, []))
-        rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused
-    except csv.Error as error:
-        raise refusal("", f"this is not CSV: {error}; check the quotes") from None
-    raise_all([Fault(f"line {line}", message) for message in _header_faults(header)])
+    header, rows = table_of_csv(text, _COLUMNS)
+    rows = [row for row in rows if any(row[1])]
     require(rows, "", "there is no line below the header, must be one for each node")
     return *call_each(lambda row: _node_of_row(f"line {row[0]}", header, row[1]), rows), []
 
 
-def _header_faults(header: Sequence[str]) -> Iterator[str]:
+def table_of_csv(
+    text: str, columns: Sequence[str], aliases: Mapping[str, str] = MappingProxyType({})
+) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Return the header of a CSV text of points, and the rows below it with their lines.
+
+    Args:
+        text: the file's content.
+        columns: that it may have, among them those of a place, of which it must have those of one kind.
+        aliases: other names of columns.
+
+    Raises:
+        ScenarioError: no CSV, or a header that cannot be used.
+    """
+    reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
+    lines = ((reader.line_num, [cell.strip() for cell in row]) for row in reader if row[1:] or any(row))
+    try:
+        line, header = next((each for each in lines if any(each[1])), (1, []))
+        rows = list(islice(lines, MOST_MEMBERS + 1))  # one more than are allowed, so that it is refused
+    except csv.Error as error:
+        raise refusal("", f"this is not CSV: {error}; check the quotes") from None
+    header = [aliases.get(column, column) for column in header]
+    raise_all([Fault(f"line {line}", message) for message in _header_faults(header, columns)])
+    return header, rows
+
+
+def _header_faults(header: Sequence[str], columns: Sequence[str]) -> Iterator[str]:
     if len(header) < 2:
         got = f'got "{printable(header[0])}"' if header else "the file is empty"
-        columns = ", ".join(_COLUMNS[:8])
-        yield f"{got}, must be a header line of columns separated by commas, such as {columns}"
+        names = ", ".join(columns[:8])
+        yield f"{got}, must be a header line of columns separated by commas, such as {names}"
         return
     for index, column in enumerate(header):
         if column in header[:index]:
             yield f'the column "{printable(column)}" is there twice; remove one'
-        elif column not in _COLUMNS:
-            absent = [key for key in _COLUMNS if key not in header]
-            yield f'"{printable(column)}": {unknown("column", column, _COLUMNS, absent)}'
+        elif column not in columns:
+            absent = [key for key in columns if key not in header]
+            yield f'"{printable(column)}": {unknown("column", column, columns, absent)}'
     yield from _PLACE.faults(header)
 
 
-def _node_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> ListedNode:
+def cells_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> dict[str, object]:
+    """Return the cells of a row by their columns: numbers, and what is none as it is.
+
+    Raises:
+        ScenarioError: there are more or fewer than the header has.
+    """
     many = f"got {len(cells)} values, must be {len(header)}, as many as the header has"
     require(len(cells) == len(header), where, many)
-    row = {
-        key: cell if key in ("name", "from") else _number(cell)
+    return {
+        key: cell if key in ("name", "from") else number_of(cell)
         for key, cell in zip(header, cells, strict=True)
     }
+
+
+def _node_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> ListedNode:
+    row = cells_of_row(where, header, cells)
     places = {"": where, "position_m": where} | {key: f"{where}, column {key}" for key in row}
-    places |= {f"position_m[{axis}]": f"{where}, column {key}" for axis, key in enumerate(_LOCAL)}
+    places |= {f"position_m[{axis}]": f"{where}, column {key}" for axis, key in enumerate(LOCAL)}
     # A place is never left out, so its empty cells stay, to be refused.
     values = {key: cell for key, cell in row.items() if cell != "" or key in GEODETIC_KEYS}
     if "x_m" in row:
-        values = {key: cell for key, cell in values.items() if key not in _LOCAL}
-        values["position_m"] = [row[key] for key in _LOCAL]
+        values = {key: cell for key, cell in values.items() if key not in LOCAL}
+        values["position_m"] = [row[key] for key in LOCAL]
     return ListedNode(values, places)
 
 
-def _number(cell: str) -> object:
+def number_of(cell: str) -> object:
+    """Return the number of a cell; the cell, to be refused, if it is none."""
     try:
         return cell if "_" in cell else float(cell)
     except ValueError:

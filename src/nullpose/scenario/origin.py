@@ -204,8 +204,10 @@ def in_metres(table: object, origin: Origin) -> dict[str, Floats]:
         if (value := getattr(table, key, None)) is not None
         and (zero_m := 0.0 if key == "alt_agl_m" else getattr(origin, key)) is not None
     ]
-    if heights_m and None not in (place := [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]):
-        found["position_m"] = enu_from_geodetic([*place, heights_m[0]], origin.geodetic)
+    place: list[Any] = [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]
+    if heights_m and all(each is not None for each in place):
+        whole = np.stack([*place, heights_m[0]], axis=-1)
+        found["position_m"] = enu_from_geodetic(whole, origin.geodetic)
     for key, of_origin in EARTHLY_RANGES.items():
         ends_m, zero_m = getattr(table, key, None), getattr(origin, of_origin)
         if ends_m is not None and zero_m is not None:

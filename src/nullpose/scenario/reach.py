@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
 import numpy as np
 
@@ -112,7 +113,8 @@ def may_hold_a_position(airspace: Airspace, centres_m: Floats) -> bool:
     near_m = centres_m[apart_m < airspace.keep_out_m]
     outlines = [airspace.geofence_outline_m, *(zone.outline_m for zone in airspace.no_fly)]
     most = min(60_000, _MOST_DISTANCES // max(1, sum(map(len, outlines), len(near_m))))
-    position_m, is_sure = find_position(lower_m, upper_m, lambda at: _clearance_m(airspace, near_m, at), most)
+    free_m = partial(free_distance_m, airspace, near_m)
+    position_m, is_sure = find_position(lower_m, upper_m, free_m, most)
     return position_m is not None or not is_sure
 
 
@@ -132,7 +134,7 @@ def _reach_faults(
 
         def clearance_m(at: Floats, centre_m: Floats = centre_m, total_m: float = total_m) -> Floats:
             inside = total_m - np.linalg.norm(at - centre_m, axis=1)
-            return np.asarray(np.minimum(inside, _clearance_m(airspace, centres_m, at)))
+            return np.asarray(np.minimum(inside, free_distance_m(airspace, centres_m, at)))
 
         lower_m = np.maximum(airspace.lower_m, centre_m - total_m)
         met_m, _ = find_position(lower_m, np.minimum(airspace.upper_m, centre_m + total_m), clearance_m)
@@ -146,6 +148,13 @@ def _reach_faults(
             )
 
 
-def _clearance_m(airspace: Airspace, centres_m: Floats, at: Floats) -> Floats:
+def free_distance_m(airspace: Airspace, centres_m: Floats, at: Floats) -> Floats:
+    """Measure distances from what is forbidden, the keep-out balls too [m], below 0 inside, (n,).
+
+    Args:
+        airspace: where the vehicle may be.
+        centres_m: the ground points [m], (m, 3).
+        at: positions [m], (n, 3).
+    """
     nearest_m = np.linalg.norm(at[:, None] - centres_m, axis=-1).min(axis=1, initial=np.inf)
     return np.asarray(np.minimum(airspace.clearance_m(at), nearest_m - airspace.keep_out_m))

@@ -13,24 +13,25 @@ from pydantic import Field, PlainSerializer
 from nullpose.antenna import SHORT_DIPOLE, AnyAntenna
 from nullpose.antenna.from_file import ESTIMATE
 from nullpose.channel.buildings import Prisms, prisms_of
-from nullpose.errors import WrongTypeError
+from nullpose.errors import WrongTypeError, checked
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, USUAL, Custom, ObjectiveRecord
 from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.antenna import Antenna, Array
-from nullpose.scenario.arrays import PointArrays, rows_of_points
+from nullpose.scenario.arrays import Floats, PointArrays, rows_of_points
 from nullpose.scenario.buildings import MOST_BUILDINGS, Building
 from nullpose.scenario.channel import SHADOW_MARGIN_M, NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place
 from nullpose.scenario.ground_points import Destination, Eavesdropper, Jammer, Node, Source
+from nullpose.scenario.motion import Time, started, still_at, time_of
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.rules import Choice, list_of_tables
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.toml_file import toml_text
-from nullpose.scenario.units import Label, Title, ratio_from_db
+from nullpose.scenario.units import Label, Seconds, Title, ratio_from_db
 from nullpose.scenario.ways import Ways
 from nullpose.scenario.wording import described
 
@@ -71,6 +72,12 @@ class Scenario(Section, PointArrays):
         "that lists the nodes, relative to this file's folder. "
         "Either this or tables headed [[nodes]].",
         "nodes.geojson",
+    )
+    time: Time | None = optional(
+        "A table headed [time]: how long the scene lasts, where points move. Left out: nothing moves."
+    )
+    at_s: Seconds | None = optional(
+        "Of a still scene that a scene in motion was at one instant: the time of that, in seconds.", 30.0
     )
     origin: Origin | None = optional(
         "A table headed [origin]: the place on the Earth (WGS-84) where positions are [0, 0, 0]. "
@@ -206,11 +213,61 @@ class Scenario(Section, PointArrays):
         antenna, name = data.get("antenna"), data.get("name", "")
         if isinstance(antenna, Mapping) and antenna.get("two_cuts") and ESTIMATE not in str(name):
             data = {**data, "name": f"{name} (antenna: {ESTIMATE})".strip()}
-        return located(data)
+        return located(started(data))
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the faults between the parts of the scenario, those that are None being at fault."""
         return scenario_faults(self, raw)
+
+    @checked
+    def at(self, t_s: float) -> Scenario:
+        """Return the still scene in which everything stands where it is at one instant.
+
+        It says so: ``at_s`` is the time, and the name ends with it. The vehicle's speed, start and end are
+        not in it.
+
+        Args:
+            t_s: from 0 to the duration of the scene [s]; any time, not only one of ``instants_s``.
+
+        Raises:
+            UsageError: nothing moves in the scene, or the time is outside it.
+            ScenarioError: the points are then where still ones may not be, as in a building.
+
+        Example:
+            >>> import nullpose
+            >>> scene = nullpose.load("examples/moving_jammer.toml")
+            >>> scene.at(10.0).jammers[0].position_m
+            (-20.0, 15.0, 4.0)
+            >>> found = nullpose.solve_many([scene.at(t_s) for t_s in scene.instants_s])
+            >>> found.value.shape, round(float(found.value.min()), 3)
+            ((61, 1), 0.896)
+        """
+        return still_at(self, t_s)
+
+    def still(self, at_s: float | None = None) -> Scenario:
+        """Return the scene at an instant, at 0 unless one is stated; a still scene as it is.
+
+        Args:
+            at_s: the time of the instant [s]; None for none stated.
+
+        Raises:
+            UsageError: an instant of a still scene is asked for, or one outside the duration.
+        """
+        return self if self.time is None and at_s is None else self.at(at_s or 0.0)
+
+    @property
+    def instant(self) -> PlainTable:
+        """The key ``at_s``, for results that state no scenario; nothing of a scene in which nothing moves."""
+        return {} if self.at_s is None else {"at_s": self.at_s}
+
+    @property
+    def instants_s(self) -> Floats:
+        """The times of a scene in motion [s], (n,): 0, step_s and so on to exactly duration_s.
+
+        Raises:
+            UsageError: nothing moves in the scene.
+        """
+        return time_of(self, "instants_s: asked for").instants_s
 
     def to_toml(self) -> str:
         """Return the text of a scenario file that loads as an equal scenario."""
@@ -221,7 +278,8 @@ class Scenario(Section, PointArrays):
         counts += [(len(self.eavesdroppers), "eavesdropper")] * bool(self.eavesdroppers)
         numbers = ", ".join(f"{count} {noun}{'s' * (count != 1)}" for count, noun in counts)
         low, high = self.airspace.altitude_m
-        return f"Scenario({self.name!r}: {numbers}, {self.objective}, altitude {low:g} to {high:g} m)"
+        span = "" if self.time is None else f", in motion for {self.time.duration_s:g} s"
+        return f"Scenario({self.name!r}: {numbers}, {self.objective}, altitude {low:g} to {high:g} m{span})"
 
     __str__ = __repr__
 

@@ -16,6 +16,9 @@ GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
 ALTITUDE_KEYS = ("alt_m", "alt_msl_m", "alt_agl_m")
 """The keys that may state an altitude: over the ellipsoid, over the sea, above the ground at the origin."""
 
+PLACE_KEYS = {"position_m", "lat_deg", "lon_deg", *ALTITUDE_KEYS}
+"""The keys that may state the place of a point."""
+
 EARTHLY_CORNERS = {
     "geofence_lat_lon_deg": "geofence_m",
     "polygon_lat_lon_deg": "polygon_m",
@@ -76,6 +79,10 @@ Hertz = Annotated[float, Limits("a frequency in Hz", 1e3, 1e13, "2.4 GHz is writ
 Metres = Annotated[
     float, Limits("a length in m", -1e7, 1e7, "use metres from a nearby local origin: east, north and up")
 ]
+Seconds = Annotated[
+    float, Limits("a time in s", 0.0, 1e9, "times count in seconds from the first instant of the scene")
+]
+Speed = Annotated[float, Limits("a speed in m/s", -1e5, 1e5, "36 km/h are 10 m/s")]
 MarginMetres = Annotated[float, Limits("a length in m", 0.0, 1e7, "a margin is never negative; 0 means none")]
 RadiusMetres = Annotated[float, Limits("a radius in m", 1e-3, 1e7, "a shape has an inside")]
 ErrorMetres = Annotated[

@@ -18,12 +18,14 @@ class Ways:
         fewest: 1 if one way must be taken, 0 if none need be.
         most: how many may be taken.
         twins: pairs of a key and the key of a group in whose place it may be given.
+        instead: further keys of which one may be there in place of every group.
     """
 
     groups: tuple[tuple[str, ...], ...]
     fewest: int = 1
     most: int = 1
     twins: tuple[tuple[str, str], ...] = ()
+    instead: tuple[str, ...] = ()
 
     def taken(self, present: Collection[str]) -> list[tuple[str, ...]]:
         """Return the groups of which some key, or its twin, is present."""
@@ -65,7 +67,7 @@ class Ways:
         """Write the same as a rule of JSON Schema."""
         groups = [self._whole(group) for group in self.groups]
         if self.most > 1:
-            return {"anyOf": groups}
+            return {"anyOf": [*groups, *({"required": [key]} for key in self.instead)]}
         if self.fewest:
             return {"oneOf": groups}
         pairs = [{"required": list(chain(*pair))} for pair in combinations(self.groups, 2)]

@@ -300,7 +300,9 @@ class Page:
 
     def _load(self, file: UploadedFile) -> None:
         def loaded(state: State) -> State:
-            return state.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
+            return state.with_scenario(
+                scenario_from_text(file.content, file.name).still(), file.content.decode()
+            )
 
         if not self.change(loaded, name=file.name):  # viser has said by now that the file has arrived
             self._notify(

@@ -260,3 +260,20 @@ power_w = 1.0
 [sweep]
 x = {}
 """
+
+
+def test_a_file_in_motion_counts_at_one_instant(tmp_path: Path) -> None:
+    """At that which the spec states, else at 0, and each scene says so; without a file it is refused."""
+    shutil.copy(EXAMPLE.with_name("moving_jammer.toml"), tmp_path)
+    spec = 'scenes = 1\n[scene]\nfile = "moving_jammer.toml"\n'
+    for line, east_m, at_s in (("", -60.0, 0.0), ("at_s = 12.5\n", -10.0, 12.5)):
+        scene = draw_scene(_load(tmp_path, spec + line), 0)
+        assert (scene.jammers[0].position_m[0], scene.at_s) == (east_m, at_s)
+    drawn = '[nodes]\nlayout = "disc"\ncentre_m = [0, 0]\nradius_m = 5.0\ncount = 2\npower_w = 1.0\n'
+    drawn += "height_m = 0.0\n"
+    assert draw_scene(_load(tmp_path, f"{spec}at_s = 12.5\n{drawn}"), 0).at_s == 12.5
+    assert list(_faults(tmp_path, f"{spec}at_s = 61\n")) == ["scene.at_s"]
+    assert list(_faults(tmp_path, f'{spec}at_s = "noon"\n')) == ["scene.at_s"]
+    tables = "airspace = {altitude_m = [8, 30]}\nreceiver = {noise_w = 1.0, reference_gain_db = 0.0}\n"
+    alone = f"scenes = 1\n[scene]\nat_s = 1.0\n{tables}{drawn}"
+    assert list(_faults(tmp_path, alone)) == ["scene.at_s"]

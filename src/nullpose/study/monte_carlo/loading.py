@@ -12,7 +12,7 @@ from nullpose.files import PlainTable
 from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
-from nullpose.scenario.faults import call_each, path_of, raise_all
+from nullpose.scenario.faults import call_each, path_of, raise_all, refusal
 from nullpose.scenario.toml_file import FileKind, file_text, inside, tables_of
 from nullpose.study.case import Case
 from nullpose.study.monte_carlo.draw import Draws
@@ -63,10 +63,14 @@ def _read_scenarios(tables: PlainTable, folder: Path, allow_outside: bool) -> li
     file, files = scene.get("file"), scene.get("files")
     listed = [file] if files is None else files if isinstance(files, list) else []
     names = [name for name in listed if isinstance(name, str)]  # the spec refuses what is no name
+    at_s = scene.get("at_s")
 
     def read(name: str) -> PlainTable:
         try:
-            return load(inside(folder, name, allow_outside), allow_outside=allow_outside).to_dict()
+            whole = load(inside(folder, name, allow_outside), allow_outside=allow_outside)
+            return whole.still(at_s if isinstance(at_s, int | float) else None).to_dict()
+        except UsageError as error:
+            raise refusal("scene.at_s", f"{name}: {error}") from None
         except ScenarioError as error:
             paths = [f"{name}: {fault.path}" if fault.path else name for fault in error.faults]
             raise ScenarioError([*map(Fault, paths, [each.message for each in error.faults])]) from None

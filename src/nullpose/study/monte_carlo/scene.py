@@ -27,11 +27,11 @@ from nullpose.scenario import (
     Transmitter,
 )
 from nullpose.scenario.airframe import NamedAirframe
-from nullpose.scenario.faults import Place
+from nullpose.scenario.faults import Place, key_faults
 from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.units import Label
+from nullpose.scenario.units import Label, Seconds
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.study.monte_carlo.drawn_channel import DrawnChannel, FixedOrDrawn
 
@@ -43,6 +43,7 @@ class SceneBase(Section):
         file: a scenario file.
         files: several, which are the scenes in turn.
         scenarios: what the files hold; read together with the spec.
+        at_s: the instant at which they count, where they are in motion.
         objective, origin, airspace, airframe, antenna, array, channel, receiver, transmitter, destination: as
             in a scenario file, like buildings.
         nodes, jammers, eavesdroppers, sources: points that are not drawn, as in a scenario file.
@@ -65,6 +66,9 @@ class SceneBase(Section):
     )
     scenarios: Annotated[tuple[Scenario, ...], list_of_tables("scene.scenarios")] = Field(
         default=(), description="What file or files hold. Filled in when the spec is read."
+    )
+    at_s: Seconds | None = optional(
+        "Where what a file holds is in motion: the instant that counts, in seconds. Left out: 0.", 30.0
     )
     objective: Annotated[str, Choice("an objective", RECORDS)] = Field(
         default=USUAL, description="As in a scenario file.", examples=list(RECORDS)
@@ -103,12 +107,13 @@ class SceneBase(Section):
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield tables that are missing, or stated twice."""
-        keys = (key for key in _TABLES if not isinstance(getattr(self, key), DrawnChannel))
+        keys = (key for key in _TABLES if key != "at_s" and not isinstance(getattr(self, key), DrawnChannel))
         tables = [key for key in keys if raw.get(key)]
         if self.file or self.files or self.scenarios:
             message = "given together with a file, which states it; remove one, or state it in the file"
             yield from (((key,), message) for key in tables)
         else:
+            yield from key_faults(raw, ("at_s",), "is of a file in motion, and none is named; remove it")
             yield from (
                 ((key,), f"missing; add a table headed [scene.{key}], or name a scenario file (file)")
                 for key in ("airspace", "receiver")
@@ -148,4 +153,4 @@ def _in_metres(point: GroundPoint) -> GroundPoint:
     return point if point.lat_deg is None else point.model_copy(update={"position_m": point.position_m})
 
 
-_TABLES = tuple(key for key in Scenario.model_fields if key not in ("name", "nodes_from"))
+_TABLES = tuple(key for key in Scenario.model_fields if key not in ("name", "nodes_from", "time"))

@@ -1,0 +1,101 @@
+"""Every command answers for one instant of a scene in motion, and says for which."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import Result
+
+from nullpose import load
+from nullpose.scenario import Scenario
+
+Run = Callable[..., Result]
+
+ROOT = Path(__file__).parents[2]
+MOVING = str(ROOT / "examples" / "moving_jammer.toml")
+SWEPT = ("--set", "jammers.M.power_w", "--from", 1, "--to", 2, "--points", 2, "--fast")
+COMMANDS = {
+    "solve": ("solve", MOVING, "--fast"),
+    "compare": ("compare", MOVING, "--fast"),
+    "airframes": ("compare", MOVING, "--airframes", "--fast"),
+    "vehicle": ("vehicle", MOVING, "--mount", "0"),
+    "evaluate": ("evaluate", MOVING, "--pose", "0,20,10"),
+    "antenna": ("antenna", "compare", MOVING, "--fast", "--set", "antenna.null_depth_db=20"),
+    "check": ("check", MOVING),
+    "map": ("map", MOVING, "--cells", 11, "--fast", "--out", "map"),
+    "sweep": ("sweep", MOVING, *SWEPT, "--out", "sweep"),
+}
+
+
+@pytest.fixture
+def outputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let files be written to a folder of the test's."""
+    monkeypatch.chdir(tmp_path)
+
+
+def _found(value: object, key: str) -> list[Any]:
+    inner = list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else []
+    own = [value[key]] if isinstance(value, dict) and key in value else []
+    return own + [found for each in inner for found in _found(each, key)]
+
+
+@pytest.mark.usefixtures("outputs")
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_instant_is_told(run: Run, name: str) -> None:
+    """In the text and in JSON; without the option it is the first."""
+    done = run(*COMMANDS[name], "--at", 12.5)
+    assert done.exit_code == 0
+    assert "at 12.5 s" in done.stdout
+    assert _found(json.loads(run(*COMMANDS[name], "--at", 12.5, "--json").stdout), "at_s") == [12.5]
+    assert _found(json.loads(run(*COMMANDS[name], "--json").stdout), "at_s") == [0.0]
+
+
+def test_the_answer_is_that_of_the_still_scene(run: Run, tmp_path: Path) -> None:
+    """A file with the still scene of the instant gives the same value and bound."""
+    still = tmp_path / "still.toml"
+    still.write_text(load(MOVING).at(10.0).to_toml())
+    answers = [
+        json.loads(run("solve", *words, "--json").stdout) for words in ((MOVING, "--at", 10), (still,))
+    ]
+    assert answers[0]["objective"] == answers[1]["objective"]
+    assert answers[0]["scenario"] == answers[1]["scenario"]
+
+
+def test_a_certificate_holds_the_still_scene(run: Run, tmp_path: Path) -> None:
+    """It is verified, and is about the scene in motion at its own instant."""
+    certificate = tmp_path / "cert.json"
+    assert run("solve", MOVING, "--at", 10, "--certificate", certificate).exit_code == 0
+    assert Scenario.from_dict(json.loads(certificate.read_text())["scenario"]) == load(MOVING).at(10.0)
+    checked = run("verify", certificate, "--scenario", MOVING)
+    assert checked.exit_code == 0
+    assert "at 10 s" in checked.stdout
+    assert "nothing differs" in checked.stdout
+    other = tmp_path / "other.toml"
+    other.write_text((ROOT / "examples" / "moving_jammer.toml").read_text().replace("[4.0,", "[5.0,"))
+    checked = run("verify", certificate, "--scenario", other)
+    assert checked.exit_code == 1
+    assert "jammers[0].position_m" in checked.stderr
+
+
+def test_a_wrong_instant_is_refused(run: Run, paper: str) -> None:
+    """One outside the scene, one of a still scene, and what is no time: exit code 2 and one line."""
+    for file, at_s, words in (
+        (MOVING, 61, "at: given 61 s; allowed: 0 to 60 s"),
+        (MOVING, "nan", "at: given nan s; allowed: 0 to 60 s"),
+        (paper, 3, "at: given 3 s, but the scene has no [time]"),
+        (MOVING, "noon", "Invalid value for '--at'"),
+    ):
+        done = run("check", file, "--at", at_s)
+        assert done.exit_code == 2
+        assert words in done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_faults_of_a_motion_have_their_path(run: Run) -> None:
+    """They are those of the file or of an override: exit code 2."""
+    done = run("solve", MOVING, "--set", "time.step_s=61")
+    assert done.exit_code == 2
+    assert "time.step_s: got 61, must be at most duration_s = 60" in done.stderr
+    assert run("check", MOVING, "--set", "time.step_s=2", "--at", 3).exit_code == 0
