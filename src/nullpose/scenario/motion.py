@@ -36,6 +36,7 @@ MOST_INSTANTS = 100_000
 """The most instants of a scene."""
 FLIGHT_KEYS = ("speed_max_m_s", "start_m", "end_m")
 """The keys of an airframe that count in a scene in motion alone."""
+_MOTION = tuple(chain(*MOTION.groups))
 _SAME_PLACE_M = 1e-3
 _ROUNDING = 1e-9  # of a step: a last step as short as this is none
 _Span = Annotated[float, Limits("a time in s", 1e-6, 1e9, "it is more than 0")]
@@ -148,6 +149,10 @@ def _begun(table: object, keys: Sequence[str]) -> object:
     return {**table, **dict(zip(keys, place, strict=True))}
 
 
+def _stated(table: object, keys: Sequence[str]) -> list[str]:
+    return [key for key in keys if _value(table, key) is not None]
+
+
 def _value(table: object, key: str) -> Any:
     return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
 
@@ -194,7 +199,7 @@ def _still(point: _Point, origin: Origin | None, t_s: float) -> _Point:
     if not is_moving(point):
         return point
     position_m = places_m(point, origin, t_s)
-    update: PlainTable = {"position_m": position_m, **dict.fromkeys(chain(*MOTION.groups))}
+    update: PlainTable = {"position_m": position_m, **dict.fromkeys(_MOTION)}
     if point.lat_deg is not None and origin is not None:
         key = _altitude_key(point)
         lat_deg, lon_deg, height_m = geodetic_from_enu(position_m, origin.geodetic).tolist()
@@ -214,15 +219,10 @@ def motion_faults(
         raw: the raw scenario.
     """
     time, airframe = scenario.time, scenario.airframe
-    stated = [
-        (*place, key)
-        for place in points
-        for key in chain(*MOTION.groups)
-        if _value(reduce(getitem, place, raw), key) is not None
-    ]
-    flight = [("airframe", key) for key in FLIGHT_KEYS if getattr(airframe, key, None) is not None]
+    moves = [(*place, key) for place, point in points.items() for key in _stated(point, _MOTION)]
     if raw.get("time") is None:
-        for place in (stated or flight)[:1]:
+        flight = [("airframe", key) for key in _stated(airframe, FLIGHT_KEYS)]
+        for place in [*moves, *flight][:1]:
             yield (
                 place,
                 "given, but the scene has no [time]; add a table headed [time] with duration_s and step_s, "
@@ -231,7 +231,7 @@ def motion_faults(
         return
     if raw.get("at_s") is not None:
         yield ("at_s",), "given, but the scene has a [time] and so many instants; remove either"
-    if not stated:
+    if not moves and not any(_stated(reduce(getitem, place, raw), _MOTION) for place in points):
         yield (
             ("time",),
             "given, but nothing moves; give a point velocity_m_s, track or track_from, or remove this table",
@@ -240,10 +240,8 @@ def motion_faults(
         if point.track is not None:
             yield from _track_faults(place, point, scenario.origin, time)
     if time and airframe and airframe.start_m and airframe.end_m and airframe.speed_max_m_s is not None:
-        apart_m, reach_m = (
-            math.dist(airframe.start_m, airframe.end_m),
-            airframe.speed_max_m_s * time.duration_s,
-        )
+        apart_m = math.dist(airframe.start_m, airframe.end_m)
+        reach_m = airframe.speed_max_m_s * time.duration_s
         if apart_m > reach_m:
             yield (
                 ("airframe", "end_m"),

@@ -53,7 +53,7 @@ def track_faults(track: Track | None, raw: PlainTable) -> Iterator[tuple[Place, 
         track: of a point; None if it has none, or one at fault.
         raw: the raw point.
     """
-    if MOTION.taken(raw.keys()) == [("track_from",)]:
+    if "track_from" in raw and MOTION.taken(raw.keys()) == [("track_from",)]:
         yield ("track_from",), f"{ONLY_LOCAL}; state the track here, as track"
     times_s = [row[0] for row in track or ()]
     if times_s and times_s[0] > 0.0 and not raw.keys() & PLACE_KEYS:
