@@ -115,7 +115,9 @@ def test_the_first_answer_waits_for_no_compiler(start: Start, tmp_path: Path) ->
 
 def test_the_terminal_that_closes_ends_no_compilation(start: Start, tmp_path: Path) -> None:
     """What hangs up the program and all of its group leaves the kernels to be compiled."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup has it ignored, and so all that it starts
     program = start("solve", FRAME, "--json")
+    signal.signal(signal.SIGHUP, before)
     kernels, compilers = tmp_path / "kernels", set[int]()
 
     def is_compiling() -> bool:

@@ -210,6 +210,7 @@ def test_several_denominators_too(seed: int, random_family: Callable) -> None:
     u = rng.normal(size=3)
     u /= np.linalg.norm(u)
     start = value_at(family, p, u)
+    assert climb(family, AxisField.free(), p, u, steps=0).log_value == pytest.approx(start, rel=1e-12)
     value, p, u = polished(family, AxisField.free(), p, u)
     assert value >= start
     assert value == value_at(family, p, u)
