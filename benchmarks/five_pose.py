@@ -143,7 +143,7 @@ class FivePose:
             ValueError: the airspace has a side without a bound.
         """
         family = build_family(scenario)
-        if not (np.all(np.isfinite(family.low_m)) and np.all(np.isfinite(family.high_m))):
+        if not (np.all(np.isfinite(family.domain.low_m)) and np.all(np.isfinite(family.domain.high_m))):
             raise ValueError("the peers need an airspace that is bounded on every side")
         return cls(scenario, *_pack(family))
 
@@ -184,12 +184,15 @@ class FivePose:
 
 def _pack(family: Family) -> tuple[FloatArray, NDArray[np.int64]]:
     """Return the family as one array of floats and one of integers, in the order that `unpack` reads."""
-    points, n0 = family.arrays.points_m, family.arrays.numerator_isotropic
-    nw, npt = family.arrays.numerator_weight, family.arrays.numerator_point
-    den, d0 = family.arrays.denominator_of, family.arrays.denominator_isotropic
-    start, dpt = family.arrays.denominator_start, family.arrays.denominator_point
-    dw = family.arrays.denominator_weight
+    ratios = family.ratios
+    points, n0 = ratios.points_m, ratios.numerator_isotropic
+    nw, npt = ratios.numerator_weight, ratios.numerator_point
+    den, d0 = ratios.denominator_of, ratios.denominator_isotropic
+    start, dpt = ratios.denominator_start, ratios.denominator_point
+    dw = ratios.denominator_weight
     scratch = np.zeros(len(d0) + len(nw))
-    reals = np.concatenate([points.ravel(), n0, nw, d0, dw, family.low_m, family.high_m, scratch])
+    reals = np.concatenate(
+        [points.ravel(), n0, nw, d0, dw, family.domain.low_m, family.domain.high_m, scratch]
+    )
     sizes = [0, len(points), len(nw), len(d0), len(dw)]
     return reals, np.concatenate([np.array(sizes, dtype=np.int64), npt, den, start, dpt])

@@ -33,7 +33,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 def value_at(family: Family, position: Exact, axis: Exact, gains: Interval | None = None) -> Fraction:
     """Return what is maximised at a pose, by the verifier's numbers."""
-    return value_of(family, ratios_at(family, position, axis, gains=gains))
+    return value_of(family.ratios, ratios_at(family.ratios, position, axis, gains=gains))
 
 
 def accepted(certificate: Certificate) -> str:
@@ -90,7 +90,7 @@ def put_together(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3)
     lean = float(np.arctan2(np.hypot(east, north), up)) - mount_rad
     attitude = (0.0, lean, float(np.arctan2(north, east)))
     position = exact(outcome.incumbent.position_m)
-    axis, gains = antenna_axis(attitude, mount_rad), excess_at(family, position)
+    axis, gains = antenna_axis(attitude, mount_rad), excess_at(family.ratios, position)
     value = float(value_at(family, position, axis, gains=gains))
     trees = zip(fields, outcome.proofs, strict=True)
     return Certificate(
@@ -162,12 +162,13 @@ def random_family(
 
 def excess_over(family: Family, position_m: np.ndarray) -> np.ndarray:
     """The excess gains of a family's points at positions, (..., points), from the models."""
-    to_points_m = family.points_m - position_m[..., None, :]
-    if not len(family.channels):
+    ratios = family.ratios
+    to_points_m = ratios.points_m - position_m[..., None, :]
+    if not len(ratios.channels):
         return np.ones(to_points_m.shape[:-1])
     kinds = ((BY_DISTANCE, distance_excess), (BY_ELEVATION, elevation_excess))
-    groups = tuple((model, np.flatnonzero(family.channels[:, 0] == kind)) for kind, model in kinds)
-    return excess_gain(PointChannels(np.ones(len(family.points_m)), family.channels, groups), to_points_m)
+    groups = tuple((model, np.flatnonzero(ratios.channels[:, 0] == kind)) for kind, model in kinds)
+    return excess_gain(PointChannels(np.ones(len(ratios.points_m)), ratios.channels, groups), to_points_m)
 
 
 def make_leaves(count: int, **columns: object) -> Leaves:
@@ -187,27 +188,30 @@ def link_matrix(r: np.ndarray, leak: float) -> np.ndarray:
 
 def dense_forms(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Numerator and denominator of a family's first ratio at a position, densely."""
-    g = family.denominator_of[0]
-    entries = range(family.denominator_start[g], family.denominator_start[g + 1])
-    links = [link_matrix(point - position_m, family.leak) for point in family.points_m]
-    below = family.denominator_isotropic[g] * np.eye(3)
+    ratios = family.ratios
+    g = ratios.denominator_of[0]
+    entries = range(ratios.denominator_start[g], ratios.denominator_start[g + 1])
+    links = [link_matrix(point - position_m, ratios.leak) for point in ratios.points_m]
+    below = ratios.denominator_isotropic[g] * np.eye(3)
     below = below + sum(
-        (family.denominator_weight[e] * links[family.denominator_point[e]] for e in entries), np.zeros((3, 3))
+        (ratios.denominator_weight[e] * links[ratios.denominator_point[e]] for e in entries),
+        np.zeros((3, 3)),
     )
-    above = family.numerator_isotropic[0] * np.eye(3)
-    return above + family.numerator_weight[0] * links[family.numerator_point[0]], below
+    above = ratios.numerator_isotropic[0] * np.eye(3)
+    return above + ratios.numerator_weight[0] * links[ratios.numerator_point[0]], below
 
 
 def dense_ratios(family: Family, position_m: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """The ratios of a family at poses, (..., ratios), by plain matrices alone."""
+    ratios = family.ratios
     u = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
-    links = link_matrix(family.points_m - position_m[..., None, :], family.leak)
+    links = link_matrix(ratios.points_m - position_m[..., None, :], ratios.leak)
     gains = np.einsum("...i,...pij,...j->...p", u, links, u) * excess_over(family, position_m)
-    entries = family.denominator_weight * gains[..., family.denominator_point]
-    sums = [entries[..., a:b].sum(axis=-1) for a, b in pairwise(family.denominator_start)]
-    below = (family.denominator_isotropic + np.stack(sums, axis=-1))[..., family.denominator_of]
-    above = family.numerator_weight * gains[..., family.numerator_point]
-    return (family.numerator_isotropic + above) / below
+    entries = ratios.denominator_weight * gains[..., ratios.denominator_point]
+    sums = [entries[..., a:b].sum(axis=-1) for a, b in pairwise(ratios.denominator_start)]
+    below = (ratios.denominator_isotropic + np.stack(sums, axis=-1))[..., ratios.denominator_of]
+    above = ratios.numerator_weight * gains[..., ratios.numerator_point]
+    return (ratios.numerator_isotropic + above) / below
 
 
 def boxes_at(centre: object, half: object) -> Boxes:

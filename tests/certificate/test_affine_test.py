@@ -86,13 +86,17 @@ def test_expansions_bound_the_links_of_channels(
     """A link with a channel, of any antennas, is at most what its jet says, or at least that."""
     rng = np.random.default_rng(seed)
     family, boxes, dipole = random_family(rng, 1, 1, channel=channel), one_box(rng), DIPOLES[seed % 3]
-    gain = excess(family, boxes, np.zeros(1, dtype=np.int64), is_above)
-    jet = link_over(field, boxes, family.points_m[:1], family.leak, dipole, gain)
+    gain = excess(family.ratios, boxes, np.zeros(1, dtype=np.int64), is_above)
+    jet = link_over(field, boxes, family.ratios.points_m[:1], family.ratios.leak, dipole, gain)
     bends = jet.over.bends
     assume(np.all(np.isfinite(bends.low) & np.isfinite(bends.high)))
     x = rng.uniform(-1.0, 1.0, (50, 3)) * boxes.half[0]
     there = [
-        float(exact_link(field, family.points_m[0], exact(boxes.centre[0] + step), family.leak, dipole))
+        float(
+            exact_link(
+                field, family.ratios.points_m[0], exact(boxes.centre[0] + step), family.ratios.leak, dipole
+            )
+        )
         for step in x
     ] * excess_over(family, boxes.centre[0] + x)[:, 0]
     weights = np.array([x[:, i] * x[:, k] * (0.5 if i == k else 1.0) for i, k in SIX])
@@ -165,7 +169,7 @@ def test_no_position_of_an_excluded_box_reaches_the_level(
         level=at_centre * 10.0 ** rng.uniform(-0.2, 0.8, count),
         mix=np.arange(count),
         mixes=tuple({int(k): float(w) for k, w in enumerate(row)} for row in drawn),
-        ball=rng.integers(-1, len(family.points_m), count),
+        ball=rng.integers(-1, len(family.ratios.points_m), count),
         ball_multiplier=10.0 ** rng.uniform(-4.0, 0.0, count) * rng.integers(0, 2, count),
     )
     with np.errstate(all="ignore"):
@@ -174,14 +178,14 @@ def test_no_position_of_an_excluded_box_reaches_the_level(
     assert not np.all(holds)
     for b in np.flatnonzero(holds):
         p = boxes.centre[b] + rng.uniform(-1.0, 1.0, (20, 3)) * boxes.half[b]
-        allowed = np.linalg.norm(family.points_m - p[:, None], axis=2).min(axis=1) >= keep_out_m
+        allowed = np.linalg.norm(family.ratios.points_m - p[:, None], axis=2).min(axis=1) >= keep_out_m
         assert np.all(dense_ratios(family, p, axis(p)).min(axis=1)[allowed] < leaves.level[b])
 
 
 def test_a_mix_of_nothing_excludes_nothing() -> None:
     """Weights of zero prove nothing, also inside a ball."""
     family = random_family(np.random.default_rng(2), 2, 1, keep_out_m=5.0)
-    boxes = boxes_at(family.points_m[:1] + np.array([3.0, 0.0, 0.0]), 0.1)
+    boxes = boxes_at(family.ratios.points_m[:1] + np.array([3.0, 0.0, 0.0]), 0.1)
     leaves = make_leaves(1, level=1e6, mixes=({0: 0.0},), ball=0, ball_multiplier=1.0)
     with np.errstate(all="ignore"):
         assert not affine_holds(family, AxisField.vertical(), leaves, boxes)[0]

@@ -96,7 +96,7 @@ def test_no_allowed_pose_of_an_excluded_box_reaches_the_level(field: AxisField) 
             tops[b] = values[fine].max(initial=values.min()), values.max()
         level = tops[:, 0] + rng.uniform(-0.1, 1.1, count) * (tops[:, 1] - tops[:, 0])
         kind = np.full(count, AFFINE) if not field.is_free else rng.choice([WORLD, WORLD, TOWARDS], count)
-        point = rng.integers(len(family.points_m), size=count)
+        point = rng.integers(len(family.ratios.points_m), size=count)
         leaves = make_leaves(count, test=kind, level=level, ball=zone, point=point)
         holds = excluded(family, field, leaves, boxes)
         without = excluded(family, field, replace(leaves, ball=np.full(count, -1)), boxes)
@@ -163,7 +163,7 @@ def test_balls_curve(field: AxisField) -> None:
     family = family.changed(keep_out_points_m=np.array([[20.0, 20.0, 60.0]]), keep_out_m=1.0)
     test = WORLD if field.is_free else AFFINE
     for half, expected in ((0.5, True), (0.6, False), (2.0, False)):
-        boxes = boxes_at(family.keep_out_points_m.copy(), half)
+        boxes = boxes_at(family.domain.keep_out_points_m.copy(), half)
         for multiplier in (1.0, 1e3, 1e6):
             leaves = make_leaves(1, test=test, level=1e-6, ball=0, ball_multiplier=multiplier)
             assert excluded(family, field, leaves, boxes)[0] == (expected and multiplier > 1.0)

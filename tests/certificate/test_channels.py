@@ -35,7 +35,7 @@ def over_one_point(
 ) -> Family:
     """Return a family whose first point is at a place and has a channel."""
     family = random_family(np.random.default_rng(1), 1, 1, channel=channel)
-    return family.changed(points_m=np.vstack([at_m, family.points_m[1:]]))
+    return family.changed(points_m=np.vstack([at_m, family.ratios.points_m[1:]]))
 
 
 def boxes_about(rng: np.random.Generator, point_m: np.ndarray) -> Boxes:
@@ -63,10 +63,10 @@ def samples_of(rng: np.random.Generator, boxes: Boxes) -> tuple[np.ndarray, np.n
 def test_amplitudes_enclose_the_models(is_above: bool, channel: LinkChannel | None) -> None:
     """Value, slopes and second derivatives do, or an end of the range on the side that counts."""
     rng, family = np.random.default_rng(11), over_one_point(channel)
-    boxes, first = boxes_about(rng, family.points_m[0]), np.zeros(BOXES, dtype=np.int64)
+    boxes, first = boxes_about(rng, family.ratios.points_m[0]), np.zeros(BOXES, dtype=np.int64)
     if channel is None:
         return
-    at, gradient, sizes = amplitude(family, boxes, first, is_above)
+    at, gradient, sizes = amplitude(family.ratios, boxes, first, is_above)
     steps, places = samples_of(rng, boxes)
     h, at_centre = (np.sqrt(excess_over(family, p)[..., 0]) for p in (places, boxes.centre))
     size = np.linalg.norm(steps, axis=2)
@@ -95,8 +95,8 @@ def test_amplitudes_enclose_the_models(is_above: bool, channel: LinkChannel | No
 def test_excess_gains_enclose_the_models(is_above: bool, channel: LinkChannel | None) -> None:
     """Value, slopes and second derivatives do all over the box, or an end of the range."""
     rng, family = np.random.default_rng(12), over_one_point(channel)
-    boxes, first = boxes_about(rng, family.points_m[0]), np.zeros(BOXES, dtype=np.int64)
-    gain = excess(family, boxes, first, is_above)
+    boxes, first = boxes_about(rng, family.ratios.points_m[0]), np.zeros(BOXES, dtype=np.int64)
+    gain = excess(family.ratios, boxes, first, is_above)
     if gain is None:
         assert channel is None
         return
@@ -131,9 +131,9 @@ def test_points_have_channels_of_their_own() -> None:
         elevation_channel(*ENVIRONMENTS["suburban"], average="power").row,
     ]
     family = random_family(rng, 2, 2).changed(channels=np.array(rows))
-    places = np.array([[3.0, 4.0, 9.0], [50.0, 20.0, -7.0], [*family.points_m[1, :2], 12.0]])
+    places = np.array([[3.0, 4.0, 9.0], [50.0, 20.0, -7.0], [*family.ratios.points_m[1, :2], 12.0]])
     for place in places:
-        gain = excess_at(family, exact(place))
+        gain = excess_at(family.ratios, exact(place))
         assert gain is not None
         expected = excess_over(family, place)
         assert np.all(gain.low <= expected * (1.0 + 1e-14))
@@ -141,10 +141,10 @@ def test_points_have_channels_of_their_own() -> None:
         assert np.all(gain.high - gain.low <= 1e-12 * gain.high)
     for is_above in (True, False):
         boxes = boxes_at(np.tile(places[0], (4, 1)), 0.3)
-        together = excess(family, boxes, np.arange(4), is_above)
+        together = excess(family.ratios, boxes, np.arange(4), is_above)
         assert together is not None
         for j in range(4):
-            alone = excess(family, boxes.chosen([j]), np.array([j]), is_above)
+            alone = excess(family.ratios, boxes.chosen([j]), np.array([j]), is_above)
             assert alone is not None
             many, one = together.over.value[j], alone.over.value[0]
             assert (many.low, many.high) == (one.low, one.high)
@@ -154,8 +154,8 @@ def test_the_value_with_channels_is_a_lower_bound() -> None:
     """Numerators take the lower ends of the gains, denominators the upper ones."""
     family = random_family(np.random.default_rng(3), 2, 2, channel=power_law(2.7, 1.0))
     place, axis = np.array([10.0, 12.0, 15.0]), np.array([0.3, -0.8, 0.2])
-    least = value_at(family, exact(place), exact(axis), gains=excess_at(family, exact(place)))
-    wide = excess_at(family, exact(place) + Fraction(1, 10**17))
+    least = value_at(family, exact(place), exact(axis), gains=excess_at(family.ratios, exact(place)))
+    wide = excess_at(family.ratios, exact(place) + Fraction(1, 10**17))
     other = value_at(family, exact(place), exact(axis), gains=wide)
     assert float(least) == pytest.approx(float(other), rel=1e-13)
 
@@ -166,14 +166,14 @@ def test_gains_fall_with_the_distance(alpha: float) -> None:
     rng, none = np.random.default_rng(5), np.zeros(1000, dtype=np.int64)
     family = over_one_point(power_law(alpha, 2.0))
     least = 10.0 ** rng.uniform(0.0, 4.0, len(none))
-    bound = most_excess(family, none, least)
+    bound = most_excess(family.ratios, none, least)
     for farther in (1.0, 1.0 + 1e-6, 7.0):
         square = least * farther
         gain = (np.sqrt(square) / 2.0) ** (2.0 - alpha) / square
         assert np.all(gain <= bound.high / least * (1.0 + 1e-14))
     city = over_one_point(elevation_channel(*ENVIRONMENTS["urban"], average="power"))
-    assert np.all(most_excess(city, none, least).high == 1.0)
-    assert np.all(most_excess(city.changed(channels=city.channels[:0]), none, least) == 1.0)
+    assert np.all(most_excess(city.ratios, none, least).high == 1.0)
+    assert np.all(most_excess(city.ratios._replace(channels=city.ratios.channels[:0]), none, least) == 1.0)
 
 
 def test_a_new_kind_of_channel_is_one_formula(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -187,16 +187,16 @@ def test_a_new_kind_of_channel_is_one_formula(monkeypatch: pytest.MonkeyPatch) -
 
     monkeypatch.setitem(_KINDS, both, formula)
     rng, family = np.random.default_rng(14), over_one_point(city)
-    rows = family.channels.copy()
+    rows = family.ratios.channels.copy()
     rows[:, 0] = both
     family = family.changed(channels=rows)
-    boxes, first = boxes_about(rng, family.points_m[0]), np.zeros(BOXES, dtype=np.int64)
+    boxes, first = boxes_about(rng, family.ratios.points_m[0]), np.zeros(BOXES, dtype=np.int64)
     steps, places = samples_of(rng, boxes)
     alone = (excess_over(over_one_point(each), places)[..., 0] for each in (law, city))
     g = np.prod(list(alone), axis=0)
     size = np.linalg.norm(steps, axis=2)
     for is_above, sign in ((True, 1.0), (False, -1.0)):
-        gain, (at, _, sizes) = (f(family, boxes, first, is_above) for f in (excess, amplitude))
+        gain, (at, _, sizes) = (f(family.ratios, boxes, first, is_above) for f in (excess, amplitude))
         assert gain is not None
         end = gain.over.value.high if is_above else gain.over.value.low
         assert np.all(sign * g <= sign * end[:, None] + SLACK * g)

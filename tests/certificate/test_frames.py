@@ -26,9 +26,9 @@ from nullpose.problem.family import Family
 
 def framed(family: Family, boxes: Boxes, turning: bool, rng: np.random.Generator) -> Frames:
     """Return the frames of one box, standing still or turning towards some point."""
-    point = int(rng.integers(len(family.points_m)))
+    point = int(rng.integers(len(family.ratios.points_m)))
     leaves = make_leaves(1, test=TOWARDS if turning else WORLD, point=point if turning else -1)
-    return frames_of(family, leaves, boxes)
+    return frames_of(family.ratios, leaves, boxes)
 
 
 @few_examples(10)
@@ -42,14 +42,17 @@ def test_expansions_enclose_the_forms(
     frames = framed(family, boxes, turning, rng)
     basis, gram = frames.basis.middle()[:, :, 0], full(frames.gram)
     steps = rng.uniform(-1.0, 1.0, (3, 3)) * boxes.half[0]
-    for j in range(len(family.points_m)):
-        form, bend, _ = expansion(family, frames, boxes, np.array([j]), is_above)
+    for j in range(len(family.ratios.points_m)):
+        form, bend, _ = expansion(family.ratios, frames, boxes, np.array([j]), is_above)
         anchored = turning and j == frames.anchor[0] and not is_above
-        around = full(anchor_shape(family, frames)) if anchored else gram
+        around = full(anchor_shape(family.ratios, frames)) if anchored else gram
         for x in steps:
             p = boxes.centre[0] + x
-            way = carried(frames.turning[0], family.points_m[frames.anchor[0]], boxes.centre[0], p) @ basis
-            link = link_matrix(family.points_m[j] - p, family.leak) * excess_over(family, p)[j]
+            way = (
+                carried(frames.turning[0], family.ratios.points_m[frames.anchor[0]], boxes.centre[0], p)
+                @ basis
+            )
+            link = link_matrix(family.ratios.points_m[j] - p, family.ratios.leak) * excess_over(family, p)[j]
             turned = way.T @ link @ way
             error = turned - full(form.value) - sum(h * full(form.slopes[:, i]) for i, h in enumerate(x))
             error = error if is_above else -error
@@ -66,8 +69,8 @@ def test_the_form_at_the_centre_is_exact(seed: int) -> None:
     basis = frames.basis.middle()[:, :, 0]
     assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-14)
     for j in range(4):
-        form = expansion(family, frames, boxes, np.array([j]), True)[0].value
-        exact = basis.T @ link_matrix(family.points_m[j] - boxes.centre[0], family.leak) @ basis
+        form = expansion(family.ratios, frames, boxes, np.array([j]), True)[0].value
+        exact = basis.T @ link_matrix(family.ratios.points_m[j] - boxes.centre[0], family.ratios.leak) @ basis
         slack = 1e-14 * np.abs(exact).max()
         assert np.all(form.low[:, 0] - slack <= exact[ROW, COLUMN])
         assert np.all(exact[ROW, COLUMN] <= form.high[:, 0] + slack)
@@ -85,7 +88,7 @@ def test_turning_rates_are_derivatives(seed: int) -> None:
     centre, step, basis = boxes.centre[0], 1e-4, frames.basis.middle()[:, :, 0]
     slopes = constant(frames, Interval(q[ROW, COLUMN][:, None])).slopes
     for e in range(3):
-        anchor_m, way = family.points_m[frames.anchor[0]], step * np.eye(3)[e]
+        anchor_m, way = family.ratios.points_m[frames.anchor[0]], step * np.eye(3)[e]
         ends = [carried(frames.turning[0], anchor_m, centre, centre + s * way) for s in (-1.0, 1.0)]
         change = (ends[1].T @ q @ ends[1] - ends[0].T @ q @ ends[0]) / (2.0 * step)
         assert full(slopes[:, e]) == pytest.approx(basis.T @ change @ basis, abs=1e-7)

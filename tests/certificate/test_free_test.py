@@ -120,7 +120,7 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
     ends = rng.uniform(-2.0, 2.0, 1) * rng.integers(0, 2, 1)
     point, test = int(rng.integers(4)), TOWARDS if turning else WORLD
     leaves = make_leaves(1, test=test, point=point, cell=cell, sides=sides, band=ends)
-    frames = frames_of(family, leaves, boxes)
+    frames = frames_of(family.ratios, leaves, boxes)
     nothing = Linear(Interval(np.zeros((6, 1))), Interval(np.zeros((6, 3, 1))))
     total = with_constants(nothing, AxisField.within(*band), leaves, boxes, frames)
     spreads = [sides[0, i] * np.sqrt(2.0) * np.linalg.norm(dense_side(cell, i)) for i in range(2)]
@@ -135,7 +135,7 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
         assert u @ dense_band(band, ends[0]) @ u >= -1e-12 * (u @ u)
         x = rng.uniform(-1.0, 1.0, 3) * boxes.half[0]
         centre = boxes.centre[0]
-        turn = carried(frames.turning[0], family.points_m[point], centre, centre + x)
+        turn = carried(frames.turning[0], family.ratios.points_m[point], centre, centre + x)
         turn = turn @ frames.basis.middle()[:, :, 0]
         bound = full(total.value) + sum(h * full(total.slopes[:, i]) for i, h in enumerate(x))
         error = turn.T @ constant @ turn - bound
@@ -152,14 +152,14 @@ def test_the_remainder_near_a_null_is_a_bound(turning: bool, channel: LinkChanne
     for _ in range(cases):
         family, boxes = random_family(rng, 2, 2, channel=channel), one_box(rng)
         centre, half = boxes.centre[0], boxes.half[0]
-        point, anchor = rng.permutation(len(family.points_m))[:2]
-        point_m, anchor_m = family.points_m[point], family.points_m[anchor]
+        point, anchor = rng.permutation(len(family.ratios.points_m))[:2]
+        point_m, anchor_m = family.ratios.points_m[point], family.ratios.points_m[anchor]
         leaves = make_leaves(1, test=TOWARDS if turning else WORLD, point=anchor)
-        frames = frames_of(family, leaves, boxes)
+        frames = frames_of(family.ratios, leaves, boxes)
         near_null = (point_m - centre) / np.linalg.norm(point_m - centre)
         near_null = near_null + rng.normal(size=3) * 10.0 ** rng.uniform(-4.0, 0.0)
         vector = np.linalg.solve(frames.basis.middle()[:, :, 0], near_null / np.linalg.norm(near_null))
-        form, down, bend = expansion(family, frames, boxes, np.array([point]), False)
+        form, down, bend = expansion(family.ratios, frames, boxes, np.array([point]), False)
         plain = down * boxes.half2 * 0.5
         share, rest = sharper(form.value, vector[:, None], boxes, frames, np.array([point]), bend, plain)
         used += share[0] > 0.0
@@ -170,7 +170,7 @@ def test_the_remainder_near_a_null_is_a_bound(turning: bool, channel: LinkChanne
         for x in corners * half:
             turn = carried(frames.turning[0], anchor_m, centre, centre + x) @ frames.basis.middle()[:, :, 0]
             bound = full(form.value) + sum(h * full(form.slopes[:, i]) for i, h in enumerate(x))
-            exact = turn.T @ link_matrix(point_m - centre - x, family.leak) @ turn
+            exact = turn.T @ link_matrix(point_m - centre - x, family.ratios.leak) @ turn
             exact = exact * excess_over(family, centre + x)[point]
             excess = np.linalg.eigvalsh(exact - (1.0 - share[0]) * bound)[0] + rest.high[0]
             assert excess >= -1e-12 * np.trace(exact)
@@ -204,14 +204,14 @@ def test_no_pose_of_an_excluded_box_reaches_the_level(
     leaves = make_leaves(
         count,
         test=rng.choice([WORLD, TOWARDS], count),
-        point=rng.integers(len(family.points_m), size=count),
+        point=rng.integers(len(family.ratios.points_m), size=count),
         level=level,
         mix=np.arange(count),
         mixes=mixes_of(rng, ratios, count),
         cell=cell,
         sides=rng.uniform(0.0, 3.0, (count, 2)) * rng.integers(0, 2, (count, 2)),
         band=level * rng.uniform(-1.0, 1.0, count) * rng.integers(0, 2, count),
-        ball=rng.integers(-1, len(family.points_m), count),
+        ball=rng.integers(-1, len(family.ratios.points_m), count),
         ball_multiplier=10.0 ** rng.uniform(-4.0, 0.0, count) * rng.integers(0, 2, count),
     )
     with np.errstate(all="ignore"):
@@ -222,7 +222,7 @@ def test_no_pose_of_an_excluded_box_reaches_the_level(
     for b in np.flatnonzero(holds):
         p = boxes.centre[b] + rng.uniform(-1.0, 1.0, (20, 3)) * boxes.half[b]
         u = axes_within(rng, band, 20)
-        fine = np.linalg.norm(family.points_m - p[:, None], axis=2).min(axis=1) >= keep_out_m
+        fine = np.linalg.norm(family.ratios.points_m - p[:, None], axis=2).min(axis=1) >= keep_out_m
         if cell[b, 0] >= 0:
             u = np.array([axis_of(rng, cell[b]) for _ in p])
             upright2 = u[:, 2] ** 2 / np.sum(u * u, axis=1)

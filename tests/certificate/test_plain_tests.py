@@ -37,10 +37,10 @@ def test_far_is_far(seed: int) -> None:
     family = random_family(rng, 3, 1, keep_out_m=float(rng.choice([1.0, 12.0])), groups=groups)
     boxes = some_boxes(rng, 30)
     level = 10.0 ** rng.uniform(-1.0, 2.0, 30)
-    distances = [[nearest_m(boxes, b, at) for at in family.points_m[:3]] for b in range(30)]
-    reach = np.maximum(distances, family.keep_out_m)
-    top = family.numerator_isotropic + family.numerator_weight / reach**2
-    exact = np.min(top / family.denominator_isotropic[family.denominator_of], axis=1)
+    distances = [[nearest_m(boxes, b, at) for at in family.ratios.points_m[:3]] for b in range(30)]
+    reach = np.maximum(distances, family.domain.keep_out_m)
+    top = family.ratios.numerator_isotropic + family.ratios.numerator_weight / reach**2
+    exact = np.min(top / family.ratios.denominator_isotropic[family.ratios.denominator_of], axis=1)
     level[::2] = exact[::2] * (1.0 + 1e-9 * np.sign(rng.normal(size=15)))
     holds = far_holds(
         family, AxisField.free(), make_leaves(30, point=np.zeros(30, dtype=int), level=level), boxes
@@ -48,7 +48,10 @@ def test_far_is_far(seed: int) -> None:
     assert np.array_equal(holds, exact < level)
     for b in np.flatnonzero(holds):
         p = inside(rng, boxes, b, 6)
-        allowed = np.linalg.norm(family.points_m - p[:, None], axis=2).min(axis=1) >= family.keep_out_m
+        allowed = (
+            np.linalg.norm(family.ratios.points_m - p[:, None], axis=2).min(axis=1)
+            >= family.domain.keep_out_m
+        )
         ratios = dense_ratios(family, p, rng.normal(size=(6, 3))).min(axis=1)
         assert np.all(ratios[allowed] <= level[b])
 
@@ -60,7 +63,7 @@ def test_kept_out_is_inside_the_ball(seed: int) -> None:
     family = random_family(rng, 3, 1, keep_out_m=25.0)
     boxes = some_boxes(rng, 40)
     ball = rng.integers(4, size=40)
-    away = np.abs(family.keep_out_points_m[ball] - boxes.centre) + boxes.half
+    away = np.abs(family.domain.keep_out_points_m[ball] - boxes.centre) + boxes.half
     farthest = np.linalg.norm(away, axis=1)
     holds = kept_out_holds(family, AxisField.free(), make_leaves(40, point=ball), boxes)
     assert np.array_equal(holds, farthest < 25.0)
@@ -78,10 +81,13 @@ def test_nothing_beyond_the_root_beats_the_bound(seed: int) -> None:
     rng = np.random.default_rng(seed)
     family = random_family(rng, 3, 1, groups=int(rng.integers(1, 4)))
     bound = float(10.0 ** rng.uniform(0.0, 1.5))
-    lack = bound * family.denominator_isotropic[family.denominator_of] - family.numerator_isotropic
-    radius = np.sqrt(family.numerator_weight / np.maximum(lack, 1e-300))
-    points = family.points_m[:3]
-    gaps = np.maximum(0.0, np.maximum(family.low_m - points, points - family.high_m)) ** 2
+    lack = (
+        bound * family.ratios.denominator_isotropic[family.ratios.denominator_of]
+        - family.ratios.numerator_isotropic
+    )
+    radius = np.sqrt(family.ratios.numerator_weight / np.maximum(lack, 1e-300))
+    points = family.ratios.points_m[:3]
+    gaps = np.maximum(0.0, np.maximum(family.domain.low_m - points, points - family.domain.high_m)) ** 2
     others = np.sum(gaps, axis=1, keepdims=True) - gaps  # from all of the airspace along the other axes
     left = np.sqrt(np.maximum(0.0, radius[:, None] ** 2 - others))
     low, high = np.max(points - left, axis=0), np.min(points + left, axis=0)
@@ -92,7 +98,7 @@ def test_nothing_beyond_the_root_beats_the_bound(seed: int) -> None:
         narrow = wide.copy()
         narrow[side, i] += 2e-6 * radius.max() * (1.0 if side == 0 else -1.0)
         fault = root_holds(family, narrow, bound)
-        end = (family.low_m if side == 0 else family.high_m)[i]
+        end = (family.domain.low_m if side == 0 else family.domain.high_m)[i]
         enough = narrow[side, i] <= end if side == 0 else narrow[side, i] >= end
         enough |= bool(np.any(radius**2 < others[:, i]))  # of some node everything is out of reach
         assert (fault == "") == bool(enough)

@@ -63,7 +63,7 @@ def test_zones_are_needed(name: str, zoned: Callable) -> None:
     """Leaves that lean on a zone fail without it, or with another's number."""
     certificate = zoned(name)
     tree = certificate.trees[0]
-    balls = len(build_family(certificate.scenario).keep_out_points_m)
+    balls = len(build_family(certificate.scenario).domain.keep_out_points_m)
     leaning = tree.leaves.ball >= balls
     inside = (tree.leaves.test == KEPT_OUT) & (tree.leaves.point >= balls)
     assert balls == 0

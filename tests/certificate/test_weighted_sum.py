@@ -45,7 +45,7 @@ def test_no_ratios_of_that_mean_have_a_smaller_sum(seed: int) -> None:
     level = float(1.0 + offset + 10.0 ** rng.uniform(-2.0, 2.0))
     family = PLAIN.changed(shares=shares, offset=offset)
     slots = np.arange(count)[:, None]
-    found = mean_level(family, slots, q[:, None], np.array([level]))
+    found = mean_level(family.ratios, slots, q[:, None], np.array([level]))
     with localcontext(prec=60):
         p, of_ratios = [Decimal(each) for each in shares.tolist()], [Decimal(each) for each in q.tolist()]
         # where the plane touches, but for a scale
@@ -75,9 +75,9 @@ def test_sums_of_pairs_are_not_negative_where_all_quotients_are_met(seed: int) -
     level = float(1.0 + 10.0 ** rng.uniform(-6.0, 1.0))
     weights, touched = 10.0 ** rng.uniform(-3.0, 3.0, (2, 2))
     mix = {0: weights[0], 1: weights[1], 2: touched[0], 3: touched[1] if rng.uniform() < 0.8 else 0.0}
-    identity, (first, second, jammed) = pair_factors(family, leaves_of_level(level, mix))
+    identity, (first, second, jammed) = pair_factors(family.ratios, leaves_of_level(level, mix))
     t, e = Fraction(level), Fraction(float(10.0 ** rng.uniform(0.0, 3.0)))
-    beyond = [Fraction(x) - 1 for x in family.numerator_isotropic.tolist()]
+    beyond = [Fraction(x) - 1 for x in family.ratios.numerator_isotropic.tolist()]
     b = [s * e / ((t - 1) * e + t * beyond[2]) for s in beyond[:2]]
     # the identity's multiple has the isotropic parts, 1 each; e and b are those and what is received
     total = Fraction(float(identity.high[0])) + Fraction(float(jammed.high[0])) * (e - 1)
@@ -91,5 +91,5 @@ def test_a_level_below_one_excludes_nothing() -> None:
         numerator_isotropic=np.full(2, 2.0), denominator_of=np.arange(2), denominator_isotropic=np.ones(2),
         pairs=np.array([[0, 1]]),
     )  # fmt: skip
-    identity, _ = pair_factors(family, leaves_of_level(1.0 - 1e-12, {0: 1.0, 1: 1.0}))
+    identity, _ = pair_factors(family.ratios, leaves_of_level(1.0 - 1e-12, {0: 1.0, 1: 1.0}))
     assert np.isnan(identity.high[0])

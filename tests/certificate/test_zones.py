@@ -45,7 +45,7 @@ def family_of(airspace: Airspace, paper: Callable) -> Family:
 
 def some_boxes(rng: np.random.Generator, family: Family, count: int) -> Boxes:
     """Return boxes, most of them near an edge of some zone, some with ends at whole numbers."""
-    at = family.zone_edges[rng.integers(len(family.zone_edges), size=count)]
+    at = family.domain.zone_edges[rng.integers(len(family.domain.zone_edges), size=count)]
     share = rng.choice([0.0, 0.5, 1.0], (count, 1)) * rng.uniform(0.9, 1.1, (count, 1))
     on_edge = at[:, :2] + share * (at[:, 2:] - at[:, :2])
     centre = np.column_stack([on_edge, rng.choice([8.5, 9.0, 10.0, 15.0, 25.0, 29.0], count)])
@@ -73,9 +73,9 @@ def test_allowed_positions_meet_an_alternative(seed: int, paper: Callable) -> No
     family = family_of(airspace, paper)
     count = 40
     boxes = some_boxes(rng, family, count)
-    zone = rng.integers(len(family.zone_kind), size=count)
-    found = zone_alternatives(family, zone, boxes)
-    never = forbidden(family, zone, boxes)
+    zone = rng.integers(len(family.domain.zone_kind), size=count)
+    found = zone_alternatives(family.domain, zone, boxes)
+    never = forbidden(family.domain, zone, boxes)
     assert np.array_equal(never, ~np.isin(np.arange(count), np.concatenate([rows for rows, _ in found])))
     for b in range(count):
         shifts = rng.uniform(-1.0, 1.0, (12, 3))
@@ -93,16 +93,16 @@ def test_allowed_positions_meet_an_alternative(seed: int, paper: Callable) -> No
 
 def allows(family: Family, zone: int, p: np.ndarray) -> bool:
     """Return whether a zone allows a position, plainly; just inside it counts as forbidden."""
-    low, high = family.zone_range_m[zone]
-    edges = family.zone_edges[family.zone_start[zone] : family.zone_start[zone + 1]]
+    low, high = family.domain.zone_range_m[zone]
+    edges = family.domain.zone_edges[family.domain.zone_start[zone] : family.domain.zone_start[zone + 1]]
     if p[2] <= low or p[2] >= high:
         return True
-    if family.zone_kind[zone] == 1:
+    if family.domain.zone_kind[zone] == 1:
         return bool(np.hypot(*(p[:2] - edges[0, :2])) >= edges[0, 2])
     first, last = edges[:, :2] - p[:2], edges[:, 2:] - p[:2]
     across = first[:, 0] * last[:, 1] - first[:, 1] * last[:, 0]
     turned = np.sum(np.arctan2(across, np.sum(first * last, axis=1)))
-    return bool(abs(turned) > np.pi) == (family.zone_kind[zone] == 2)
+    return bool(abs(turned) > np.pi) == (family.domain.zone_kind[zone] == 2)
 
 
 def test_boxes_inside_a_zone_are_forbidden(paper: Callable) -> None:
@@ -134,4 +134,4 @@ def test_boxes_inside_a_zone_are_forbidden(paper: Callable) -> None:
     for cases, expected in ((inside, True), (reaching, False)):
         zone = np.array([case[0] for case in cases])
         boxes = boxes_at(np.array([case[1] for case in cases]), np.array([case[2] for case in cases]))
-        assert np.all(forbidden(family, zone, boxes) == expected)
+        assert np.all(forbidden(family.domain, zone, boxes) == expected)

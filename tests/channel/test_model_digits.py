@@ -109,7 +109,7 @@ def test_the_verifier_encloses_excess_gains(
     family = random_family(np.random.default_rng(1), len(at), 1)
     rows = np.array([*(channel.row for channel in channels), channels[0].row])
     points_m = np.vstack([-np.array(at), np.ones(3)])
-    over = excess_at(family.changed(points_m=points_m, channels=rows), exact(np.zeros(3)))
+    over = excess_at(family.changed(points_m=points_m, channels=rows).ratios, exact(np.zeros(3)))
     assert over is not None
     low, high = over.low[:-1], over.high[:-1]
     enclosed = zip(low.tolist(), gains, high.tolist(), strict=True)

@@ -114,7 +114,7 @@ def test_excess_gains_keep_their_digits() -> None:
     for link in links:
         row = np.array(link.row)
         rows = np.tile(row, (len(at), 1))
-        over = excess_at(family.changed(points_m=-at, channels=rows), exact(np.zeros(3)))
+        over = excess_at(family.changed(points_m=-at, channels=rows).ratios, exact(np.zeros(3)))
         assert over is not None
         for i, place in enumerate(at):
             with localcontext(prec=60):

@@ -43,16 +43,16 @@ def test_the_box_is_the_airspaces_and_its_fences(
 ) -> None:
     """Bounds left out are infinite, those given are kept, a fence bounds what is unbounded or wider."""
     family = build_family(random_problem(np.random.default_rng(1), 2, 1, keep_out_m=2.5, **airspace))
-    np.testing.assert_array_equal(family.low_m, [*low_m, 10.0])
-    np.testing.assert_array_equal(family.high_m, [*high_m, 40.0])
-    assert family.keep_out_m == 2.5
+    np.testing.assert_array_equal(family.domain.low_m, [*low_m, 10.0])
+    np.testing.assert_array_equal(family.domain.high_m, [*high_m, 40.0])
+    assert family.domain.keep_out_m == 2.5
 
 
 def test_a_touching_keep_out_ball_is_left_out(scene: Callable) -> None:
     """One that reaches in, by however little, is kept."""
     for keep_out_m, kept in ((8.0, []), (8.1, [0])):
         family = build_family(scene([(30.0, 0.0, 0.0)], keep_out_m=keep_out_m))
-        np.testing.assert_array_equal(family.keep_out_points_m, family.points_m[kept])
+        np.testing.assert_array_equal(family.domain.keep_out_points_m, family.ratios.points_m[kept])
 
 
 @given(seed=SEEDS, keep_out_m=st.floats(0.5, 45.0))
@@ -61,11 +61,13 @@ def test_no_ball_that_matters_is_left_out(seed: int, keep_out_m: float, random_p
     rng = np.random.default_rng(seed)
     scene = random_problem(rng, 3, 2, x_m=(20.0, 45.0), keep_out_m=keep_out_m)
     family = build_family(scene)
-    kept = {tuple(point) for point in family.keep_out_points_m}
-    left_out = np.array([point for point in family.points_m if tuple(point) not in kept]).reshape(-1, 3)
+    kept = {tuple(point) for point in family.domain.keep_out_points_m}
+    left_out = np.array([point for point in family.ratios.points_m if tuple(point) not in kept]).reshape(
+        -1, 3
+    )
     inside = rng.uniform([20.0, -60.0, 10.0], [45.0, 160.0, 40.0], (500, 3))
     inside[::2, 2] = 10.0
     distances = np.linalg.norm(inside[:, None] - left_out, axis=-1)
     assert np.all(distances >= keep_out_m)
-    nearest = np.clip(family.keep_out_points_m, family.low_m, family.high_m)
-    assert np.all(np.linalg.norm(family.keep_out_points_m - nearest, axis=1) < keep_out_m)
+    nearest = np.clip(family.domain.keep_out_points_m, family.domain.low_m, family.domain.high_m)
+    assert np.all(np.linalg.norm(family.domain.keep_out_points_m - nearest, axis=1) < keep_out_m)

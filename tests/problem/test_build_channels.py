@@ -20,9 +20,9 @@ def test_refused() -> None:
 def test_guaranteed_is_free_space_of_other_strength() -> None:
     """It needs nothing of the solver: only the weights change."""
     free, scene = build_family(PAPER), build_family(apply_overrides(PAPER, [URBAN % "guaranteed"]))
-    assert len(scene.channels) == 0
-    assert scene.numerator_weight == pytest.approx(free.numerator_weight * 0.01)
-    assert scene.denominator_weight == pytest.approx(free.denominator_weight * 10.0**-0.1)
+    assert len(scene.ratios.channels) == 0
+    assert scene.ratios.numerator_weight == pytest.approx(free.ratios.numerator_weight * 0.01)
+    assert scene.ratios.denominator_weight == pytest.approx(free.ratios.denominator_weight * 10.0**-0.1)
 
 
 def test_city_example_is_the_known_answer() -> None:
@@ -52,4 +52,4 @@ def test_the_loudest_is_told_by_its_channel(exponent: float, is_refused: bool) -
     if is_refused:
         require_fault(lambda: build_family(scene, any_channel=True), "jammers[0].power_w", "over the noise")
     else:
-        assert len(build_family(scene, any_channel=True).channels) > 0
+        assert len(build_family(scene, any_channel=True).ratios.channels) > 0

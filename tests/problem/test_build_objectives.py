@@ -31,10 +31,12 @@ def test_a_secrecy_family_keeps_clear_of_everyone(seed: int) -> None:
     close = scene.model_copy(update={"airspace": scene.airspace.model_copy(update={"keep_out_m": 50.0})})
     family = build_family(close)
     everyone = (scene.node_positions_m, scene.eavesdropper_positions_m, scene.jammer_positions_m)
-    np.testing.assert_array_equal(family.points_m, np.vstack([points.reshape(-1, 3) for points in everyone]))
-    np.testing.assert_array_equal(family.keep_out_points_m, family.points_m)
-    assert set(family.numerator_point) == {0, 1, 2}
-    np.testing.assert_array_equal(family.denominator_point, [3, 4])
+    np.testing.assert_array_equal(
+        family.ratios.points_m, np.vstack([points.reshape(-1, 3) for points in everyone])
+    )
+    np.testing.assert_array_equal(family.domain.keep_out_points_m, family.ratios.points_m)
+    assert set(family.ratios.numerator_point) == {0, 1, 2}
+    np.testing.assert_array_equal(family.ratios.denominator_point, [3, 4])
 
 
 FAINT = {"position_m": [30, 5, 4], "power_w": 1e15}

@@ -46,16 +46,17 @@ def some_case(rng: np.random.Generator, scene: Scenario) -> ErrorCase:
 
 def ratios_of(family: Family, position: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """Returns the ratios of a family at a pose, by its definition, with a unit axis for every point."""
-    seen = np.broadcast_to(axis, family.points_m.shape)
-    if len(family.turn):
-        seen = family.turn @ axis
-    r = family.points_m - position
+    ratios = family.ratios
+    seen = np.broadcast_to(axis, ratios.points_m.shape)
+    if len(ratios.turn):
+        seen = ratios.turn @ axis
+    r = ratios.points_m - position
     links = np.sum(np.cross(seen, r) ** 2, axis=1) / np.sum(r**2, axis=1) ** 2
-    weighted = family.denominator_weight * links[family.denominator_point]
-    start = family.denominator_start
-    below = family.denominator_isotropic + np.array([math.fsum(weighted[a:b]) for a, b in pairwise(start)])
-    above = family.numerator_isotropic + family.numerator_weight * links[family.numerator_point]
-    return above / below[family.denominator_of]
+    weighted = ratios.denominator_weight * links[ratios.denominator_point]
+    start = ratios.denominator_start
+    below = ratios.denominator_isotropic + np.array([math.fsum(weighted[a:b]) for a, b in pairwise(start)])
+    above = ratios.numerator_isotropic + ratios.numerator_weight * links[ratios.numerator_point]
+    return above / below[ratios.denominator_of]
 
 
 @given(seed=SEEDS, secret=st.booleans())
@@ -79,11 +80,11 @@ def test_without_errors_it_is_the_nominal_family(secret: bool) -> None:
     """With no error in any case, ratios and denominators are those of the nominal family, none twice."""
     scene = a_scene(np.random.default_rng(1), secret=secret)
     nominal = build_family(scene)
-    n_ratios = len(nominal.numerator_point)
+    n_ratios = len(nominal.ratios.numerator_point)
     family = build_robust_family(scene, [BindingCase(r, ErrorCase.none(scene)) for r in range(n_ratios)])
-    assert family.turn.shape == (0, 3, 3)
-    assert len(family.denominator_isotropic) == len(nominal.denominator_isotropic)
-    assert len(family.points_m) == 3 + len(nominal.denominator_point)
+    assert family.ratios.turn.shape == (0, 3, 3)
+    assert len(family.ratios.denominator_isotropic) == len(nominal.ratios.denominator_isotropic)
+    assert len(family.ratios.points_m) == 3 + len(nominal.ratios.denominator_point)
     rng = np.random.default_rng(2)
     position, axis = rng.uniform([0.0, 0.0, 10.0], [80.0, 80.0, 40.0]), np.array([0.6, 0.0, 0.8])
     np.testing.assert_allclose(
@@ -96,7 +97,7 @@ def test_points_have_the_sets_of_whom_they_stand_for() -> None:
     for secret in (False, True):
         scene = a_scene(np.random.default_rng(7), secret=secret)
         radii_m = point_uncertainty_m(scene)
-        assert radii_m.shape == build_family(scene).points_m.shape[:1]
+        assert radii_m.shape == build_family(scene).ratios.points_m.shape[:1]
         np.testing.assert_array_equal(radii_m[:3], np.zeros(3))
         np.testing.assert_array_equal(radii_m[3:5], (1.0, 2.0) if secret else (2.0, 2.0))
         np.testing.assert_array_equal(radii_m[5:], np.zeros(len(radii_m) - 5))

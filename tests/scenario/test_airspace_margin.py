@@ -112,7 +112,7 @@ def test_what_is_allowed(allowed: bool, positions_m: list[list[float]], shape: s
     scenario = scene(margin_m=3.0, x_m=[-40.0, 60.0], geofence_m=FENCE, no_fly=zones)
     assert np.all(scenario.airspace.allows(positions_m) == allowed)
     family = build_family(scenario)  # the solver's zones are the same, the wall among them
-    assert len(family.zone_kind) == 4
+    assert len(family.domain.zone_kind) == 4
 
 
 def test_a_saved_scenario_is_as_it_was_stated(tmp_path: Path) -> None:

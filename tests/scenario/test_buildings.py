@@ -144,12 +144,12 @@ def test_the_drone_stays_out() -> None:
     at = [[30, 7, 9], [30, 7, 16.9], [30, 7, 17.1], [17.1, 7, 9], [16.9, 7, 9], [30, 18.1, 9]]
     assert scenario.open_airspace.allows(at).tolist() == [False, False, True, False, True, True]
     assert scenario.airspace.allows(at).all()
-    assert len(build_family(scenario, any_channel=True).zone_kind) == 1
+    assert len(build_family(scenario, any_channel=True).domain.zone_kind) == 1
     low = scene(HALL | {"height_m": 7.5}, airspace={"altitude_m": [8.0, 30.0]})
     assert low.open_airspace is low.airspace
-    assert not len(build_family(low, any_channel=True).zone_kind)
+    assert not len(build_family(low, any_channel=True).domain.zone_kind)
     near = scene(HALL | {"height_m": 7.5}, airspace={"altitude_m": [8.0, 30.0], "margin_m": 1.0})
-    assert len(build_family(near, any_channel=True).zone_kind) == 1
+    assert len(build_family(near, any_channel=True).domain.zone_kind) == 1
 
 
 def test_buildings_may_leave_no_room() -> None:

@@ -19,18 +19,22 @@ def dense_forms() -> Callable[[Family, np.ndarray], tuple[np.ndarray, np.ndarray
         return (square * np.eye(3) - (1.0 - leak) * np.outer(r, r)) / square**2
 
     def forms(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        links = [link_matrix(point - position_m, family.leak) for point in family.points_m]
+        ratios = family.ratios
+        links = [link_matrix(point - position_m, ratios.leak) for point in ratios.points_m]
         numerators = [
             isotropic * np.eye(3) + weight * links[point]
             for isotropic, weight, point in zip(
-                family.numerator_isotropic, family.numerator_weight, family.numerator_point, strict=True
+                ratios.numerator_isotropic,
+                ratios.numerator_weight,
+                ratios.numerator_point,
+                strict=True,
             )
         ]
         denominators = []
-        for group, isotropic in enumerate(family.denominator_isotropic):
+        for group, isotropic in enumerate(ratios.denominator_isotropic):
             matrix = isotropic * np.eye(3)
-            for entry in range(family.denominator_start[group], family.denominator_start[group + 1]):
-                matrix += family.denominator_weight[entry] * links[family.denominator_point[entry]]
+            for entry in range(ratios.denominator_start[group], ratios.denominator_start[group + 1]):
+                matrix += ratios.denominator_weight[entry] * links[ratios.denominator_point[entry]]
             denominators.append(matrix)
         return np.array(numerators), np.array(denominators)
 

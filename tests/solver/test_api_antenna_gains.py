@@ -88,7 +88,9 @@ def test_gains_count_for_each_element_of_an_array(sinr: Callable, weights: tuple
     found, wanted = (sinr(one, POSITION_M, ELEMENTS, *weights) for one in (scene, plain))
     np.testing.assert_allclose(found, wanted, rtol=1e-12)
     np.testing.assert_allclose(
-        build_family(scene).denominator_weight, build_family(plain).denominator_weight, rtol=1e-12
+        build_family(scene).ratios.denominator_weight,
+        build_family(plain).ratios.denominator_weight,
+        rtol=1e-12,
     )
 
 

@@ -124,7 +124,7 @@ def test_narrow_airspaces_are_found(airspace: dict[str, object], scene: Callable
         for seed in range(2):
             found = multistart(family, field, seed=seed)
             assert narrow.airspace.allows(found.position_m)
-            away_m = np.linalg.norm(family.points_m - found.position_m, axis=1)
+            away_m = np.linalg.norm(family.ratios.points_m - found.position_m, axis=1)
             assert np.all(away_m >= narrow.airspace.keep_out_m - 1e-9)
             axis = found.axis / np.linalg.norm(found.axis)
             assert found.log_value == pytest.approx(

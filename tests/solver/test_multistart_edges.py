@@ -154,7 +154,7 @@ def test_several_denominators(seed, ratios, groups, best, random_family):
     rng = np.random.default_rng(seed)
     family = random_family(rng, ratios, groups, leak=0.0)
     p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
-    assert math.exp(best_axis(family.arrays, p, np.empty(3))) == pytest.approx(best, rel=1e-10)
+    assert math.exp(best_axis(family.ratios, p, np.empty(3))) == pytest.approx(best, rel=1e-10)
 
 
 def test_a_huge_form_does_not_spoil_the_others():

@@ -35,7 +35,7 @@ def boxes(proof: Proof) -> tuple[np.ndarray, np.ndarray]:
 def value_at(family: Family, p: np.ndarray) -> float:
     """Return the smallest ratio at a position with its best axis."""
     axis = np.empty(3)
-    return float(np.exp(best_axis(family.arrays, p, axis)))
+    return float(np.exp(best_axis(family.ratios, p, axis)))
 
 
 @pytest.mark.parametrize("power_w", [1e-3, 1.0, 1e6])
@@ -113,7 +113,7 @@ def test_a_poor_incumbent_is_improved() -> None:
     family = build_family(load(PAPER))
     best = multistart(family, AxisField.free(), seed=0)
     p, axis = np.array([20.0, 40.0, 20.0]), np.array([0.0, 0.0, 1.0])
-    poor_value = log_objective(family.arrays, p, axis, np.empty(1), np.empty(2))
+    poor_value = log_objective(family.ratios, p, axis, np.empty(1), np.empty(2))
     poor = type(best)(
         position_m=p, axis=axis, log_value=poor_value, multipliers=np.full(2, 0.5), starts=0, evaluations=0
     )

@@ -91,10 +91,10 @@ def test_cells_of_axes_are_no_finer_than_their_box_tells() -> None:
     incumbent = multistart(family, band, seed=0)
     row, rows = np.zeros(node.COLUMNS), np.zeros((4096, node.COLUMNS))
     weights, level = incumbent.multipliers.copy(), np.exp(incumbent.log_value) * (1.0 + 1e-6)
-    fill_root(family.arrays, family.domain, incumbent.log_value, 1e-6, np.inf, weights, incumbent.axis, row)
+    fill_root(family.ratios, family.domain, incumbent.log_value, 1e-6, np.inf, weights, incumbent.axis, row)
     rows[0] = row
     goal, at_once = Goal(np.exp(incumbent.log_value), row, 1e9), 3_000  # axes are split before positions
-    problem = family.arrays, family.domain, band.arrays
+    problem = family.ratios, family.domain, band.arrays
     leaves, pose = np.zeros((4096, node.COLUMNS)), (np.zeros(3), np.zeros(3))
     _, top, *_ = branch(*problem, level, goal, rows, 1, leaves, 0, at_once, *pose)
     in_cells = rows[:top][rows[:top, node.FACE] >= 0.0]

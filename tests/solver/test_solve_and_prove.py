@@ -25,7 +25,7 @@ def family(random_scene: Callable) -> Family:
 @pytest.fixture(scope="module")
 def fields(family: Family) -> list[AxisField]:
     """Returns a null on each of the jammers, and the vertical."""
-    return [AxisField.towards(family.points_m[j]) for j in (3, 4)] + [AxisField.vertical()]
+    return [AxisField.towards(family.ratios.points_m[j]) for j in (3, 4)] + [AxisField.vertical()]
 
 
 def test_without_limits_nothing_is_proved(family: Family, fields: list[AxisField]) -> None:

@@ -70,12 +70,12 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         leaves: of the boxes, with multipliers and level.
         boxes: to be tested.
     """
-    family, identity, terms = weighted_sum(family, leaves)
-    dipoles = family.ground_axes if len(family.ground_axes) else np.zeros_like(family.points_m)
+    ratios, identity, terms = weighted_sum(family.ratios, leaves)
+    dipoles = ratios.ground_axes if len(ratios.ground_axes) else np.zeros_like(ratios.points_m)
     total = coordinates(Interval(boxes.centre.T), boxes.hull)[0].alike(identity)
     for point, scale, sign in terms:
-        gain = excess(family, boxes, point, sign > 0.0)
-        f = link(field, boxes, family.points_m[point], family.leak, dipoles[point], gain)
+        gain = excess(ratios, boxes, point, sign > 0.0)
+        f = link(field, boxes, ratios.points_m[point], ratios.leak, dipoles[point], gain)
         total = total + f * (scale * sign)
 
     at, over = total.at, total.over
@@ -87,7 +87,8 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
             bent = bent + (2.0 * nu * bound.bend)[ROW] * IDENTITIES
         return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
-    holds = (over.value.high < 0.0) | negative_where_allowed(family, leaves, boxes, test, at.slopes.middle)
+    holds = negative_where_allowed(family.domain, leaves, boxes, test, at.slopes.middle)
+    holds |= over.value.high < 0.0
     return np.asarray(np.any([scale.high > 0.0 for _, scale, sign in terms if sign > 0.0], axis=0) & holds)
 
 

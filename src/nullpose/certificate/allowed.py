@@ -13,14 +13,14 @@ from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import Constraint, zone_alternatives
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
-from nullpose.problem.family import Family
+from nullpose.problem.records import Domain
 
 # Constraints with a multiplier, not negative, for each box.
 Weighted: TypeAlias = list[tuple[FloatArray, Constraint]]
 
 
 def negative_where_allowed(
-    family: Family,
+    domain: Domain,
     leaves: Leaves,
     boxes: Boxes,
     test: Callable[[IntArray, Weighted], np.ndarray],
@@ -32,27 +32,27 @@ def negative_where_allowed(
     that are not negative are sound.
 
     Args:
-        family: with its keep-out balls and zones.
+        domain: with its keep-out balls and zones.
         leaves: of the boxes, with the ball or zone that counts in each.
         boxes: to be tested.
         test: returns whether a sum, with these multiples of constraints added, is negative all over the boxes
             of these indices.
         gradient: returns that of the sum at the centres, (3, b), which is to be cancelled.
     """
-    balls = len(family.keep_out_points_m)
+    balls = len(domain.keep_out_points_m)
     rows = np.arange(len(boxes))
     of_ball = (leaves.ball >= 0) & (leaves.ball < balls)
     weight = np.where(of_ball, leaves.ball_multiplier, 0.0)
     weighted: Weighted = []
     if np.any(weight > 0.0):
-        away = Interval(boxes.centre) - family.keep_out_points_m[np.where(of_ball, leaves.ball, 0)]
-        weighted = [(weight, Constraint.outside(away.T, family.keep_out_m, np.ones(3)))]
+        away = Interval(boxes.centre) - domain.keep_out_points_m[np.where(of_ball, leaves.ball, 0)]
+        weighted = [(weight, Constraint.outside(away.T, domain.keep_out_m, np.ones(3)))]
     holds = test(rows, weighted)
     if not len(left := rows[(leaves.ball >= balls) & ~holds]):
         return holds
     steep = gradient()
     holds[left] = True
-    for rows, constraints in zone_alternatives(family, leaves.ball[left] - balls, boxes.chosen(left)):
+    for rows, constraints in zone_alternatives(domain, leaves.ball[left] - balls, boxes.chosen(left)):
         named = left[rows]
         excluded = np.zeros(len(named), dtype=bool)
         for multipliers in _guesses(constraints, steep[:, named]):

@@ -28,9 +28,8 @@ from nullpose.certificate.taylor import (
 )
 from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, KNOTS
-from nullpose.objectives.ratios import IntArray
+from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
-from nullpose.problem.family import Family
 
 _ROUND = 2e-13  # of ln g of a profile: more than its knots are rounded
 
@@ -105,20 +104,20 @@ def _hull(parts: list[Interval], inside: np.ndarray) -> Interval:
     return where(np.any(inside, axis=0), Interval(low, high), 0.0)
 
 
-def most_excess(family: Family, point: IntArray, square: FloatArray) -> Interval | float:
+def most_excess(ratios: Ratios, point: IntArray, square: FloatArray) -> Interval | float:
     """Return a bound on the excess over ``d^2`` beyond a distance, by its square: the gain falls with it.
 
     Args:
-        family: with its channels.
+        ratios: with its channels.
         point: (b,).
         square: (b,) lower bounds.
     """
-    if not len(family.channels):
+    if not len(ratios.channels):
         return 1.0
-    kind, e, unit = family.channels[point].T[:3]
+    kind, e, unit = ratios.channels[point].T[:3]
     is_law = kind == BY_DISTANCE
     ratio = Interval(square) / Interval(np.where(is_law, unit, 1.0)).squared()
-    return where(is_law, exp(log(ratio) * (0.5 * e)), 1.0 + _ROUND * (family.channels.shape[1] > KNOTS))
+    return where(is_law, exp(log(ratio) * (0.5 * e)), 1.0 + _ROUND * (ratios.channels.shape[1] > KNOTS))
 
 
 def _sight(points_m: FloatArray, boxes: Boxes, rows: FloatArray) -> tuple[Taylor, Taylor, Interval]:
@@ -155,7 +154,7 @@ def elevation(q: Taylor) -> tuple[Taylor, Interval]:
 
 @np.errstate(over="ignore", invalid="ignore")  # directly over a point nothing is known: infinity less that
 def amplitude(
-    family: Family, boxes: Boxes, point: IntArray, is_above: bool
+    ratios: Ratios, boxes: Boxes, point: IntArray, is_above: bool
 ) -> tuple[Interval, Interval, Interval]:
     """Bound the amplitude of one point over each box, the root of its excess gain.
 
@@ -164,13 +163,13 @@ def amplitude(
     first two derivatives along any unit direction.
 
     Args:
-        family: with its channels.
+        ratios: with its channels.
         boxes: b of them.
         point: (b,).
         is_above: whether the link is to be bounded from above, else from below.
     """
-    rows = family.channels[point].T
-    distance, angle, tangent = _sight(family.points_m[point], boxes, rows)
+    rows = ratios.channels[point].T
+    distance, angle, tangent = _sight(ratios.points_m[point], boxes, rows)
     at, d = stack([distance.at.value, angle.at.value]), distance.over.value
     polar = coordinates(at, stack([d, angle.over.value]))
     h = (_log_gain(rows, polar[0], polar[1]) * 0.5).of(exponential)
@@ -194,10 +193,10 @@ def amplitude(
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def _gain(family: Family, boxes: Boxes, point: IntArray) -> Taylor:
+def _gain(ratios: Ratios, boxes: Boxes, point: IntArray) -> Taylor:
     """Return the excess gains of one point for each box."""
-    rows = family.channels[point].T
-    return _log_gain(rows, *_sight(family.points_m[point], boxes, rows)[:2]).of(exponential)
+    rows = ratios.channels[point].T
+    return _log_gain(rows, *_sight(ratios.points_m[point], boxes, rows)[:2]).of(exponential)
 
 
 def _end(gain: Taylor, is_above: bool) -> FloatArray:
@@ -205,19 +204,19 @@ def _end(gain: Taylor, is_above: bool) -> FloatArray:
     return gain.over.value.high if is_above else gain.over.value.low
 
 
-def excess_end(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Interval | float:
+def excess_end(ratios: Ratios, boxes: Boxes, point: IntArray, is_above: bool) -> Interval | float:
     """Bound the excess gains of one point over each box from above, or from below."""
-    return Interval(_end(_gain(family, boxes, point), is_above)) if len(family.channels) else 1.0
+    return Interval(_end(_gain(ratios, boxes, point), is_above)) if len(ratios.channels) else 1.0
 
 
-def excess(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Taylor | None:
+def excess(ratios: Ratios, boxes: Boxes, point: IntArray, is_above: bool) -> Taylor | None:
     """Return the excess gains of one point for each box; None where all points are in free space.
 
     An end of the range stands for all of it, where that leaves out less.
     """
-    if not len(family.channels):
+    if not len(ratios.channels):
         return None
-    gain, half = _gain(family, boxes, point), boxes.half.T
+    gain, half = _gain(ratios, boxes, point), boxes.half.T
     end = _end(gain, is_above)
     weight = np.where(IDENTITY > 0.0, 0.25, 0.5)[:, None] * half[ROW] * half[COLUMN]
     bends = gain.over.bends
@@ -225,16 +224,16 @@ def excess(family: Family, boxes: Boxes, point: IntArray, is_above: bool) -> Tay
     return chosen(use, gain, gain.alike(end))
 
 
-def excess_at(family: Family, position_m: Iterable[Fraction]) -> Interval | None:
+def excess_at(ratios: Ratios, position_m: Iterable[Fraction]) -> Interval | None:
     """Return the excess gain of every point at a position, (m,); None where all are in free space.
 
     Args:
-        family: with its channels.
+        ratios: with its channels.
         position_m: (3,) metres.
     """
-    if not len(family.channels):
+    if not len(ratios.channels):
         return None
-    place, points = np.array([float(x) for x in position_m]), np.arange(len(family.points_m))
+    place, points = np.array([float(x) for x in position_m]), np.arange(len(ratios.points_m))
     many = np.tile(place, (len(points), 1))
     slack = np.nextafter(np.abs(many), np.inf) - np.abs(many)
-    return _gain(family, Boxes(leaf=points, centre=many, half=slack), points).over.value
+    return _gain(ratios, Boxes(leaf=points, centre=many, half=slack), points).over.value

@@ -52,13 +52,13 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
     needed, named = sorted(fields), sorted(tree.axis for tree in certificate.trees)
     value, bound = certificate.value, certificate.upper_bound
     faults = {
-        "there are no certificates of robust poses": len(family.turn) > 0,
-        "there are no certificates of scenes with buildings yet": len(family.shadow_sides) > 0,
+        "there are no certificates of robust poses": len(family.ratios.turn) > 0,
+        "there are no certificates of scenes with buildings yet": len(family.ratios.shadow_sides) > 0,
         "antennas with a pattern have certificates in free space only": (
-            len(family.channels) > 0 and not certificate.scenario.antenna_record.is_quadratic
+            len(family.ratios.channels) > 0 and not certificate.scenario.antenna_record.is_quadratic
         ),
         "the objective friendly-jamming has certificates for a dipole only": (
-            len(family.pairs) > 0 and not certificate.scenario.antenna_record.is_quadratic
+            len(family.ratios.pairs) > 0 and not certificate.scenario.antenna_record.is_quadratic
         ),
         f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
         "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),
@@ -88,11 +88,12 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     )
     if fault:
         return f"pose: {fault}"
-    ratios = ratios_at(family, position, axis, *profiles_of(fields), gains=excess_at(family, position))
-    least = exact(family.requirements) * (1 - Fraction(VALUE_RTOL))
+    gains = excess_at(family.ratios, position)
+    ratios = ratios_at(family.ratios, position, axis, *profiles_of(fields), gains=gains)
+    least = exact(family.ratios.requirements) * (1 - Fraction(VALUE_RTOL))
     for k in np.flatnonzero(ratios[: len(least)] < least):
         return f"pose: {certificate.scenario.nodes[k].name} misses its min_sinr_db"
-    value = value_of(family, ratios)
+    value = value_of(family.ratios, ratios)
     if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
         quantity = Quantity.of(certificate.scenario)
         kind = "mean" if quantity.whole else "smallest"

@@ -16,35 +16,35 @@ from nullpose.certificate.interval import Interval, stack, swapped, where
 from nullpose.certificate.shear import Shear, link_vector, offset_to, shear_of
 from nullpose.certificate.taylor import Taylor, chosen, cross
 from nullpose.certificate.weighted_sum import weighted_sum
+from nullpose.objectives.ratios import Ratios
 from nullpose.physics.types import FloatArray
-from nullpose.problem.family import Family
 
 _MOST_ETA = 0.25
 _SHARE = 0.1
 _TINY = 1e-290
 
 
-def dipole_sum(family: Family, leaves: Leaves, boxes: Boxes, constant: Interval) -> tuple[Linear, Shear]:
+def dipole_sum(ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval) -> tuple[Linear, Shear]:
     """Bound the sum of a leaf from above over its box, linear in the position, in coordinates that turn.
 
     Args:
-        family: the ratios.
+        ratios: over the points.
         leaves: with multipliers, frame and level.
         boxes: of the leaves.
         constant: forms, (6, b), that are not negative in the cells and the band.
     """
-    shear = shear_of(family, leaves, boxes)
-    family, identity, terms = weighted_sum(family, leaves)
+    shear = shear_of(ratios, leaves, boxes)
+    ratios, identity, terms = weighted_sum(ratios, leaves)
     whole = shear.identity()
     rest, leaking = whole.alike(Interval(np.zeros((6, len(boxes))))), whole[0].alike(identity)
     links: list[tuple[Taylor, Interval, Interval, float]] = []
     for point, plain, sign in terms:
-        scale = plain * excess_end(family, boxes, point, sign > 0.0)
-        r, near = offset_to(family.points_m[point], boxes)
-        axes = family.ground_axes[point]
-        if family.leak > 0.0:
-            leaking = leaking + _gain(r, near, axes) * (scale * (sign * family.leak))
-        share = scale * (1.0 - Interval(family.leak))
+        scale = plain * excess_end(ratios, boxes, point, sign > 0.0)
+        r, near = offset_to(ratios.points_m[point], boxes)
+        axes = ratios.ground_axes[point]
+        if ratios.leak > 0.0:
+            leaking = leaking + _gain(r, near, axes) * (scale * (sign * ratios.leak))
+        share = scale * (1.0 - Interval(ratios.leak))
         anchored = shear.on & (point == shear.anchor) & (sign < 0.0)
         if np.any(anchored):
             rest = rest + shear.anchored * where(anchored, share * sign, 0.0)

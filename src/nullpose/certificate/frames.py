@@ -20,9 +20,8 @@ from nullpose.certificate.channels import amplitude
 from nullpose.certificate.forms import COLUMN, Linear, congruence, gram, outer, squares
 from nullpose.certificate.interval import Interval, dot, swapped, where
 from nullpose.certificate.lemmas import DIRECTION_BEND
-from nullpose.objectives.ratios import IntArray
+from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
-from nullpose.problem.family import Family
 
 UNIT = np.eye(3)[:, :, None]
 """The world's axes, for any number of boxes."""
@@ -60,11 +59,11 @@ class Frames:
         return dot(self.basis[:, :, None] if several else self.basis, vectors[:, None])
 
 
-def frames_of(family: Family, leaves: Leaves, boxes: Boxes) -> Frames:
+def frames_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> Frames:
     """Return the frames of boxes, each with its leaf."""
     turning = leaves.test == TOWARDS
     anchor = np.where(turning, leaves.point, 0)
-    anchor_m = family.points_m[anchor]
+    anchor_m = ratios.points_m[anchor]
     offset = (Interval(anchor_m) - boxes.centre).T
     rho = offset.squared().total().sqrt()
     direction = where(turning, offset / rho, 0.0)
@@ -91,7 +90,7 @@ def axes_across(third: FloatArray, mask: np.ndarray) -> FloatArray:
 
 
 def expansion(
-    family: Family, frames: Frames, boxes: Boxes, point: IntArray, is_above: bool
+    ratios: Ratios, frames: Frames, boxes: Boxes, point: IntArray, is_above: bool
 ) -> tuple[Linear, Interval, Interval]:
     """Expand the form of one point for each box, and bound two second derivatives, (b,) each: lemmas 1 and 2.
 
@@ -100,19 +99,19 @@ def expansion(
     length of the link vector's.
     """
     anchored = frames.turning & (point == frames.anchor)
-    points_m = family.points_m[point]
+    points_m = ratios.points_m[point]
     a = (Interval(points_m) - boxes.centre).T
     s = a.squared().total()
     seen = frames.turned(a)
-    twice = less_leak(squares(seen), family)
+    twice = less_leak(squares(seen), ratios)
     # the anchor's is (I - (1 - leak) d d^T) / rho^2, without the rounding of a - rho d
-    shape = anchor_shape(family, frames)
+    shape = anchor_shape(ratios, frames)
     form = where(anchored, shape / s, (frames.gram * s - twice) / s.squared())
     # b' = -e + (e (d.a) - d (a.e)) / rho for the three axes e, and rho d for the anchor itself
     swing = (dot(frames.direction, a) * UNIT - frames.direction[:, None] * a) / frames.rho
     step = where(frames.turning, swing, 0.0) - UNIT
     rate = dot(a[:, None], step) * 2.0
-    turned = less_leak(outer(frames.turned(step), seen[:, None]), family)
+    turned = less_leak(outer(frames.turned(step), seen[:, None]), ratios)
     bent = turned + rate * frames.gram[:, None]
     slopes = rate * twice[:, None] * 2.0 / (s.squared() * s) - bent / s.squared()
     pull = frames.direction * 2.0 / (s * frames.rho)
@@ -121,8 +120,8 @@ def expansion(
     rate = where(frames.turning & ~anchored, 1.0 / frames.rho_least, 0.0)
     # the rules invert, scale and turn: bounds on the link vector and on its first two derivatives
     link, (h0, h1, h2) = Linear(form, slopes), (Interval(size) for size in (1.0, 0.0, 0.0))
-    if len(family.channels):
-        h, gradient, sizes = amplitude(family, boxes, point, is_above)
+    if len(ratios.channels):
+        h, gradient, sizes = amplitude(ratios, boxes, point, is_above)
         square, change = h.squared(), gradient * h * 2.0
         link = Linear(form * square, slopes * square + form[:, None] * change)
         h0, h1, h2 = (sizes[i] for i in range(3))
@@ -140,18 +139,18 @@ def expansion(
     return link, second.most(), seen_bend.most()
 
 
-def anchor_shape(family: Family, frames: Frames) -> Interval:
+def anchor_shape(ratios: Ratios, frames: Frames) -> Interval:
     """Return ``I - (1 - leak) d d^T`` in the bases, (6, b): an anchor's form times its distance squared.
 
     Without a leak its third row is exactly zero.
     """
-    across = less_leak(frames.across, family)
-    return across if family.leak == 0.0 else across + frames.gram * family.leak
+    across = less_leak(frames.across, ratios)
+    return across if ratios.leak == 0.0 else across + frames.gram * ratios.leak
 
 
-def less_leak(form: Interval, family: Family) -> Interval:
+def less_leak(form: Interval, ratios: Ratios) -> Interval:
     """Return ``1 - leak`` times a form; the form itself, not rounded, of an antenna with a perfect null."""
-    return form if family.leak == 0.0 else form * (1.0 - Interval(family.leak))
+    return form if ratios.leak == 0.0 else form * (1.0 - Interval(ratios.leak))
 
 
 def constant(frames: Frames, q: Interval) -> Linear:

@@ -16,7 +16,7 @@ from nullpose.certificate.frames import Frames, anchor_shape, constant, expansio
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.lemmas import CONSTANT_SWING, SPREAD_OVER_NORM
 from nullpose.certificate.weighted_sum import weighted_sum
-from nullpose.objectives.ratios import IntArray
+from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -40,7 +40,7 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
     holds, vectors = _holds(family, field, leaves, boxes, None)
     left = np.flatnonzero(~holds)
     failed = leaves.chosen(left)
-    if len(left) and len(family.ground_axes):  # in coordinates that turn too fast, still ones may do
+    if len(left) and len(family.ratios.ground_axes):  # in coordinates that turn too fast, still ones may do
         failed = replace(failed, test=np.where(failed.test == TOWARDS, WORLD, failed.test))
     if len(left):  # near a null the denominators' remainders may be had smaller
         holds[left], _ = _holds(family, field, failed, boxes.chosen(left), vectors[:, left])
@@ -51,13 +51,13 @@ def _holds(
     family: Family, field: AxisField, leaves: Leaves, boxes: Boxes, vectors: FloatArray | None
 ) -> tuple[np.ndarray, FloatArray]:
     """Check which boxes are excluded, and find about the largest eigenvalues' vectors at their centres."""
-    if len(family.ground_axes):
+    if len(family.ratios.ground_axes):
         held = sum((q * weight for q, weight, _ in constants(field, leaves)), Interval(np.zeros((6, 1))))
-        total, shear = dipole_sum(family, leaves, boxes, held)
+        total, shear = dipole_sum(family.ratios, leaves, boxes, held)
         whole, turning = shear.gram, shear.on
     else:
-        frames = frames_of(family, leaves, boxes)
-        total = ratio_forms(family, leaves, boxes, frames, vectors)
+        frames = frames_of(family.ratios, leaves, boxes)
+        total = ratio_forms(family.ratios, leaves, boxes, frames, vectors)
         total = with_constants(total, field, leaves, boxes, frames)
         whole, turning = frames.gram, frames.turning
     horizontal = ~turning & (field.is_free and field.band[1] == 0.0)
@@ -70,26 +70,26 @@ def _holds(
             bound = bound + Linear(gram * (value * weight), gram[:, None] * (constraint.slopes * weight))
         return bound.negative(half, horizontal[rows])
 
-    return negative_where_allowed(family, leaves, boxes, test, lambda: steepest(total, top)), top
+    return negative_where_allowed(family.domain, leaves, boxes, test, lambda: steepest(total, top)), top
 
 
 def ratio_forms(
-    family: Family, leaves: Leaves, boxes: Boxes, frames: Frames, vectors: FloatArray | None
+    ratios: Ratios, leaves: Leaves, boxes: Boxes, frames: Frames, vectors: FloatArray | None
 ) -> Linear:
     """Return ``sum_k lambda_k (N_k - t D_g(k))``, what its expansion leaves out being put into its value.
 
     With vectors, (3, b) in the basis, along which the sums are largest, denominators that are small there
     get the remainder that is sharp near a null if it is the smaller one.
     """
-    family, identity, terms = weighted_sum(family, leaves)
+    ratios, identity, terms = weighted_sum(ratios, leaves)
     half2 = boxes.half2 * 0.5
     total = Linear(frames.gram * identity, Interval(np.zeros((6, 3, len(boxes)))))
     for point, scale, sign in terms:
-        form, bent, bend = expansion(family, frames, boxes, point, sign > 0.0)
+        form, bent, bend = expansion(ratios, frames, boxes, point, sign > 0.0)
         share, rest, around = np.zeros(len(boxes)), bent * half2, frames.gram
         if sign < 0.0:  # the remainder of what is added is bounded by the identity, anchored or not
             anchored = frames.turning & (point == frames.anchor)
-            around = where(anchored, anchor_shape(family, frames), frames.gram)
+            around = where(anchored, anchor_shape(ratios, frames), frames.gram)
             if vectors is not None:
                 share, rest = sharper(form.value, vectors, boxes, frames, point, bend, rest)
         used = where(scale.high > 0.0, (scale * rest).most(), 0.0)

@@ -11,37 +11,38 @@ from nullpose.certificate.elementary import log
 from nullpose.certificate.forms import cell_ends
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
+from nullpose.objectives.ratios import Ratios
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
 
 
-def out_of_reach(family: Family, level: FloatArray | float, square: FloatArray) -> np.ndarray:
+def out_of_reach(ratios: Ratios, level: FloatArray | float, square: FloatArray) -> np.ndarray:
     """Check where no axis reaches a level, from the distances of the nodes alone.
 
     ``N_k <= n_k + w_k g_k / a_k^2`` and ``D >= d``, g being the largest excess gain of the channel beyond the
     distance a: one ratio is not above the level, or their mean is not, or one pair's quotient.
 
     Args:
-        family: the ratios.
+        ratios: over the points.
         level: (...) t.
         square: (..., ratios) lower bounds on the squared distances.
     """
-    point, below = family.numerator_point, family.denominator_isotropic[family.denominator_of]
-    heard = most_excess(family, point, square) * Interval(family.numerator_weight)
-    if len(family.shares):
-        ratios = (heard / square + family.numerator_isotropic) / below + family.offset
+    point, below = ratios.numerator_point, ratios.denominator_isotropic[ratios.denominator_of]
+    heard = most_excess(ratios, point, square) * Interval(ratios.numerator_weight)
+    if len(ratios.shares):
+        each = (heard / square + ratios.numerator_isotropic) / below + ratios.offset
         total = Interval(0.0)
-        for k, share in enumerate(family.shares):
-            total = total + log(ratios[..., k]) * share
+        for k, share in enumerate(ratios.shares):
+            total = total + log(each[..., k]) * share
         return np.asarray(total.high <= log(Interval(level)).low)
-    if len(family.pairs):  # the node not jammed, the eavesdropper jammed as much as can be
-        node, eavesdropper = family.pairs.T
+    if len(ratios.pairs):  # the node not jammed, the eavesdropper jammed as much as can be
+        node, eavesdropper = ratios.pairs.T
         most = Interval((heard / square + below).high[..., eavesdropper])
-        overheard = most + (Interval(family.numerator_isotropic) - below)[eavesdropper]
-        lack = Interval(level)[..., None] * overheard * below[node] - most * family.numerator_isotropic[node]
+        overheard = most + (Interval(ratios.numerator_isotropic) - below)[eavesdropper]
+        lack = Interval(level)[..., None] * overheard * below[node] - most * ratios.numerator_isotropic[node]
         return np.asarray(np.any((square[..., eavesdropper] > 0.0) & (lack.low >= 0.0), axis=-1))
-    lack = Interval(level)[..., None] * below - family.numerator_isotropic
+    lack = Interval(level)[..., None] * below - ratios.numerator_isotropic
     return np.asarray(np.any((square > 0.0) & ((square * lack - heard).low >= 0.0), axis=-1))
 
 
@@ -54,8 +55,12 @@ def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) ->
         leaves: of the boxes, with level.
         boxes: to be tested.
     """
-    near = np.stack([boxes.nearest2(family.points_m[j]) for j in family.numerator_point], axis=-1)
-    return out_of_reach(family, leaves.level, np.maximum(near, Interval(family.keep_out_m).squared().low))
+    near = np.stack(
+        [boxes.nearest2(family.ratios.points_m[j]) for j in family.ratios.numerator_point], axis=-1
+    )
+    return out_of_reach(
+        family.ratios, leaves.level, np.maximum(near, Interval(family.domain.keep_out_m).squared().low)
+    )
 
 
 def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
@@ -67,13 +72,13 @@ def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxe
         leaves: of the boxes, with the ball, or, counted on from the balls, the zone.
         boxes: to be tested.
     """
-    balls = len(family.keep_out_points_m)
+    balls = len(family.domain.keep_out_points_m)
     which = leaves.point
     holds, in_ball = np.zeros(len(boxes), dtype=bool), which < balls
-    farthest2 = boxes.chosen(in_ball).farthest2(family.keep_out_points_m[which[in_ball]])
-    holds[in_ball] = farthest2 < Interval(family.keep_out_m).squared().low
-    if np.any(in_zone := ~in_ball & (which < balls + len(family.zone_kind))):
-        holds[in_zone] = forbidden(family, which[in_zone] - balls, boxes.chosen(in_zone))
+    farthest2 = boxes.chosen(in_ball).farthest2(family.domain.keep_out_points_m[which[in_ball]])
+    holds[in_ball] = farthest2 < Interval(family.domain.keep_out_m).squared().low
+    if np.any(in_zone := ~in_ball & (which < balls + len(family.domain.zone_kind))):
+        holds[in_zone] = forbidden(family.domain, which[in_zone] - balls, boxes.chosen(in_zone))
     return holds
 
 
@@ -89,13 +94,17 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
         root_m: (2, 3) the root's corners.
         upper_bound: t.
     """
-    points = family.points_m[family.numerator_point]
-    gaps = np.maximum((family.low_m - Interval(points)).low, (Interval(points) - family.high_m).low)
+    points = family.ratios.points_m[family.ratios.numerator_point]
+    gaps = np.maximum(
+        (family.domain.low_m - Interval(points)).low, (Interval(points) - family.domain.high_m).low
+    )
     gap2 = Interval(np.maximum(gaps, 0.0)).squared()  # from all of the domain, along each axis
-    for face_m, end_m, inwards in zip(root_m, (family.low_m, family.high_m), (1.0, -1.0), strict=True):
+    for face_m, end_m, inwards in zip(
+        root_m, (family.domain.low_m, family.domain.high_m), (1.0, -1.0), strict=True
+    ):
         beyond = Interval(np.maximum(((Interval(points) - face_m) * inwards).low, 0.0)).squared()
         square = (beyond + gap2[:, [1, 2, 0]] + gap2[:, [2, 0, 1]]).low.T
-        out = out_of_reach(family, upper_bound, square)
+        out = out_of_reach(family.ratios, upper_bound, square)
         fine = (face_m * inwards <= end_m * inwards) | out
         if not np.all(fine):
             i = int(np.argmin(fine))

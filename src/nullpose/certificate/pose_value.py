@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.certificate.elementary import exp, log
 from nullpose.certificate.interval import Interval
+from nullpose.objectives.ratios import Ratios
 from nullpose.problem.axis_field import AxisField
-from nullpose.problem.family import Family
 
 if TYPE_CHECKING:
     from nullpose.certificate.profile import Profile
@@ -134,7 +134,7 @@ def link(
 
 
 def ratios_at(
-    family: Family,
+    ratios: Ratios,
     position: Exact,
     axis: Exact,
     profile: Profile | None = None,
@@ -146,17 +146,17 @@ def ratios_at(
     With channels lower bounds of them, as near as their excess gains are enclosed.
 
     Args:
-        family: the ratios.
+        ratios: over the points.
         position: where, metres.
         axis: the antenna's axis, of any length.
         profile: its gain, if it is no dipole.
         gains: (m,) excess gains of all points there; None in free space.
     """
-    assert (gains is None) == (len(family.channels) == 0)
-    leak = Fraction(family.leak)
-    none = np.zeros_like(family.points_m), np.ones(len(family.points_m))
-    dipoles = (family.ground_axes, family.ground_leaks) if len(family.ground_axes) else none
-    rows = zip(*map(exact, (family.points_m, *dipoles)), strict=True)
+    assert (gains is None) == (len(ratios.channels) == 0)
+    leak = Fraction(ratios.leak)
+    none = np.zeros_like(ratios.points_m), np.ones(len(ratios.points_m))
+    dipoles = (ratios.ground_axes, ratios.ground_leaks) if len(ratios.ground_axes) else none
+    rows = zip(*map(exact, (ratios.points_m, *dipoles)), strict=True)
     links = np.array(
         [
             link(point, position, axis, leak, dipole, through)
@@ -168,27 +168,27 @@ def ratios_at(
     heard, jamming = links, links
     if gains is not None:
         heard, jamming = links * exact(gains.low), links * exact(gains.high)
-    entries = exact(family.denominator_weight) * jamming[family.denominator_point]
-    starts, isotropic = family.denominator_start, exact(family.denominator_isotropic)
+    entries = exact(ratios.denominator_weight) * jamming[ratios.denominator_point]
+    starts, isotropic = ratios.denominator_start, exact(ratios.denominator_isotropic)
     denominators = np.array(
         [sum(entries[a:b], below) for a, b, below in zip(starts, starts[1:], isotropic, strict=False)]
     )
-    above = exact(family.numerator_weight) * heard[family.numerator_point]
-    return np.asarray((exact(family.numerator_isotropic) + above) / denominators[family.denominator_of])
+    above = exact(ratios.numerator_weight) * heard[ratios.numerator_point]
+    return np.asarray((exact(ratios.numerator_isotropic) + above) / denominators[ratios.denominator_of])
 
 
-def value_of(family: Family, ratios: Exact) -> Fraction:
+def value_of(ratios: Ratios, values: Exact) -> Fraction:
     """Evaluate the objective from the ratios at a pose: the smallest, of pairs too, or less than the mean.
 
     The bound is as near as logarithms are.
     """
-    if len(family.pairs):
-        return Fraction(min(ratios[node] / ratios[eavesdropper] for node, eavesdropper in family.pairs))
-    if not len(family.shares):
-        return Fraction(min(ratios))
+    if len(ratios.pairs):
+        return Fraction(min(values[node] / values[eavesdropper] for node, eavesdropper in ratios.pairs))
+    if not len(ratios.shares):
+        return Fraction(min(values))
     power = Interval(0.0)
-    for share, ratio in zip(family.shares, ratios, strict=True):
-        x = ratio + Fraction(family.offset)  # of which a double is off by less than its last two places
+    for share, ratio in zip(ratios.shares, values, strict=True):
+        x = ratio + Fraction(ratios.offset)  # of which a double is off by less than its last two places
         power = power + log(Interval(*(float(x) * np.array([1.0 - 1e-15, 1.0 + 1e-15])))) * share
     return Fraction(float(exp(power).low))
 

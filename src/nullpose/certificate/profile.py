@@ -150,7 +150,9 @@ def loudest(family: Family, field: AxisField) -> Family:
     """
     if not isinstance(field, ProfileField):
         return family
-    return family.changed(numerator_weight=np.nextafter(family.numerator_weight * field.profile.peak, np.inf))
+    return family.changed(
+        numerator_weight=np.nextafter(family.ratios.numerator_weight * field.profile.peak, np.inf)
+    )
 
 
 @lru_cache(maxsize=8)

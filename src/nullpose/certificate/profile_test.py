@@ -67,8 +67,8 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
     """
     assert isinstance(field, ProfileField)
     holds = _all_kept_out(family, field, leaves, boxes)
-    isotropic = family.denominator_isotropic[family.denominator_of]
-    unheard = Interval(leaves.level[:, None]) * isotropic - family.numerator_isotropic
+    isotropic = family.ratios.denominator_isotropic[family.ratios.denominator_of]
+    unheard = Interval(leaves.level[:, None]) * isotropic - family.ratios.numerator_isotropic
     rows = np.flatnonzero(~holds & np.all(unheard.low > 0.0, axis=1))
     cells = _Cells(Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows]), leaves.cell[rows, 1:])
     most = _MOST * len(rows) + _CHUNK
@@ -85,7 +85,7 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
 def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Check which boxes lie in some keep-out ball or zone."""
     holds = np.zeros(len(boxes), dtype=bool)
-    for border in range(len(family.keep_out_points_m) + len(family.zone_kind)):
+    for border in range(len(family.domain.keep_out_points_m) + len(family.domain.zone_kind)):
         holds |= kept_out_holds(family, field, replace(leaves, point=np.full(len(leaves), border)), boxes)
     return holds
 
@@ -118,7 +118,7 @@ def _negative(
     """Check the sums of cells with one anchor and one chart for being negative, or no axis is reached."""
     chart, anchor = int(leaves.cell[0, 0]), int(leaves.point[0])
     order = np.array([chart, chart + 1, chart + 2]) % 3
-    points_m, centre_m = family.points_m[:, order], cells.boxes.centre.T[order]
+    points_m, centre_m = family.ratios.points_m[:, order], cells.boxes.centre.T[order]
     apart, offset = Interval(points_m) - points_m[anchor], Interval(points_m[anchor][:, None]) - centre_m
     depth, index = cells.turn.T[::2], cells.turn.T[1::2]
     span = np.array([[0.5 if field.even else 1.0], [2.0]])  # of both angles, in multiples of pi
@@ -146,7 +146,7 @@ def _largest(
         leaves: with multipliers and level.
         links: of each point.
     """
-    _, identity, terms = weighted_sum(family, leaves)
+    _, identity, terms = weighted_sum(family.ratios, leaves)
     zero, total = Interval(np.zeros(len(leaves))), links[0][0].alike(identity)
     for j, (cosine, near) in enumerate(links):
         weight = sum((where(point == j, scale * sign, 0.0) for point, scale, sign in terms), zero)

@@ -19,9 +19,8 @@ from nullpose.certificate.frames import UNIT, axes_across
 from nullpose.certificate.interval import Interval, dot, stack, swapped, where
 from nullpose.certificate.lemmas import DIRECTION_THIRD, ROUNDING, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
 from nullpose.certificate.taylor import Taylor, chosen, coordinates, inverse_root
-from nullpose.objectives.ratios import IntArray
+from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
-from nullpose.problem.family import Family
 
 _UPRIGHT = 0.4
 _SHARP = 1e-8  # how well an anchor's vector must be known, so that the basis is orthonormal but for rounding
@@ -93,7 +92,7 @@ def link_vector(r: Taylor, near: Taylor, axes: FloatArray) -> Taylor:
     return near * v - r * ((r * v).total() * near * near.squared())
 
 
-def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
+def shear_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> Shear:
     """Find coordinates that turn for boxes, each with its leaf; with a fixed frame they stand still."""
     turning = leaves.test == TOWARDS
     anchor = np.where(turning, leaves.point, 0)
@@ -101,9 +100,9 @@ def shear_of(family: Family, leaves: Leaves, boxes: Boxes) -> Shear:
         none, still = Interval(np.zeros((6, len(boxes)))), coordinates(Interval(boxes.centre.T), boxes.hull)
         basis = Interval(np.tile(UNIT, len(boxes)))
         return Shear(turning, anchor, none[:4], basis, gram(basis), still.alike(basis), still.alike(none))
-    axes = family.ground_axes[anchor]
+    axes = ratios.ground_axes[anchor]
     is_dipole = np.any(axes != 0.0, axis=1)
-    r, near = offset_to(family.points_m[anchor], boxes)
+    r, near = offset_to(ratios.points_m[anchor], boxes)
     a = chosen(is_dipole, link_vector(r, near, axes), r)
     a0 = a.at.value
     length = a0.squared().total().sqrt()

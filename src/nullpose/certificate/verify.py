@@ -74,17 +74,21 @@ class _Test:
 
 
 def _borders(family: Family) -> int:
-    return len(family.keep_out_points_m) + len(family.zone_kind)
+    return len(family.domain.keep_out_points_m) + len(family.domain.zone_kind)
 
 
 _TESTS = {
     WORLD: _Test("free axis", free_holds, has_mix=True),
-    TOWARDS: _Test("free axis, turning frame", free_holds, has_mix=True, points=lambda f: len(f.points_m)),
+    TOWARDS: _Test(
+        "free axis, turning frame", free_holds, has_mix=True, points=lambda f: len(f.ratios.points_m)
+    ),
     AFFINE: _Test("given axis", affine_holds, has_mix=True),
-    FAR: _Test("distance", far_holds, points=lambda f: len(f.pairs) or len(f.numerator_point)),
+    FAR: _Test("distance", far_holds, points=lambda f: len(f.ratios.pairs) or len(f.ratios.numerator_point)),
     KEPT_OUT: _Test("keep-out", kept_out_holds, points=_borders),
     OFF_BAND: _Test("axes out of reach", off_band_holds),
-    PROFILE: _Test("any axis of a profile", profile_holds, has_mix=True, points=lambda f: len(f.points_m)),
+    PROFILE: _Test(
+        "any axis of a profile", profile_holds, has_mix=True, points=lambda f: len(f.ratios.points_m)
+    ),
 }
 
 
@@ -163,7 +167,9 @@ def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[
 def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: float) -> str:
     """Find the first leaf whose numbers are out of range or whose claim is another, or an empty string."""
     leaves = tree.leaves
-    numbers = 2 * len(family.pairs) or len(family.numerator_point) + len(family.requirements)
+    numbers = 2 * len(family.ratios.pairs) or len(family.ratios.numerator_point) + len(
+        family.ratios.requirements
+    )
     points = {kind: test.points(family) for kind, test in _TESTS.items() if test.points}
     has_mix = np.isin(leaves.test, [kind for kind, test in _TESTS.items() if test.has_mix])
     depth, index = leaves.depths, leaves.indices

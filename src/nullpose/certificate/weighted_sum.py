@@ -14,9 +14,8 @@ import numpy as np
 from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.elementary import exp, log
 from nullpose.certificate.interval import Interval, where
-from nullpose.objectives.ratios import IntArray
+from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
-from nullpose.problem.family import Family
 
 
 class Term(NamedTuple):
@@ -48,7 +47,7 @@ def mix_slots(leaves: Leaves) -> tuple[IntArray, FloatArray]:
     return ratio[:, which], weight[:, which]
 
 
-def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: FloatArray) -> Interval:
+def mean_level(ratios: Ratios, ratio: IntArray, weight: FloatArray, level: FloatArray) -> Interval:
     """Bound the denominator's factor in the sum of a mean: lemma 6.
 
     With ``X_k = a + N_k / D`` that is ``prod_k X_k^p_k``. Where it is at least t,
@@ -57,23 +56,23 @@ def mean_level(family: Family, ratio: IntArray, weight: FloatArray, level: Float
     ``a sum_k q_k``, or not a number where that may be below zero; zero where there is no q.
 
     Args:
-        family: the ratios.
+        ratios: over the points.
         ratio: (slots, l) which.
         weight: (slots, l) q.
         level: (l,) t.
     """
-    whole = Interval(family.shares).total()  # one, but for rounding: the mean's logarithm over it is a mean
+    whole = Interval(ratios.shares).total()  # one, but for rounding: the mean's logarithm over it is a mean
     power, total = log(Interval(level)) / whole, Interval(np.zeros(len(level)))
-    for k, share in enumerate(family.shares):
+    for k, share in enumerate(ratios.shares):
         q, p = np.sum(np.where(ratio == k, weight, 0.0), axis=0), Interval(share) / whole
         power = power + (log(Interval(q)) - log(p)) * p
         total = total + q
-    result = exp(power) - total * family.offset
-    stands = np.any((ratio < len(family.shares)) & (weight > 0.0), axis=0)
+    result = exp(power) - total * ratios.offset
+    stands = np.any((ratio < len(ratios.shares)) & (weight > 0.0), axis=0)
     return where(stands, where(result.low >= 0.0, result, np.nan), 0.0)
 
 
-def pair_factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interval]]:
+def pair_factors(ratios: Ratios, leaves: Leaves) -> tuple[Interval, list[Interval]]:
     """Bound the identity's multiple in a sum of pairs, and each denominator's factor: lemma 7.
 
     That of an eavesdropper is added, that of a node is subtracted.
@@ -85,12 +84,12 @@ def pair_factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interva
     ``c = (t - 1) e0 + t S_E``. Below 1 what is returned is not a number.
 
     Args:
-        family: with its pairs.
+        ratios: with its pairs.
         leaves: with multipliers and level.
     """
     number, weight = mix_slots(leaves)
-    pairs, of, isotropic = family.pairs, family.denominator_of, family.denominator_isotropic
-    beyond = Interval(family.numerator_isotropic) - isotropic[of]
+    pairs, of, isotropic = ratios.pairs, ratios.denominator_of, ratios.denominator_isotropic
+    beyond = Interval(ratios.numerator_isotropic) - isotropic[of]
     level = Interval(np.where(leaves.level >= 1.0, leaves.level, np.nan))
     identity = Interval(np.zeros(len(leaves)))
     factors = [identity] * len(isotropic)
@@ -107,32 +106,32 @@ def pair_factors(family: Family, leaves: Leaves) -> tuple[Interval, list[Interva
 
 
 def level_factor(
-    family: Family, leaves: Leaves, number: IntArray, weight: FloatArray, denominator: int
+    ratios: Ratios, leaves: Leaves, number: IntArray, weight: FloatArray, denominator: int
 ) -> Interval:
     """Bound a denominator's factor, ``sum_k lambda_k t``, or that of a mean; 0 where it is not used."""
-    ratios = len(family.numerator_point)
-    ratio = number % ratios
-    mine = np.where(family.denominator_of[ratio] == denominator, weight, 0.0)
+    count = len(ratios.numerator_point)
+    ratio = number % count
+    mine = np.where(ratios.denominator_of[ratio] == denominator, weight, 0.0)
     level = Interval(mine).total() * leaves.level
-    if len(family.shares):
-        least = np.append(family.requirements, 0.0)[np.where(number >= ratios, ratio, -1)]
-        level = mean_level(family, number, weight, leaves.level) + (Interval(weight) * least).total()
+    if len(ratios.shares):
+        least = np.append(ratios.requirements, 0.0)[np.where(number >= count, ratio, -1)]
+        level = mean_level(ratios, number, weight, leaves.level) + (Interval(weight) * least).total()
     return where(np.any(mine > 0.0, axis=0), level, 0.0)
 
 
-def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list[Term]]:
+def weighted_sum(ratios: Ratios, leaves: Leaves) -> tuple[Ratios, Interval, list[Term]]:
     """State a sum's multiple of the identity, and its terms.
 
     A dipole of leak f is two points at one place: ``1 - f`` times the dipole, and f times an isotropic one.
-    The family that is returned first has both.
+    The ratios that are returned first have both.
 
     Args:
-        family: the ratios.
+        ratios: over the points.
         leaves: with multipliers and level.
     """
-    ratios, isotropic = len(family.numerator_point), family.denominator_isotropic
-    leaks = np.zeros(len(family.points_m))
-    leaks[: len(family.ground_leaks)] = family.ground_leaks * (family.ground_leaks < 1.0)
+    count, isotropic = len(ratios.numerator_point), ratios.denominator_isotropic
+    leaks = np.zeros(len(ratios.points_m))
+    leaks[: len(ratios.ground_leaks)] = ratios.ground_leaks * (ratios.ground_leaks < 1.0)
     leaky, twin = np.flatnonzero(leaks), np.cumsum(leaks > 0.0) + len(leaks) - 1
 
     def parts(point: IntArray, scale: Interval, sign: float) -> list[Term]:
@@ -144,30 +143,30 @@ def weighted_sum(family: Family, leaves: Leaves) -> tuple[Family, Interval, list
         return [dipole, Term(np.where(split, twin[point], point), leaking, sign)]
 
     number, weight = mix_slots(leaves)
-    ratio, identity = number % ratios, Interval(np.zeros(len(leaves)))
+    ratio, identity = number % count, Interval(np.zeros(len(leaves)))
     terms: list[Term] = []
-    if len(family.pairs):
-        identity, factors = pair_factors(family, leaves)
+    if len(ratios.pairs):
+        identity, factors = pair_factors(ratios, leaves)
     else:
         for k, w in zip(ratio, weight, strict=True):
-            identity = identity + Interval(w) * family.numerator_isotropic[k]
-            scale = Interval(w) * family.numerator_weight[k]
-            terms += parts(family.numerator_point[k], where(w > 0.0, scale, 0.0), 1.0)
-        factors = [level_factor(family, leaves, number, weight, g) for g in range(len(isotropic))]
+            identity = identity + Interval(w) * ratios.numerator_isotropic[k]
+            scale = Interval(w) * ratios.numerator_weight[k]
+            terms += parts(ratios.numerator_point[k], where(w > 0.0, scale, 0.0), 1.0)
+        factors = [level_factor(ratios, leaves, number, weight, g) for g in range(len(isotropic))]
         for factor, below in zip(factors, isotropic, strict=True):
             identity = where(factor.high != 0.0, identity - factor * below, identity)
     for g, factor in enumerate(factors):
-        sign = 1.0 if len(family.pairs) and g in family.denominator_of[family.pairs[:, 1]] else -1.0
+        sign = 1.0 if len(ratios.pairs) and g in ratios.denominator_of[ratios.pairs[:, 1]] else -1.0
         counts = factor.high != 0.0  # exactly zero where it does not count
-        for e in range(*family.denominator_start[g : g + 2]) if np.any(counts) else ():
-            point = np.full(len(leaves), family.denominator_point[e])
-            terms += parts(point, where(counts, factor * family.denominator_weight[e], 0.0), sign)
-    rows = family.channels
+        for e in range(*ratios.denominator_start[g : g + 2]) if np.any(counts) else ():
+            point = np.full(len(leaves), ratios.denominator_point[e])
+            terms += parts(point, where(counts, factor * ratios.denominator_weight[e], 0.0), sign)
+    rows = ratios.channels
     if len(leaky):
-        family = family.changed(
-            points_m=np.vstack([family.points_m, family.points_m[leaky]]),
-            ground_axes=np.vstack([family.ground_axes, np.zeros((len(leaky), 3))]),
+        ratios = ratios._replace(
+            points_m=np.vstack([ratios.points_m, ratios.points_m[leaky]]),
+            ground_axes=np.vstack([ratios.ground_axes, np.zeros((len(leaky), 3))]),
             ground_leaks=np.zeros(0),
             channels=np.vstack([rows, rows[leaky]]) if len(rows) else rows,
         )
-    return family, identity, terms
+    return ratios, identity, terms

@@ -17,7 +17,7 @@ from nullpose.certificate.outline import Outline, may_meet
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.airspace import FENCE, FORBIDDEN_CYLINDER
-from nullpose.problem.family import Family
+from nullpose.problem.records import Domain
 
 _FLAT = np.array([1.0, 1.0, 0.0])
 
@@ -63,18 +63,18 @@ Alternative: TypeAlias = tuple[IntArray, tuple[Constraint, ...]]
 """Rows of boxes, and constraints, perhaps none, that all hold at positions which are allowed there."""
 
 
-def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alternative]:
+def zone_alternatives(domain: Domain, zone: IntArray, boxes: Boxes) -> list[Alternative]:
     """Find alternatives of which each allowed position of a box meets one that names the box: lemma 4.
 
     A box that none of them names is forbidden as a whole. Borders are allowed.
 
     Args:
-        family: with its zones.
+        domain: with its zones.
         zone: (b,) the zone that is looked at in each box.
         boxes: b of them.
     """
     hull, rows = boxes.hull, np.arange(len(boxes))
-    floor, ceiling = family.zone_range_m[zone].T
+    floor, ceiling = domain.zone_range_m[zone].T
     found: list[Alternative] = []
     for mask, height, upwards in (
         (hull.high[2] >= ceiling, ceiling, 1.0),
@@ -84,43 +84,43 @@ def zone_alternatives(family: Family, zone: IntArray, boxes: Boxes) -> list[Alte
         up = Interval(np.tile([[0.0], [0.0], [upwards]], len(corner)))
         away = (Interval(boxes.centre[mask]) - corner).T
         found.append((rows[mask], (Constraint.beyond(away, up),)))
-    is_cylinder = family.zone_kind[zone] == FORBIDDEN_CYLINDER
-    found.append(_outside_cylinder(family, zone, boxes, rows[is_cylinder]))
+    is_cylinder = domain.zone_kind[zone] == FORBIDDEN_CYLINDER
+    found.append(_outside_cylinder(domain, zone, boxes, rows[is_cylinder]))
     beyond = [
         (row, *edges)
         for z in np.unique(zone[~is_cylinder])
-        for row, *edges in _beyond_edges(family, int(z), rows[zone == z], boxes.chosen(zone == z))
+        for row, *edges in _beyond_edges(domain, int(z), rows[zone == z], boxes.chosen(zone == z))
     ]
     for count in range(3):
         table = np.array([choice for choice in beyond if len(choice) == 1 + count], dtype=np.int64).reshape(
             -1, 1 + count
         )
         row, *edges = table.T
-        sign = np.where(family.zone_kind[zone[row]] == FENCE, -1.0, 1.0)
-        bounds = (_right_of(boxes.chosen(row), family.zone_edges[edge], sign) for edge in edges)
+        sign = np.where(domain.zone_kind[zone[row]] == FENCE, -1.0, 1.0)
+        bounds = (_right_of(boxes.chosen(row), domain.zone_edges[edge], sign) for edge in edges)
         found.append((row, tuple(bounds)))
     return [(row, bounds) for row, bounds in found if len(row)]
 
 
-def forbidden(family: Family, zone: IntArray, boxes: Boxes) -> np.ndarray:
+def forbidden(domain: Domain, zone: IntArray, boxes: Boxes) -> np.ndarray:
     """Check which boxes a zone forbids as a whole.
 
     Args:
-        family: with its zones.
+        domain: with its zones.
         zone: (b,) the zone that is looked at in each box.
         boxes: b of them.
     """
     holds = np.ones(len(boxes), dtype=bool)
-    for rows, _ in zone_alternatives(family, zone, boxes):
+    for rows, _ in zone_alternatives(domain, zone, boxes):
         holds[rows] = False
     return holds
 
 
-def _beyond_edges(family: Family, zone: int, rows: IntArray, boxes: Boxes) -> Iterator[tuple[int, ...]]:
-    """Yield a box's row and the edges, by their index in the family, of an alternative."""
-    first, last = family.zone_start[zone], family.zone_start[zone + 1]
-    edges = family.zone_edges[first:last]
-    outline = Outline.of(edges, bool(family.zone_kind[zone] == FENCE))
+def _beyond_edges(domain: Domain, zone: int, rows: IntArray, boxes: Boxes) -> Iterator[tuple[int, ...]]:
+    """Yield a box's row and the edges, by their index in the domain, of an alternative."""
+    first, last = domain.zone_start[zone], domain.zone_start[zone + 1]
+    edges = domain.zone_edges[first:last]
+    outline = Outline.of(edges, bool(domain.zone_kind[zone] == FENCE))
     low, high = boxes.hull.low[:2].T, boxes.hull.high[:2].T
     for row, meets, south_west, north_east in zip(rows, may_meet(edges, low, high), low, high, strict=True):
         alternatives = outline.alternatives(np.flatnonzero(meets).tolist(), south_west, north_east)
@@ -135,9 +135,9 @@ def _right_of(boxes: Boxes, edges: FloatArray, sign: FloatArray) -> Constraint:
     return Constraint.beyond(Interval(boxes.centre.T) - np.stack([x1, y1, zero]), normal)
 
 
-def _outside_cylinder(family: Family, zone: IntArray, boxes: Boxes, rows: IntArray) -> Alternative:
+def _outside_cylinder(domain: Domain, zone: IntArray, boxes: Boxes, rows: IntArray) -> Alternative:
     """Return ``|p_xy - c|^2 - r^2`` for boxes that are not inside as a whole."""
-    circle = family.zone_edges[family.zone_start[zone[rows]]]
+    circle = domain.zone_edges[domain.zone_start[zone[rows]]]
     reach = Interval((boxes.chosen(rows).hull[:2] - circle[:, :2].T).magnitude())
     out = ~(reach.squared().total().high < Interval(circle[:, 2]).squared().low)
     rows, circle = rows[out], circle[out]

@@ -41,14 +41,15 @@ def loosened(family: Family, by_m: float) -> Family:
         by_m: how far each border is moved, metres; much less than anything in the airspace is wide.
     """
     zones: list[_Zone] = []
-    for z, (kind, (low, high)) in enumerate(zip(family.zone_kind, family.zone_range_m, strict=True)):
-        edges = family.zone_edges[family.zone_start[z] : family.zone_start[z + 1]]
+    domain = family.domain
+    for z, (kind, (low, high)) in enumerate(zip(domain.zone_kind, domain.zone_range_m, strict=True)):
+        edges = domain.zone_edges[domain.zone_start[z] : domain.zone_start[z + 1]]
         if kind == FORBIDDEN_CYLINDER:
             edges = edges - [0.0, 0.0, by_m, 0.0]
         else:
             edges = _edges(_inset(edges[:, :2], -by_m if kind == FENCE else by_m))
         zones.append((kind, edges, low + by_m, high - by_m))
-    return family.changed(keep_out_m=family.keep_out_m - by_m, **_arrays(zones))
+    return family.changed(keep_out_m=family.domain.keep_out_m - by_m, **_arrays(zones))
 
 
 def _arrays(zones: list[_Zone]) -> dict[str, FloatArray | IntArray]:

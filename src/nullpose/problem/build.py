@@ -87,13 +87,16 @@ def build_family(
 def _refuse_the_loudest(scenario: Scenario, family: Family) -> None:
     """Raise a ScenarioError if doubles cannot tell an interferer's null from the noise."""
     channels = scenario.of_interferers("channels")
-    if channels is None and not (family.denominator_weight > LOUDEST * family.keep_out_m**2).any():
+    if (
+        channels is None
+        and not (family.ratios.denominator_weight > LOUDEST * family.domain.keep_out_m**2).any()
+    ):
         return  # wherever they are
-    hidden = family.denominator_point >= len(scenario.nodes)  # of pairs the nodes are among them, too
-    points = family.denominator_point[hidden]
-    distance_m = distances_m(family.points_m, family.low_m, family.high_m)[points]
-    distance_m = np.maximum(distance_m, family.keep_out_m)
-    over_noise = family.denominator_weight[hidden] / distance_m**2
+    hidden = family.ratios.denominator_point >= len(scenario.nodes)  # of pairs the nodes are among them, too
+    points = family.ratios.denominator_point[hidden]
+    distance_m = distances_m(family.ratios.points_m, family.domain.low_m, family.domain.high_m)[points]
+    distance_m = np.maximum(distance_m, family.domain.keep_out_m)
+    over_noise = family.ratios.denominator_weight[hidden] / distance_m**2
     if channels is not None:
         over_noise *= largest_excess_gain(channels, distance_m) / channels.strengths
     if not (over_noise > LOUDEST).any():

@@ -15,31 +15,23 @@ from nullpose.problem.records import Domain
 
 @dataclass(frozen=True, init=False, eq=False)
 class Family:
-    """Ratios over the link forms of points, and their domain. Every array of either is read on it too.
+    """Ratios over the link forms of points, and their domain.
 
     Args:
         fields: those of :class:`nullpose.objectives.Ratios` and of :class:`Domain`; arrays that could be
             written to are copied, and the copies cannot.
     """
 
-    arrays: Ratios
+    ratios: Ratios
     domain: Domain
 
     def __init__(self, **fields: Any) -> None:
         kept = DEFAULTS | {name: _read_only(value) for name, value in fields.items()}
-        object.__setattr__(self, "arrays", Ratios(*map(kept.pop, Ratios._fields)))
+        object.__setattr__(self, "ratios", Ratios(*map(kept.pop, Ratios._fields)))
         object.__setattr__(self, "domain", Domain(**kept))
 
     def __reduce__(self) -> tuple[partial[Family], tuple[()]]:
         return partial(Family, **self.fields), ()
-
-    def __getattr__(self, name: str) -> Any:
-        """Return an array of the ratios or of the domain."""
-        if name in Ratios._fields:
-            return getattr(self.arrays, name)
-        if name in Domain._fields:
-            return getattr(self.domain, name)
-        raise AttributeError(f"a family has no {name!r}")
 
     def changed(self, **fields: object) -> Family:
         """Copy the family with other values in the fields named."""
@@ -48,20 +40,20 @@ class Family:
     def at(self, position_m: FloatArray) -> Family:
         """Narrow the family to one position, (3,), metres, whether the airspace allows it or not."""
         return Family(
-            **self.arrays._asdict(),
+            **self.ratios._asdict(),
             **Domain(position_m, position_m, np.zeros((0, 3)), self.domain.keep_out_m)._asdict(),
         )
 
     @property
     def required_ratios(self) -> Family:
         """The ratios of a mean that have requirements, each over its own: met where none is below 1."""
-        kept = np.flatnonzero(self.requirements)
-        least, none = self.requirements[kept], np.zeros(0)
+        kept = np.flatnonzero(self.ratios.requirements)
+        least, none = self.ratios.requirements[kept], np.zeros(0)
         return self.changed(
-            numerator_isotropic=self.numerator_isotropic[kept] / least,
-            numerator_weight=self.numerator_weight[kept] / least,
-            numerator_point=self.numerator_point[kept],
-            denominator_of=self.denominator_of[kept],
+            numerator_isotropic=self.ratios.numerator_isotropic[kept] / least,
+            numerator_weight=self.ratios.numerator_weight[kept] / least,
+            numerator_point=self.ratios.numerator_point[kept],
+            denominator_of=self.ratios.denominator_of[kept],
             shares=none,
             requirements=none,
         )
@@ -69,14 +61,14 @@ class Family:
     @property
     def fields(self) -> dict[str, FloatArray | IntArray | float]:
         """Every array by name, and the keep-out radius."""
-        return self.arrays._asdict() | self.domain._asdict()
+        return self.ratios._asdict() | self.domain._asdict()
 
     @property
     def digest(self) -> str:
         """SHA-256 of every number in the family: two families with the same digest are the same problem."""
         sha = hashlib.sha256()
-        for name in sorted(self.fields):
-            array = np.ascontiguousarray(getattr(self, name))
+        for name, values in sorted(self.fields.items()):
+            array = np.ascontiguousarray(values)
             sha.update(f"{name}:{array.dtype.str}:{array.shape};".encode())
             sha.update(array.tobytes())
         return sha.hexdigest()

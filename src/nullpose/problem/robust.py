@@ -53,13 +53,13 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
     start = [0]
     for ratio, case in cases:
         offsets_m = _of_points(nominal, scenario, getattr(case, moved))
-        moved_m = nominal.points_m - case.position_offset_m + offsets_m
+        moved_m = nominal.ratios.points_m - case.position_offset_m + offsets_m
         rotation = case.rotation_world
-        point = int(nominal.numerator_point[ratio])
+        point = int(nominal.ratios.numerator_point[ratio])
         numerator_point.append(copied(point, moved_m[point], rotation))
-        group = int(nominal.denominator_of[ratio])
-        bounds = slice(nominal.denominator_start[group], nominal.denominator_start[group + 1])
-        disturbers = nominal.denominator_point[bounds]
+        group = int(nominal.ratios.denominator_of[ratio])
+        bounds = slice(nominal.ratios.denominator_start[group], nominal.ratios.denominator_start[group + 1])
+        disturbers = nominal.ratios.denominator_point[bounds]
         disturbers_m = moved_m[disturbers]
         key = (group, disturbers_m.tobytes() + rotation.tobytes())
         if key not in groups:
@@ -68,21 +68,24 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
                 copied(point, point_m, rotation)
                 for point, point_m in zip(disturbers.tolist(), disturbers_m, strict=True)
             ]
-            weights.append(nominal.denominator_weight[bounds])
+            weights.append(nominal.ratios.denominator_weight[bounds])
             start.append(len(entries))
         denominator_of.append(groups[key])
     ratios = np.array([case.ratio for case in cases], dtype=np.int64)
     _, points_m, rotations, originals = map(np.array, zip(*copies.values(), strict=True))
-    of_points = {name: getattr(nominal, name) for name in ("ground_axes", "ground_leaks", "channels")}
     return nominal.changed(
-        **{name: rows[originals] for name, rows in of_points.items() if len(rows)},
+        **{
+            name: rows[originals]
+            for name in ("ground_axes", "ground_leaks", "channels")
+            if len(rows := getattr(nominal.ratios, name))
+        },
         points_m=points_m,
         turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
-        numerator_isotropic=nominal.numerator_isotropic[ratios],
-        numerator_weight=nominal.numerator_weight[ratios],
+        numerator_isotropic=nominal.ratios.numerator_isotropic[ratios],
+        numerator_weight=nominal.ratios.numerator_weight[ratios],
         numerator_point=np.array(numerator_point, dtype=np.int64),
         denominator_of=np.array(denominator_of, dtype=np.int64),
-        denominator_isotropic=nominal.denominator_isotropic[[group for group, _ in groups]],
+        denominator_isotropic=nominal.ratios.denominator_isotropic[[group for group, _ in groups]],
         denominator_start=np.array(start, dtype=np.int64),
         denominator_point=np.array(entries, dtype=np.int64),
         denominator_weight=np.concatenate(weights),
@@ -99,6 +102,6 @@ def point_uncertainty_m(scenario: Scenario) -> FloatArray:
 def _of_points(nominal: Family, scenario: Scenario, of_interferers: FloatArray) -> FloatArray:
     """Spread arrays of the points in the denominators over all points, with zeros for the others."""
     first = len(scenario.nodes)
-    of_points = np.zeros((len(nominal.points_m), *of_interferers.shape[1:]))
+    of_points = np.zeros((len(nominal.ratios.points_m), *of_interferers.shape[1:]))
     of_points[first : first + len(of_interferers)] = of_interferers
     return of_points

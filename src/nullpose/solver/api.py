@@ -176,16 +176,16 @@ def best_axis(scenario: Scenario, position_m: ArrayLike) -> Pose:
 
     position = as_position(position_m)
     family = build_family(scenario, any_channel=True)
-    nearest_m = float(np.min(np.linalg.norm(family.points_m - position, axis=1)))
+    nearest_m = float(np.min(np.linalg.norm(family.ratios.points_m - position, axis=1)))
     require_usage(
-        nearest_m >= family.keep_out_m,
+        nearest_m >= family.domain.keep_out_m,
         f"position_m: {nearest_m:.3g} m from a ground point; "
-        f"allowed: at least keep_out_m = {family.keep_out_m:g} m",
+        f"allowed: at least keep_out_m = {family.domain.keep_out_m:g} m",
     )
     band = scenario.axis_band
     axis = np.empty(3)
     if band == (0.0, 1.0):
-        kernel(family.arrays, position, axis)
+        kernel(family.ratios, position, axis)
     else:
         axis = solve_and_prove(
             family.at(position), [AxisField.within(*band)], SolveOptions(gap=1e-8, node_limit=_AXIS_NODES)

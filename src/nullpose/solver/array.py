@@ -190,7 +190,7 @@ def _vertical_bound(search: ArraySearch, gap: float) -> ArrayBound:
     """
     family = search.family  # only noise is left in the denominators; interferers are still kept clear of
     family = family.changed(
-        denominator_start=np.zeros_like(family.denominator_start),
+        denominator_start=np.zeros_like(family.ratios.denominator_start),
         denominator_point=np.zeros(0, dtype=np.int64),
         denominator_weight=np.zeros(0),
     )

@@ -41,8 +41,8 @@ class ArraySearch(EpigraphSearch):
         super().__init__(family, float(array.elements), seed)
         places = element_positions(array.elements, array.layout, array.spacing_wavelengths)
         self.problem = ArrayProblem(
-            family.arrays,
-            np.concatenate([family.numerator_weight, family.denominator_weight]),
+            family.ratios,
+            np.concatenate([family.ratios.numerator_weight, family.ratios.denominator_weight]),
             len(scenario.nodes),
             np.ascontiguousarray(places[:, :2]),
         )

@@ -146,11 +146,11 @@ def _by_values(record: SchemeRecord, family: Family, options: SolveOptions) -> O
     from nullpose.solver.kernels.search.maximum_gain import maximum_gain_value
 
     axis = np.empty(3)
-    log_value = partial(maximum_gain_value, family.arrays, axis=axis)
+    log_value = partial(maximum_gain_value, family.ratios, axis=axis)
     search = PositionSearch(log_value, family, options.seed)
     search.search()
     log_value(search.state)  # fills the axis
-    ratios = len(family.numerator_point)
+    ratios = len(family.ratios.numerator_point)
     found = Incumbent(
         position_m=search.state,
         axis=axis,

@@ -45,13 +45,13 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
     test = rows[:, node.KIND].astype(np.int64)
     ratios, weights = rows[:, node.INDEX : node.WEIGHT].astype(np.int64), rows[:, node.WEIGHT : node.TOUCH]
     has_mix, count = np.isin(test, (WORLD, TOWARDS, AFFINE)), rows[:, node.COUNT].astype(np.int64)
-    if size := len(family.shares) or len(family.pairs):
+    if size := len(family.ratios.shares) or len(family.ratios.pairs):
         tangents, listed = np.zeros((2, len(rows), size))
-        (fill_tangents if len(family.shares) else fill_touched)(family.arrays, rows, tangents)
+        (fill_tangents if len(family.ratios.shares) else fill_touched)(family.ratios, rows, tangents)
         used = np.arange(node.SUPPORT) < count[:, None]
         listed[np.nonzero(used)[0], ratios[used]] = weights[used]
         # the numbers of requirements follow those of the ratios, those of tangents follow the pairs'
-        both = [tangents, listed] if len(family.shares) else [listed, tangents * (listed > 0.0)]
+        both = [tangents, listed] if len(family.ratios.shares) else [listed, tangents * (listed > 0.0)]
         ratios, weights, count = _order_multipliers(np.hstack(both))
     mix, mixes = _mixes(ratios, weights, np.where(has_mix, count, 0))
     point = np.where(np.isin(test, (WORLD, AFFINE, OFF_BAND)), -1, rows[:, node.ANCHOR])
@@ -259,6 +259,7 @@ def _ratios(solution: Result, family: Family, fields: Mapping[str, AxisField]) -
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
     place = exact(pose.position_m)
-    ratios = ratios_at(family, place, axis, *profiles_of(fields), gains=excess_at(family, place))
-    value = float(value_of(family, ratios))
+    ratios = family.ratios
+    values = ratios_at(ratios, place, axis, *profiles_of(fields), gains=excess_at(ratios, place))
+    value = float(value_of(ratios, values))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))

@@ -119,7 +119,7 @@ def compile_proof() -> None:
 
     family, field = _smallest_family(), AxisField.free()
     row, rows, none = np.zeros(node.COLUMNS), np.zeros((1, node.COLUMNS)), np.empty(3)
-    problem = family.arrays, family.domain, field.arrays
+    problem = family.ratios, family.domain, field.arrays
     branch.branch(*problem, 1.0, Goal(1.0, row, 0.0), rows, 0, rows, 0, 1, none, none)
 
 
@@ -137,8 +137,8 @@ def compile_search() -> None:
     family, weight = _smallest_family(), np.ones(1)
     up, high_m, row = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 10.0]), np.zeros(COLUMNS)
     climb(family, AxisField.free(), high_m, up, mu=0.1, steps=0)
-    fill_root(family.arrays, family.domain, 0.0, 1.0, 1.0, weight, up, row)
-    log_objective(family.arrays, high_m, up, weight, weight)
+    fill_root(family.ratios, family.domain, 0.0, 1.0, 1.0, weight, up, row)
+    log_objective(family.ratios, high_m, up, weight, weight)
     keep_largest(weight, 1, row, False)
     touch(row, up)
 

@@ -55,7 +55,7 @@ class CustomSearch(PositionSearch):
 
     def scaled(self, most: FloatArray, least: FloatArray) -> Family:
         """Build free space with the nodes' links so many times as strong, (m,), and the others', (m,)."""
-        ratios = self.family.arrays
+        ratios = self.family.ratios
         return self.family.changed(
             numerator_weight=ratios.numerator_weight * most[ratios.numerator_point],
             denominator_weight=ratios.denominator_weight * least[ratios.denominator_point],
@@ -82,33 +82,33 @@ class CustomSearch(PositionSearch):
 
     def box(self, log_value: float) -> tuple[FloatArray, FloatArray]:
         """Return corners of the box in which positions are drawn, whatever the value."""
-        points_m, domain = self.family.points_m, self.family.domain
+        points_m, domain = self.family.ratios.points_m, self.family.domain
         around_m = float(np.max(np.ptp(points_m, axis=0))) + _AROUND * domain.keep_out_m
         low_m = np.maximum(domain.low_m, points_m.min(axis=0) - around_m)
         return low_m, np.minimum(domain.high_m, np.maximum(low_m, points_m.max(axis=0) + around_m))
 
     def excess_range(self, centre_m: FloatArray, half_m: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Bound the excess gain of each point over a box, (m,) and (m,): least and most."""
-        low, high = np.ones((2, len(self.family.points_m)))
+        low, high = np.ones((2, len(self.family.ratios.points_m)))
         for j, law in self.laws.items():
             low[j], high[j] = law.excess_range(
-                self.family.points_m[j], centre_m, half_m, self.family.domain.keep_out_m
+                self.family.ratios.points_m[j], centre_m, half_m, self.family.domain.keep_out_m
             )
         return low, high
 
     def root(self) -> tuple[FloatArray, FloatArray]:
         """Return corners of a box outside which no pose is as good as the best found; perhaps infinite."""
         family, level = self.family, math.exp(self.best)
-        low_m, high_m = family.low_m, family.high_m
-        if self.laws.keys().isdisjoint(family.numerator_point.tolist()):
+        low_m, high_m = family.domain.low_m, family.domain.high_m
+        if self.laws.keys().isdisjoint(family.ratios.numerator_point.tolist()):
             low_m, high_m = super().box(self.best)
-        for k, j in enumerate(family.numerator_point.tolist()):
-            noise = family.denominator_isotropic[family.denominator_of[k]]
-            least = (level * noise - family.numerator_isotropic[k]) / family.numerator_weight[k]
+        for k, j in enumerate(family.ratios.numerator_point.tolist()):
+            noise = family.ratios.denominator_isotropic[family.ratios.denominator_of[k]]
+            least = (level * noise - family.ratios.numerator_isotropic[k]) / family.ratios.numerator_weight[k]
             if least > 0.0 and j in self.laws:
                 reach_m = self.laws[j].reach_m(least, family.domain.keep_out_m)
-                low_m = np.maximum(low_m, family.points_m[j] - reach_m)
-                high_m = np.minimum(high_m, family.points_m[j] + reach_m)
+                low_m = np.maximum(low_m, family.ratios.points_m[j] - reach_m)
+                high_m = np.minimum(high_m, family.ratios.points_m[j] + reach_m)
         return low_m, np.maximum(low_m, high_m)
 
     def side_of(self, low_m: FloatArray, high_m: FloatArray) -> int:
@@ -128,7 +128,7 @@ class CustomSearch(PositionSearch):
 
         least, most = self.excess_range(0.5 * (low_m + high_m), 0.5 * (high_m - low_m))
         part = self.scaled(most, least).changed(low_m=low_m, high_m=high_m)
-        farthest = float(reach_by_distance(part.arrays, part.domain)[0])
+        farthest = float(reach_by_distance(part.ratios, part.domain)[0])
         if farthest < math.exp(self.best):
             return farthest, 0
         start = self.best_at(self.state)[0]

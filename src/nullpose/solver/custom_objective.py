@@ -80,7 +80,7 @@ class ObjectiveSearch(EpigraphSearch):
 
     def box(self, log_value: float) -> tuple[FloatArray, FloatArray]:
         """Return the corners of the airspace: nothing else bounds where a function is large."""
-        return self.family.low_m, self.family.high_m
+        return self.family.domain.low_m, self.family.domain.high_m
 
     def orient(self, positions_m: FloatArray) -> FloatArray:
         """Draw a state at each of some positions, half of them with the null on a jammer."""

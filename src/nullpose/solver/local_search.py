@@ -40,7 +40,7 @@ class LocalSearch(ABC):
 
     def __init__(self, family: Family, peak: float, seed: int) -> None:
         self.family, self.rng = family, np.random.default_rng(seed)
-        self.loudest = family.changed(numerator_weight=family.numerator_weight * peak)
+        self.loudest = family.changed(numerator_weight=family.ratios.numerator_weight * peak)
         self.best, self.state, self.last = -math.inf, np.empty(0), np.empty(0)
         self.starts = self.evaluations = 0
 
@@ -60,8 +60,8 @@ class LocalSearch(ABC):
         """Return corners of a box outside which no state has its smallest log ratio above a value."""
         from nullpose.solver.kernels.search.search import cut_box
 
-        low_m, high_m, family = np.empty(3), np.empty(3), self.family
-        cut_box(self.loudest.arrays, family.low_m, family.high_m, log_value - _ROUNDING, low_m, high_m)
+        low_m, high_m, domain = np.empty(3), np.empty(3), self.family.domain
+        cut_box(self.loudest.ratios, domain.low_m, domain.high_m, log_value - _ROUNDING, low_m, high_m)
         return low_m, np.maximum(low_m, high_m)
 
     def run(self, drawn: int, climbed: int) -> float:
@@ -76,8 +76,8 @@ class LocalSearch(ABC):
         """
         from nullpose.solver.kernels.search.domain import push_out
 
-        points_m, ends = self.family.points_m, [-math.inf]
-        around_m = float(np.max(np.ptp(points_m, axis=0))) + 10.0 * self.family.keep_out_m
+        points_m, ends = self.family.ratios.points_m, [-math.inf]
+        around_m = float(np.max(np.ptp(points_m, axis=0))) + 10.0 * self.family.domain.keep_out_m
         places_m = [place for place in landmarks(self.family) if push_out(place, self.family.domain)]
         for _ in range(2):
             corners_m = self.box(self.best)
@@ -114,7 +114,7 @@ class LocalSearch(ABC):
         """Move a position into the domain if it is a little outside."""
         from nullpose.solver.kernels.search.domain import walls
 
-        low_m, high_m = self.family.low_m, self.family.high_m
+        low_m, high_m = self.family.domain.low_m, self.family.domain.high_m
         for _ in range(_REPAIRS):
             position_m = np.clip(position_m, low_m, high_m)
             distance_m, outwards = walls(self.family.domain, position_m)
@@ -144,7 +144,7 @@ class EpigraphSearch(LocalSearch):
 
     def unit_m(self, state: FloatArray) -> float:
         """Return the metres that count as much as a radian."""
-        return max(1.0, float(np.linalg.norm(state[:3] - self.family.points_m[0])))
+        return max(1.0, float(np.linalg.norm(state[:3] - self.family.ratios.points_m[0])))
 
     def climb(self, state: FloatArray) -> float:
         """Climb to a local optimum, and keep it if it is the best so far; return its value."""
@@ -165,7 +165,7 @@ class EpigraphSearch(LocalSearch):
             slopes[len(logs) :, :3] = outwards
             return np.concatenate([np.maximum(logs, _LEAST) - x[size], distance_m / unit_m]), slopes
 
-        low_m, high_m = self.family.low_m, self.family.high_m
+        low_m, high_m = self.family.domain.low_m, self.family.domain.high_m
         sides = zip((low_m - state[:3]) / unit_m, (high_m - state[:3]) / unit_m, strict=True)
         uphill = np.append(np.zeros(size), -1.0)
         found = minimize(

@@ -15,6 +15,7 @@ from nullpose.objectives import FloatArray
 from nullpose.problem.airspace import loosened
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
+from nullpose.problem.records import Domain
 from nullpose.solver.compiling import limit_clock
 from nullpose.solver.kernels.compiler.interpreted import ended_when
 
@@ -106,7 +107,7 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
         family: the ratios and their domain.
         most: points of a kind that are taken at most.
     """
-    ratios, floor_m, clear_m = family.arrays, family.domain.low_m[2], 1.02 * family.domain.keep_out_m
+    ratios, floor_m, clear_m = family.ratios, family.domain.low_m[2], 1.02 * family.domain.keep_out_m
     nodes = ratios.points_m[ratios.numerator_point]
     of_pairs = ratios.numerator_point[ratios.pairs[:, 1]]
     numbers = set((of_pairs if len(of_pairs) else ratios.denominator_point).tolist())
@@ -123,10 +124,10 @@ def landmarks(family: Family, most: int = 16) -> FloatArray:
     return np.vstack([over, *beside]) if beside else over
 
 
-def _corners(family: Family, most: int = 1000) -> FloatArray:
+def _corners(domain: Domain, most: int = 1000) -> FloatArray:
     """Return corners of zones and fence on the lowest and the highest altitude, (m, 3)."""
-    corners = family.zone_edges[:: 1 + 2 * len(family.zone_edges) // most, :2]
-    return np.vstack([np.insert(corners, 2, end[2], axis=1) for end in (family.low_m, family.high_m)])
+    corners = domain.zone_edges[:: 1 + 2 * len(domain.zone_edges) // most, :2]
+    return np.vstack([np.insert(corners, 2, end[2], axis=1) for end in (domain.low_m, domain.high_m)])
 
 
 @cache
@@ -171,7 +172,7 @@ def _multistart(family: Family, axis_field: AxisField, seed: int, settings: Sear
     places = landmarks(family)
     found = _run(family, axis_field, places, seed, settings)
     if not math.isfinite(found.log_value):  # what is allowed may be of no width: a point, a line or a wall
-        places = np.vstack([places, _corners(family)])
+        places = np.vstack([places, _corners(family.domain)])
         found = _run(loosened(family, BORDER_M), axis_field, places, seed, settings)
         if not math.isfinite(found.log_value):
             raise SolveError(NOT_RECEIVED if found.evaluations else NO_POSITION)
@@ -216,7 +217,7 @@ def _run(
     from nullpose.solver.kernels.search.search import search_and_climb
 
     position_m, axis = pose or (np.zeros(3), np.array([0.0, 0.0, 1.0]))
-    ratios = family.arrays
+    ratios = family.ratios
     multipliers = np.empty(len(ratios.pairs) or len(ratios.numerator_point))
     log_value, starts, evaluations = entry_of(search_and_climb)(
         ratios,

@@ -90,7 +90,7 @@ class PatternRun(BranchAndBound):
         from nullpose.solver.kernels.bounds.root import reach_by_distance
 
         self.branch = branch_pattern
-        self.proved = float(reach_by_distance(self.search.loudest.arrays, self.family.domain)[0])
+        self.proved = float(reach_by_distance(self.search.loudest.ratios, self.family.domain)[0])
         began = limit_clock()
         self.deadline = began + self.limits.time_limit_s
         self.thorough = False
@@ -106,7 +106,9 @@ class PatternRun(BranchAndBound):
             position_m=position_m,
             axis=self.search.least_tilted(rotation),
             log_value=self.search.best,
-            multipliers=np.full(len(self.family.numerator_point), 1.0 / len(self.family.numerator_point)),
+            multipliers=np.full(
+                len(self.family.ratios.numerator_point), 1.0 / len(self.family.ratios.numerator_point)
+            ),
             starts=self.search.starts,
             evaluations=self.search.evaluations,
         )
@@ -180,7 +182,7 @@ class PatternRun(BranchAndBound):
     def exclusion_kernel(self, gap: float) -> Kernel:
         """Return the kernel that excludes all above ``value (1 + gap)``."""
         level, floor = self.value * (1.0 + gap), self.value * (1.0 + self.rounding)
-        problem = self.family.arrays, self.family.domain, self.antenna.arrays, self.reach
+        problem = self.family.ratios, self.family.domain, self.antenna.arrays, self.reach
         return partial(self.branch, *problem, level, floor, self.keeps_leaves)
 
     def root_of(self, gap: float) -> FloatArray:
@@ -200,7 +202,7 @@ class PatternRun(BranchAndBound):
         middle, half = 0.5 * (low_m + high_m), 0.5 * (high_m - low_m)
         anchor = self.search.anchor
         clear, chart = max((self._clearance(anchor, chart, middle, half), chart) for chart in range(3))
-        if clear < _CLEAR and np.max(half) > self.family.keep_out_m:
+        if clear < _CLEAR and np.max(half) > self.family.domain.keep_out_m:
             side = int(np.argmax(half))
             lower, upper = high_m.copy(), low_m.copy()
             lower[side] = upper[side] = middle[side]
@@ -208,20 +210,20 @@ class PatternRun(BranchAndBound):
             yield from self._roots(upper, high_m)
             return
         for face in range(1 if self.reach.spins else 6):
-            cell = np.zeros(a.WARM + len(self.family.numerator_point))
+            cell = np.zeros(a.WARM + len(self.family.ratios.numerator_point))
             cell[:3], cell[a.HALF : a.HALF + 3] = middle, half * (1.0 + 1e-12)
             cell[a.HALF + 3 : a.HALF + 6] = math.pi / 4.0, math.pi / 4.0, math.pi
             if self.reach.spins:  # u alone says where the anchor is: half a turn, or a quarter
                 cell[3] = cell[a.HALF + 3] = math.pi / 4.0 if self.reach.even else math.pi / 2.0
                 cell[a.HALF + 4] = 0.0
             cell[a.FACE], cell[a.CHART], cell[a.ANCHOR] = face, chart, anchor
-            cell[a.WARM :] = 1.0 / len(self.family.numerator_point)
+            cell[a.WARM :] = 1.0 / len(self.family.ratios.numerator_point)
             yield cell
 
     def _clearance(self, anchor: int, chart: int, middle: FloatArray, half: FloatArray) -> float:
         """Return the least cosine of the anchor's latitude over a box, in a chart."""
         order = [(chart + i) % 3 for i in range(3)]
-        away_m = np.abs(self.family.points_m[anchor] - middle)[order]
+        away_m = np.abs(self.family.ratios.points_m[anchor] - middle)[order]
         sides = half[order]
         level = math.hypot(max(0.0, away_m[0] - sides[0]), max(0.0, away_m[2] - sides[2]))
         return level / math.hypot(level, away_m[1] + sides[1]) if level > 0.0 else 0.0

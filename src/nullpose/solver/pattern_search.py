@@ -74,7 +74,7 @@ class PatternSearch(EpigraphSearch):
         from nullpose.solver.kernels.search.pattern_search import judge
 
         values = np.empty(len(states))
-        judge(self.family.arrays, self.family.domain, self.pattern, states, values)
+        judge(self.family.ratios, self.family.domain, self.pattern, states, values)
         self.evaluations += len(states)
         return values
 
@@ -90,10 +90,10 @@ class PatternSearch(EpigraphSearch):
         """Evaluate the log ratios of a moved state, and their slopes."""
         from nullpose.solver.kernels.search.pattern_search import fill_slopes
 
-        count = len(self.family.numerator_point)
+        count = len(self.family.ratios.numerator_point)
         logs, slopes = np.empty(count), np.empty((count, 6))
         fill_slopes(
-            self.family.arrays, self.pattern, self.reach, state, step, self.unit_m(state), logs, slopes
+            self.family.ratios, self.pattern, self.reach, state, step, self.unit_m(state), logs, slopes
         )
         self.evaluations += 13
         return logs, slopes
@@ -114,11 +114,11 @@ class PatternSearch(EpigraphSearch):
     @property
     def anchor(self) -> int:
         """Index of the point that the cells are aligned with: the one that sways the value most."""
-        weight = np.zeros(len(self.family.points_m))
-        np.add.at(weight, self.family.numerator_point, self.family.numerator_weight)
-        weight /= len(self.family.numerator_point) * math.exp(self.best)
-        np.add.at(weight, self.family.denominator_point, self.family.denominator_weight)
-        return int(np.argmax(weight / np.sum((self.family.points_m - self.state[:3]) ** 2, axis=1)))
+        weight = np.zeros(len(self.family.ratios.points_m))
+        np.add.at(weight, self.family.ratios.numerator_point, self.family.ratios.numerator_weight)
+        weight /= len(self.family.ratios.numerator_point) * math.exp(self.best)
+        np.add.at(weight, self.family.ratios.denominator_point, self.family.ratios.denominator_weight)
+        return int(np.argmax(weight / np.sum((self.family.ratios.points_m - self.state[:3]) ** 2, axis=1)))
 
     def _draw_attitudes(self, count: int) -> FloatArray:
         """Draw rotations that the airframe reaches, (count, 3, 3)."""
@@ -133,9 +133,9 @@ class PatternSearch(EpigraphSearch):
 
     def _aim_nulls(self, positions_m: FloatArray) -> FloatArray:
         """Draw rotations that have the strongest interferer, or the first point, where the gain is low."""
-        weights = self.family.denominator_weight
-        strongest = self.family.denominator_point[np.argmax(weights)] if len(weights) else 0
-        to_strongest_m = self.family.points_m[strongest] - positions_m
+        weights = self.family.ratios.denominator_weight
+        strongest = self.family.ratios.denominator_point[np.argmax(weights)] if len(weights) else 0
+        to_strongest_m = self.family.ratios.points_m[strongest] - positions_m
         spins = Rotation.from_rotvec(
             np.outer(self.rng.uniform(-math.pi, math.pi, len(to_strongest_m)), [0.0, 0.0, 1.0])
         ).as_matrix()

@@ -61,7 +61,7 @@ class PositionSearch(LocalSearch):
         """Climb to a local optimum, and keep it if it is the best so far; return its value."""
         from scipy.optimize import minimize
 
-        low_m, high_m = self.family.low_m, self.family.high_m
+        low_m, high_m = self.family.domain.low_m, self.family.domain.high_m
         value, size_m = self.take(state), _SIZE * float(np.max(np.diff(self.box(self.best), axis=0)))
         self.starts += 1
         for _ in range(_RESTARTS):

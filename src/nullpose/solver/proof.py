@@ -97,7 +97,7 @@ class _Run(BranchAndBound):
         from nullpose.solver.kernels.compiler.jit import entry_of
 
         super().__init__(limits, began, nodes)
-        ratios = family.arrays
+        ratios = family.ratios
         self.family, self.axis_field = family, axis_field
         self.node, self.branch, self.touch = node, entry_of(branch.branch), signed_sum.touch
         self.incumbent, self.search = incumbent, search
@@ -189,7 +189,7 @@ class _Run(BranchAndBound):
 
         goal = Goal(self.value * (1.0 + self.rounding), self.incumbent_row, self.spare)
         family, level = self.family, self.value * (1.0 + gap)
-        return partial(self.branch, family.arrays, family.domain, self.axis_field.arrays, level, goal)
+        return partial(self.branch, family.ratios, family.domain, self.axis_field.arrays, level, goal)
 
     def improve(self, position_m: FloatArray, axis: FloatArray) -> bool:
         return self._climb_from(position_m, axis, 0.01)
@@ -198,9 +198,9 @@ class _Run(BranchAndBound):
         """Take up a pose, or the local maximum that it leads to, if it is better; check that it is."""
         from nullpose.solver.kernels.linear_algebra.links import log_objective
 
-        family = self.family.arrays
-        logs = np.empty(len(family.denominator_isotropic)), np.empty(len(family.numerator_point))
-        start = float(log_objective(family, position_m, axis, *logs))
+        ratios = self.family.ratios
+        logs = np.empty(len(ratios.denominator_isotropic)), np.empty(len(ratios.numerator_point))
+        start = float(log_objective(ratios, position_m, axis, *logs))
         found = climb(self.family, self.axis_field, position_m, axis, mu=mu, steps=100)
         if found.log_value < start:
             found = replace(found, log_value=start, position_m=position_m, axis=axis)

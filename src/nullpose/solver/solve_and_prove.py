@@ -76,7 +76,7 @@ def solve_and_prove(
     searches: list[Incumbent] = []
 
     def searched(field: AxisField, proof_follows: bool) -> Incumbent:
-        settings = search_settings(proof_follows, field, len(family.shares) > 0)
+        settings = search_settings(proof_follows, field, len(family.ratios.shares) > 0)
         found = multistart(
             family, field, seed=options.seed, settings=settings, deadline=began + options.time_limit_s
         )

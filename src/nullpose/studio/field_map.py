@@ -121,5 +121,5 @@ def map_compiler() -> BackgroundCompiler:
 
     compiler = BackgroundCompiler()
     with compiler.in_use():
-        best_axis(build_family(new_scenario()).arrays, np.array([5.0, 5.0, 9.0]), np.empty(3))
+        best_axis(build_family(new_scenario()).ratios, np.array([5.0, 5.0, 9.0]), np.empty(3))
     return compiler

@@ -178,7 +178,7 @@ def _best_values(result: Result, positions_m: FloatArray, go_on: Callable[[], No
 def _exact_axes(scenario: Scenario, positions_m: FloatArray, go_on: Callable[[], None]) -> FloatArray:
     from nullpose.solver.kernels.linear_algebra.axis import best_axis
 
-    arrays = build_family(scenario, any_channel=True).arrays
+    arrays = build_family(scenario, any_channel=True).ratios
     axes = np.empty_like(positions_m)
     for position_m, axis in zip(np.ascontiguousarray(positions_m), axes, strict=True):
         go_on()

@@ -29,7 +29,7 @@ def test_no_position_is_far_better(nodes: int, jammers: int, random_scene: Calla
     best = math.log(solve(one, Scheme.MAXIMUM_GAIN).objective.value)
     axis = np.empty(3)
     for position in rng.uniform([-20.0, -20.0, 8.0], [120.0, 120.0, 12.0], (4000, 3)):
-        assert maximum_gain_value(family.arrays, position, axis) <= best + 1e-9
+        assert maximum_gain_value(family.ratios, position, axis) <= best + 1e-9
 
 
 def test_equal_distances_keep_the_value(scene: Callable) -> None:

@@ -33,9 +33,9 @@ def ascended(family, row, mean, back, weights, v):
 
 def whitened(family: Family, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns every ratio's whitened form at a position, and what whitens."""
-    ratios = len(family.numerator_point)
+    ratios = len(family.ratios.numerator_point)
     numerators, denominators = np.empty((ratios, 6)), np.empty((1, 6))
-    fill_forms(family.arrays, position_m, numerators, denominators)
+    fill_forms(family.ratios, position_m, numerators, denominators)
     back, forms = np.empty((3, 3)), np.empty((ratios, 6))
     inverse_factor(denominators[0], back)
     for k in range(ratios):
@@ -57,7 +57,7 @@ def test_it_agrees_with_the_interior_point(start: str, random_scene: Callable) -
     for number in range(120):
         scene = random_scene(rng, 2 + number % 7, 1 + number % 3, 10.0 ** rng.uniform(-2.0, 2.0))
         family = build_family(scene)
-        ratios = len(family.numerator_point)
+        ratios = len(family.ratios.numerator_point)
         position_m = np.array([*rng.uniform(0.0, 100.0, 2), rng.uniform(8.0, 30.0)])
         forms, mean, back = whitened(family, position_m)
         level = float(np.max(forms[:, :3]))
@@ -66,7 +66,7 @@ def test_it_agrees_with_the_interior_point(start: str, random_scene: Callable) -
             keep_largest(np.full(ratios, 1.0 / ratios), ratios, row, False)
         row[CENTRE:HALF], row[LEVEL], row[FACE] = position_m, level, -1.0
         weights, v = np.empty(ratios + 4), np.empty(3)
-        found, followed = ascended(family.arrays, row, mean, back, weights, v)
+        found, followed = ascended(family.ratios, row, mean, back, weights, v)
         best, matrix = np.empty(ratios), np.empty(6)
         third = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) / 3.0
         wanted = dual_multipliers(
@@ -95,6 +95,6 @@ def test_where_there_is_a_duality_gap_it_says_so(scene: Callable) -> None:
     keep_largest(np.full(4, 0.25), 4, row, False)
     row[CENTRE:HALF], row[LEVEL], row[FACE] = position_m, float(np.min(forms[:, :3].sum(axis=1))) / 3.0, -1.0
     weights, v = np.empty(8), np.empty(3)
-    found, followed = ascended(family.arrays, row, mean, back, weights, v)
+    found, followed = ascended(family.ratios, row, mean, back, weights, v)
     assert not followed
     assert found == math.inf

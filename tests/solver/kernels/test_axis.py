@@ -19,21 +19,22 @@ ABOVE = np.array([0.0, 0.0, 10.0])
 
 def ratios_at(family: Family, p: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Returns the ratios (..., R) at axes (..., 3), by cross products: dense forms cancel beside a null."""
-    r = family.points_m - p
+    ratios = family.ratios
+    r = ratios.points_m - p
     square = np.sum(r**2, axis=1)
     links = np.sum(np.cross(axes[..., None, :], r) ** 2, axis=-1) / square**2
     size = np.sum(axes**2, axis=-1)[..., None]
-    tops = family.numerator_isotropic * size + family.numerator_weight * links[..., family.numerator_point]
-    entries = family.denominator_weight * links[..., family.denominator_point]
-    spans = zip(family.denominator_start[:-1], family.denominator_start[1:], strict=True)
+    tops = ratios.numerator_isotropic * size + ratios.numerator_weight * links[..., ratios.numerator_point]
+    entries = ratios.denominator_weight * links[..., ratios.denominator_point]
+    spans = zip(ratios.denominator_start[:-1], ratios.denominator_start[1:], strict=True)
     jamming = np.stack([np.sum(entries[..., a:b], axis=-1) for a, b in spans], axis=-1)
-    return tops / (family.denominator_isotropic * size + jamming)[..., family.denominator_of]
+    return tops / (ratios.denominator_isotropic * size + jamming)[..., ratios.denominator_of]
 
 
 def found(family: Family, p: np.ndarray) -> tuple[float, np.ndarray]:
     """Returns the kernel's best value, as a ratio, and its axis, at which the ratios must come to that."""
     axis = np.empty(3)
-    value = math.exp(best_axis(family.arrays, p, axis))
+    value = math.exp(best_axis(family.ratios, p, axis))
     assert np.linalg.norm(axis) == pytest.approx(1.0, abs=1e-15)
     assert np.min(ratios_at(family, p, axis)) == pytest.approx(value, rel=1e-12)
     return value, axis
@@ -105,7 +106,7 @@ def test_no_multiplier_is_below_the_value(
     rng = np.random.default_rng(seed)
     family = build_family(random_scene(rng, nodes, 2, 10.0 ** rng.uniform(-1.0, 4.0)))
     powers = 10.0 ** rng.uniform(0.0, decades, nodes)
-    family = family.changed(numerator_weight=family.numerator_weight * powers)
+    family = family.changed(numerator_weight=family.ratios.numerator_weight * powers)
     p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
     value, _ = found(family, p)
     forms = whitened(family, p, dense_forms)
@@ -155,8 +156,8 @@ def test_denominators_that_are_equal_are_one(random_scene: Callable) -> None:
             denominator_of=np.arange(4),
             denominator_isotropic=np.ones(4),
             denominator_start=2 * np.arange(5),
-            denominator_point=np.tile(family.denominator_point, 4),
-            denominator_weight=np.tile(family.denominator_weight, 4),
+            denominator_point=np.tile(family.ratios.denominator_point, 4),
+            denominator_weight=np.tile(family.ratios.denominator_weight, 4),
         )
         p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
         shared, _ = found(family, p)

@@ -55,19 +55,24 @@ def family_of(rng: np.random.Generator, leak: float) -> Family:
 
 def exact_form(family: Family, weights: np.ndarray, level: float, p: np.ndarray) -> np.ndarray:
     """Return the sum at a position, from the definition of the forms."""
+    ratios = family.ratios
 
     def form(j: int) -> np.ndarray:
-        r, v, through = family.points_m[j] - p, family.ground_axes[j], family.ground_leaks[j]
+        r, v, through = (
+            ratios.points_m[j] - p,
+            ratios.ground_axes[j],
+            ratios.ground_leaks[j],
+        )
         square = r @ r
         plain = (square * np.eye(3) - np.outer(r, r)) / square**2
-        plain = (1.0 - family.leak) * plain + family.leak * np.eye(3) / square
+        plain = (1.0 - ratios.leak) * plain + ratios.leak * np.eye(3) / square
         a = (square * v - (v @ r) * r) / square**1.5
-        of_dipole = (1.0 - family.leak) * np.outer(a, a) + family.leak * (a @ a) * np.eye(3)
+        of_dipole = (1.0 - ratios.leak) * np.outer(a, a) + ratios.leak * (a @ a) * np.eye(3)
         return (1.0 - through) * of_dipole + through * plain
 
-    below = np.eye(3) + sum(family.denominator_weight[e] * form(2 + e) for e in range(2))
+    below = np.eye(3) + sum(ratios.denominator_weight[e] * form(2 + e) for e in range(2))
     above = [
-        family.numerator_isotropic[k] * np.eye(3) + family.numerator_weight[k] * form(k) for k in range(2)
+        ratios.numerator_isotropic[k] * np.eye(3) + ratios.numerator_weight[k] * form(k) for k in range(2)
     ]
     return sum(w * (n - level * below) for w, n in zip(weights, above, strict=True))
 
@@ -76,13 +81,13 @@ def turned_axes(family: Family, anchor: int, centre: np.ndarray, p: np.ndarray) 
     """Return ``I + E`` at a position, for coordinates that turn with a point."""
 
     def seen(place: np.ndarray) -> np.ndarray:
-        r, v = family.points_m[anchor] - place, family.ground_axes[anchor]
+        r, v = family.ratios.points_m[anchor] - place, family.ratios.ground_axes[anchor]
         if not np.any(v):
             return r / np.linalg.norm(r)
         return ((r @ r) * v - (v @ r) * r) / (r @ r) ** 1.5
 
     before, now = seen(centre), seen(p)
-    if np.any(family.ground_axes[anchor]):
+    if np.any(family.ratios.ground_axes[anchor]):
         return np.eye(3) - np.outer(before, (now - before) / (now @ before))
     return np.eye(3) + np.outer(now / (now @ before) - before, before)
 
@@ -110,9 +115,9 @@ def test_the_solvers_sum_is_above_the_exact_one(kind: int, leak: float, seed: in
     row = np.zeros(COLUMNS)
     row[CENTRE:HALF], row[HALF:LEVEL], row[LEVEL], row[FACE] = centre, half, level, -1.0
     row[COUNT], row[INDEX : INDEX + 2], row[WEIGHT : WEIGHT + 2] = 2.0, [0.0, 1.0], weights
-    basis, matrix, space = np.empty((3, 3)), np.empty(6), workspace_of(family.arrays)
-    frame = frame_at(family.arrays, kind, anchor, centre, half, basis)
-    add_dipole_sum(family.arrays, AxisField.free().arrays, frame, row, space, matrix)
+    basis, matrix, space = np.empty((3, 3)), np.empty(6), workspace_of(family.ratios)
+    frame = frame_at(family.ratios, kind, anchor, centre, half, basis)
+    add_dipole_sum(family.ratios, AxisField.free().arrays, frame, row, space, matrix)
     for _ in range(8):
         x = rng.uniform(-1.0, 1.0, 3) * half
         exact = exact_form(family, weights, level, centre + x)
@@ -132,7 +137,7 @@ def test_the_verifiers_sum_is_above_the_exact_one(kind: int, leak: float, seed: 
     mix = {0: weights[0], 1: weights[1]}
     leaves = make_leaves(1, test=kind, point=anchor, level=level, mixes=(mix,))
     boxes = boxes_at(centre[None], half)
-    total, shear = dipole_sum(family, leaves, boxes, Interval(np.zeros((6, 1)), np.zeros((6, 1))))
+    total, shear = dipole_sum(family.ratios, leaves, boxes, Interval(np.zeros((6, 1)), np.zeros((6, 1))))
     assert kind == TOWARDS_POINT or not shear.on[0]
     basis = shear.basis.middle()[:, :, 0]
     for _ in range(8):
@@ -152,13 +157,13 @@ def test_links_have_their_derivatives(leak: float, seed: int) -> None:
 
     def at(here: np.ndarray) -> tuple[float, np.ndarray]:
         gradient, hessian = np.zeros(6), np.zeros((6, 6))
-        link = link_form(family.arrays, anchor, here[:3], here[3:])
-        same = add_form(family.arrays, anchor, 1.0, here[:3], here[3:], gradient, hessian, True)
+        link = link_form(family.ratios, anchor, here[:3], here[3:])
+        same = add_form(family.ratios, anchor, 1.0, here[:3], here[3:], gradient, hessian, True)
         assert link == pytest.approx(same, rel=1e-9, abs=1e-18)
         return link, gradient
 
     gradient, hessian = none
-    add_form(family.arrays, anchor, 1.0, pose[:3], pose[3:], gradient, hessian, True)
+    add_form(family.ratios, anchor, 1.0, pose[:3], pose[3:], gradient, hessian, True)
     for i, e in enumerate(step * np.eye(6)):
         (up, more), (down, less) = at(pose + e), at(pose - e)
         assert gradient[i] == pytest.approx((up - down) / (2 * step), rel=1e-4, abs=1e-9)
@@ -169,11 +174,11 @@ def test_links_have_their_derivatives(leak: float, seed: int) -> None:
 def test_coordinates_turn_in_small_boxes(seed: int) -> None:
     """They follow the anchor there, by no more than their bound: otherwise nothing would be gained."""
     rng, family, _, _, anchor, centre, _ = case_of(seed, 0.0)
-    r, v = family.points_m[anchor] - centre, family.ground_axes[anchor]
+    r, v = family.ratios.points_m[anchor] - centre, family.ratios.ground_axes[anchor]
     if np.any(v) and np.linalg.norm(np.cross(r, v)) < 0.1 * np.linalg.norm(r):  # near the dipole's own null
         return
     way = turned_axes(family, anchor, centre, centre + rng.uniform(-0.01, 0.01, 3))
     boxes = boxes_at(centre[None], 0.01)
-    shear = shear_of(family, make_leaves(1, test=TOWARDS_POINT, point=anchor), boxes)
+    shear = shear_of(family.ratios, make_leaves(1, test=TOWARDS_POINT, point=anchor), boxes)
     assert shear.on[0]
     assert np.linalg.norm(way - np.eye(3), 2) <= shear.most.high[0, 0] * (1.0 + 1e-9)

@@ -61,7 +61,7 @@ class Case:
 
     def is_excluded(self, level: float) -> bool:
         """Returns whether the node is excluded at a level; its row keeps kind and multipliers."""
-        problem = self.family.arrays, self.family.domain, self.field.arrays
+        problem = self.family.ratios, self.family.domain, self.field.arrays
         goal, (stack, leaves) = Goal(np.inf, np.zeros(COLUMNS), 0.0), np.empty((2, 16, COLUMNS))
         stack[0], axis = self.row, np.empty(3)
         _, top, filled, boxes, _ = branch(*problem, level, goal, stack, 1, leaves, 0, 1, axis, axis)
@@ -75,19 +75,22 @@ class Case:
         """Returns the smallest ratio at poses, (n, 3) and (n, 3); minus infinity where one is not allowed."""
         family = self.family
         seen = axes[:, None]
-        if len(family.turn):
-            seen = np.einsum("jab,nb->nja", family.turn, axes)
-        r = family.points_m - positions[:, None]
+        if len(family.ratios.turn):
+            seen = np.einsum("jab,nb->nja", family.ratios.turn, axes)
+        r = family.ratios.points_m - positions[:, None]
         links = np.sum(np.cross(seen, r) ** 2, axis=-1) / np.sum(r**2, axis=-1) ** 2
-        entries = family.denominator_weight * links[:, family.denominator_point]
-        spans = zip(family.denominator_start[:-1], family.denominator_start[1:], strict=True)
+        entries = family.ratios.denominator_weight * links[:, family.ratios.denominator_point]
+        spans = zip(family.ratios.denominator_start[:-1], family.ratios.denominator_start[1:], strict=True)
         jamming = np.stack([np.sum(entries[:, a:b], axis=1) for a, b in spans], axis=1)
-        below = (family.denominator_isotropic + jamming)[:, family.denominator_of]
-        above = family.numerator_isotropic + family.numerator_weight * links[:, family.numerator_point]
+        below = (family.ratios.denominator_isotropic + jamming)[:, family.ratios.denominator_of]
+        above = (
+            family.ratios.numerator_isotropic
+            + family.ratios.numerator_weight * links[:, family.ratios.numerator_point]
+        )
         ratios = above / below
         allowed = self.airspace.clearance_m(positions) >= 0.0
-        away = np.linalg.norm(family.keep_out_points_m - positions[:, None], axis=-1)
-        allowed &= np.min(away, axis=1, initial=np.inf) >= family.keep_out_m
+        away = np.linalg.norm(family.domain.keep_out_points_m - positions[:, None], axis=-1)
+        allowed &= np.min(away, axis=1, initial=np.inf) >= family.domain.keep_out_m
         allowed &= self.holds(axes)
         return np.where(allowed, ratios.min(axis=1), -np.inf)
 
@@ -193,7 +196,7 @@ def some_field(rng: np.random.Generator, kind: str, family: Family) -> AxisField
     if kind == "vertical":
         return AxisField.vertical()
     if kind == "towards":
-        disturbers_m = family.points_m[family.denominator_point]
+        disturbers_m = family.ratios.points_m[family.ratios.denominator_point]
         return AxisField.towards(disturbers_m[0] if len(disturbers_m) else [30.0, 30.0, 1.0])
     return AxisField.broadside([3.0, 5.0, 0.0], [40.0, 20.0, 3.0])
 
@@ -239,7 +242,7 @@ def some_case(rng: np.random.Generator, *, family: str, field: str, border: str,
 
 def shuffle_multipliers(case: Case, rng: np.random.Generator) -> None:
     """Puts random multipliers into a case's row, of any size."""
-    row, ratios = case.row, len(case.family.numerator_point)
+    row, ratios = case.row, len(case.family.ratios.numerator_point)
     used = int(rng.integers(1, ratios + 1))
     row[COUNT], row[NU] = used, 0.0
     row[INDEX : INDEX + used] = rng.permutation(ratios)[:used]

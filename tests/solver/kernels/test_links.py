@@ -22,8 +22,8 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 def log_values(family: Family, p: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Returns the kernel's log ratios at a pose."""
-    out = np.empty(len(family.numerator_point))
-    log_ratios(family.arrays, p, u, np.empty(len(family.denominator_isotropic)), out)
+    out = np.empty(len(family.ratios.numerator_point))
+    log_ratios(family.ratios, p, u, np.empty(len(family.ratios.denominator_isotropic)), out)
     return out
 
 
@@ -31,22 +31,23 @@ def kernel_derivatives(
     family: Family, p: np.ndarray, u: np.ndarray, multipliers: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns the kernel's log ratios, their gradients and their weighted Hessian at a pose."""
-    ratios = len(family.numerator_point)
+    ratios = len(family.ratios.numerator_point)
     f, grads, hess = np.empty(ratios), np.empty((ratios, 6)), np.empty((6, 6))
-    work = np.empty((len(family.denominator_isotropic), 50))
-    derivatives(family.arrays, p, u, multipliers, f, grads, hess, work)
+    work = np.empty((len(family.ratios.denominator_isotropic), 50))
+    derivatives(family.ratios, p, u, multipliers, f, grads, hess, work)
     return f, grads, hess
 
 
 def exact_forms(family: Family, pose: list[Fraction]) -> tuple[list[Fraction], list[Fraction]]:
     """Returns every ratio's numerator and denominator at a pose (p, u), in exact rational arithmetic."""
+    ratios = family.ratios
     p, u = np.array(pose[:3]), np.array(pose[3:])
-    links = np.array([link(point, p, u, Fraction(family.leak)) for point in exact(family.points_m)])
-    above = exact(family.numerator_isotropic) + exact(family.numerator_weight) * links[family.numerator_point]
-    entries = exact(family.denominator_weight) * links[family.denominator_point]
-    sums = [sum(entries[a:b], Fraction(0)) for a, b in pairwise(family.denominator_start)]
-    below = exact(family.denominator_isotropic) + np.array(sums)
-    return list(above * (u @ u)), list(below[family.denominator_of] * (u @ u))
+    links = np.array([link(point, p, u, Fraction(ratios.leak)) for point in exact(ratios.points_m)])
+    above = exact(ratios.numerator_isotropic) + exact(ratios.numerator_weight) * links[ratios.numerator_point]
+    entries = exact(ratios.denominator_weight) * links[ratios.denominator_point]
+    sums = [sum(entries[a:b], Fraction(0)) for a, b in pairwise(ratios.denominator_start)]
+    below = exact(ratios.denominator_isotropic) + np.array(sums)
+    return list(above * (u @ u)), list(below[ratios.denominator_of] * (u @ u))
 
 
 def exact_derivatives(
@@ -67,7 +68,7 @@ def exact_derivatives(
         numerators, denominators = exact_forms(family, moved)
         return numerators + denominators
 
-    ratios = len(family.numerator_point)
+    ratios = len(family.ratios.numerator_point)
     middle = forms()
     up, down = ([forms((i, sign)) for i in range(6)] for sign in (1, -1))
     first = [[(up[i][k] - down[i][k]) / (2 * step) for i in range(6)] for k in range(2 * ratios)]
@@ -107,11 +108,11 @@ def test_log_ratios_by_dense_matrices(
     numerators, denominators = dense_forms(family, p)
     expected = np.log(
         np.einsum("i,kij,j->k", u, numerators, u)
-        / np.einsum("i,kij,j->k", u, denominators[family.denominator_of], u)
+        / np.einsum("i,kij,j->k", u, denominators[family.ratios.denominator_of], u)
     )
     np.testing.assert_allclose(log_values(family, p, u), expected, atol=1e-11)
     logs, out = np.empty(groups), np.empty(ratios)
-    assert log_objective(family.arrays, p, u, logs, out) == np.min(log_values(family, p, u))
+    assert log_objective(family.ratios, p, u, logs, out) == np.min(log_values(family, p, u))
 
 
 @pytest.mark.parametrize("offset", [1e-2, 1e-5, 1e-8])
@@ -121,7 +122,7 @@ def test_log_ratios_beside_the_null(offset: float, paper: Callable) -> None:
     rng = np.random.default_rng(3)
     for _ in range(20):
         p, _ = some_pose(rng)
-        u = family.points_m[2] - p
+        u = family.ratios.points_m[2] - p
         u += offset * np.linalg.norm(u) * rng.normal(size=3)
         numerators, denominators = exact_forms(family, [Fraction(float(x)) for x in (*p, *u)])
         expected = [math.log(n / d) for n, d in zip(numerators, denominators, strict=True)]
@@ -149,7 +150,7 @@ def test_derivatives_beside_the_null(ratio: float, offset: float, paper: Callabl
     """Beside the null the derivatives stay exact to rounding, seen against their own huge size."""
     family = build_family(paper(ratio))
     p = np.array([-2.24, 23.82, 8.0])
-    u = family.points_m[2] - p
+    u = family.ratios.points_m[2] - p
     u /= np.linalg.norm(u)
     u += offset * np.array([0.3, -0.8, 0.5])
     multipliers = np.array([0.6, 0.4])

@@ -15,17 +15,17 @@ from nullpose.solver.kernels.search.maximum_gain import maximum_gain_value
 
 def received(family: Family, p: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Returns the nodes' numerators (..., R) at unit axes (..., 3)."""
-    r = family.points_m[family.numerator_point] - p
+    r = family.ratios.points_m[family.ratios.numerator_point] - p
     across = np.cross(axes[..., None, :], r)
-    return family.numerator_weight * np.sum(across**2, axis=-1) / np.sum(r**2, axis=-1) ** 2
+    return family.ratios.numerator_weight * np.sum(across**2, axis=-1) / np.sum(r**2, axis=-1) ** 2
 
 
 def jamming(family: Family, p: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Returns the shared denominator (...) at unit axes (..., 3)."""
-    r = family.points_m[family.denominator_point] - p
+    r = family.ratios.points_m[family.ratios.denominator_point] - p
     across = np.cross(axes[..., None, :], r)
     return 1.0 + np.sum(
-        family.denominator_weight * np.sum(across**2, axis=-1) / np.sum(r**2, axis=-1) ** 2, axis=-1
+        family.ratios.denominator_weight * np.sum(across**2, axis=-1) / np.sum(r**2, axis=-1) ** 2, axis=-1
     )
 
 
@@ -60,7 +60,7 @@ def test_the_axis_serves_the_nodes_best(nodes: int, jammers: int, random_scene: 
         family = build_family(random_scene(rng, nodes, jammers, 10.0))
         p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
         axis = np.empty(3)
-        value = maximum_gain_value(family.arrays, p, axis)
+        value = maximum_gain_value(family.ratios, p, axis)
         assert np.linalg.norm(axis) == pytest.approx(1.0, abs=1e-14)
         level = float(np.min(received(family, p, axis)))
         best = best_level(family, p, rng)
@@ -78,9 +78,9 @@ def test_among_equal_axes_the_quietest_is_taken(nodes: int, random_scene: Callab
         family = build_family(random_scene(rng, nodes, 2, 10.0))
         p = rng.uniform([0.0, 0.0, 8.0], [100.0, 100.0, 30.0])
         axis = np.empty(3)
-        maximum_gain_value(family.arrays, p, axis)
-        r = family.points_m[:nodes] - p
-        reach = family.numerator_weight / np.sum(r**2, axis=1)
+        maximum_gain_value(family.ratios, p, axis)
+        r = family.ratios.points_m[:nodes] - p
+        reach = family.ratios.numerator_weight / np.sum(r**2, axis=1)
         worst = int(np.argmin(reach))
         if np.min(received(family, p, axis)) < reach[worst] * (1.0 - 1e-9):
             continue  # the others decide too, and the axis is a single one
@@ -104,7 +104,7 @@ def test_two_nodes_are_served_broadside(scene: Callable) -> None:
         two = scene(nodes, [(20.0, 60.0, 3.0)], jammer_powers_w=10.0)
         p = nodes.mean(axis=0) + 0.3 * np.cross(nodes[1] - nodes[0], rng.normal(size=3))
         axis = np.empty(3)
-        value = maximum_gain_value(build_family(two).arrays, p, axis)
+        value = maximum_gain_value(build_family(two).ratios, p, axis)
         # axes that serve a node to 1e-11 reach 3e-6 rad to both sides
         assert abs(axis @ maximum_gain_axis(two, p)) == pytest.approx(1.0, abs=1e-9)
         assert value == pytest.approx(math.log(np.min(maximum_gain_sinr(two, p))), abs=1e-4)

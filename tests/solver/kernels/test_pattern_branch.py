@@ -53,15 +53,15 @@ def random_family(rng: np.random.Generator) -> Family:
 
 def random_cell(rng: np.random.Generator, family: Family) -> np.ndarray:
     """Return a cell of any size, in any chart and on any face."""
-    cell = np.zeros(WARM + len(family.numerator_point))
+    cell = np.zeros(WARM + len(family.ratios.numerator_point))
     cell[:3] = rng.uniform([-40.0, -40.0, 12.0], [40.0, 40.0, 40.0])
     cell[3:6] = rng.uniform([-0.7, -0.7, -3.0], [0.7, 0.7, 3.0])
     size = 10.0 ** rng.uniform(-3.0, 0.0)
     cell[HALF : HALF + 3] = 20.0 * size * rng.uniform(size=3)
     cell[HALF + 3 : HALF + 6] = size * rng.uniform(size=3)
     cell[FACE], cell[CHART] = rng.integers(6), rng.integers(3)
-    cell[ANCHOR] = rng.integers(len(family.points_m))
-    cell[WARM:] = 1.0 / len(family.numerator_point)
+    cell[ANCHOR] = rng.integers(len(family.ratios.points_m))
+    cell[WARM:] = 1.0 / len(family.ratios.numerator_point)
     return cell
 
 
@@ -69,7 +69,7 @@ def rotation_at(family: Family, cell: np.ndarray) -> np.ndarray:
     """Return the rotation to the world from the antenna's axes at a cell's middle: any beats nothing."""
     point, position, rotation = cell.copy(), np.empty(3), np.empty((3, 3))
     point[HALF : HALF + 6] = 0.0
-    stack, problem = np.array([point] * 4), (family.arrays, family.domain, ARRAYS[0], ANY)
+    stack, problem = np.array([point] * 4), (family.ratios, family.domain, ARRAYS[0], ANY)
     code, *_ = branch_pattern(*problem, 0.0, -1.0, False, stack, 1, stack, 0, 1, position, rotation)
     assert code == BETTER
     np.testing.assert_array_equal(position, cell[:3])
@@ -88,11 +88,11 @@ def test_a_pose_keeps_its_cell(which: int, seed: int) -> None:
     inside[:6] += cell[HALF : HALF + 6] * rng.uniform(-1.0, 1.0, 6)
     rotation, value = rotation_at(family, inside), np.empty(1)
     state = np.append(inside[:3], rotation)
-    judge(family.arrays, family.domain, ARRAYS[which], state[None], value)
+    judge(family.ratios, family.domain, ARRAYS[which], state[None], value)
     level = float(np.exp(value[0])) * (1.0 - 1e-9)
     stack = np.empty((4000, len(cell)))
     stack[0] = cell
-    problem, pose = (family.arrays, family.domain, ARRAYS[which], ANY), (np.empty(3), np.empty((3, 3)))
+    problem, pose = (family.ratios, family.domain, ARRAYS[which], ANY), (np.empty(3), np.empty((3, 3)))
     code, top, *_ = branch_pattern(*problem, level, np.inf, False, stack, 1, stack, 0, 400, *pose)
     assert code != DONE
     assert top > 0
@@ -107,7 +107,7 @@ def test_rotations_are_rotations() -> None:
         rotation = rotation_at(family, cell)
         np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(rotation) == pytest.approx(1.0)
-        way = family.points_m[int(cell[ANCHOR])] - cell[:3]
+        way = family.ratios.points_m[int(cell[ANCHOR])] - cell[:3]
         seen = rotation.T @ way / np.linalg.norm(way)
         u, v = cell[3:5]
         there = np.array([np.sin(u) * np.cos(v), -np.sin(v), np.cos(u) * np.cos(v)])

@@ -41,8 +41,11 @@ def run(family: Family, field: AxisField, p: np.ndarray, u: np.ndarray) -> tuple
 
 def value_at(family: Family, p: np.ndarray, u: np.ndarray) -> float:
     """Returns the smallest log ratio at a pose."""
-    logs, out = np.empty(len(family.denominator_isotropic)), np.empty(len(family.numerator_point))
-    return log_objective(family.arrays, p, u, logs, out)
+    logs, out = (
+        np.empty(len(family.ratios.denominator_isotropic)),
+        np.empty(len(family.ratios.numerator_point)),
+    )
+    return log_objective(family.ratios, p, u, logs, out)
 
 
 def log_ratio_slopes(family: Family, p: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -50,8 +53,9 @@ def log_ratio_slopes(family: Family, p: np.ndarray, u: np.ndarray) -> tuple[np.n
 
     A step of 1e-30 along the imaginary axis needs no subtraction, so nothing is lost to its smallness.
     """
+    ratios = family.ratios
     poses = np.tile(np.concatenate([p, u]).astype(complex), (6, 1)) + 1e-30j * np.eye(6)
-    r = family.points_m - poses[:, None, :3]
+    r = ratios.points_m - poses[:, None, :3]
     u_c = poses[:, None, 3:]
     cross = np.stack(
         [
@@ -62,9 +66,9 @@ def log_ratio_slopes(family: Family, p: np.ndarray, u: np.ndarray) -> tuple[np.n
     )
     links = np.sum(cross**2, axis=-1) / np.sum(r**2, axis=-1) ** 2  # (6, points)
     size = np.sum(poses[:, 3:] ** 2, axis=-1)[:, None]
-    tops = family.numerator_isotropic * size + family.numerator_weight * links[:, family.numerator_point]
-    jamming = np.sum(family.denominator_weight * links[:, family.denominator_point], axis=-1, keepdims=True)
-    logs = np.log(tops) - np.log(family.denominator_isotropic * size + jamming)
+    tops = ratios.numerator_isotropic * size + ratios.numerator_weight * links[:, ratios.numerator_point]
+    jamming = np.sum(ratios.denominator_weight * links[:, ratios.denominator_point], axis=-1, keepdims=True)
+    logs = np.log(tops) - np.log(ratios.denominator_isotropic * size + jamming)
     return logs[0].real, logs.imag.T / 1e-30
 
 
@@ -75,7 +79,9 @@ def stationarity(family: Family, field: AxisField, p: np.ndarray, u: np.ndarray)
     ratios that are smallest, plus outward pushes of the faces and balls that are met, is to be zero.
     """
     logs, slopes = log_ratio_slopes(family, p, u)
-    length = float(np.min(np.linalg.norm(family.points_m - p, axis=1)))  # gives both halves the same units
+    length = float(
+        np.min(np.linalg.norm(family.ratios.points_m - p, axis=1))
+    )  # gives both halves the same units
     if field.is_free:
         frame = np.linalg.svd(u[None])[2][1:]
         gradients = np.hstack([length * slopes[:, :3], slopes[:, 3:] @ frame.T])
@@ -142,7 +148,7 @@ def test_the_paper_under_a_million_times_the_power(paper: Callable) -> None:
 def hundred_ends(family: Family) -> np.ndarray:
     """Returns the values that a hundred starts within 29 m of both nodes end at, half with a random axis."""
     rng = np.random.default_rng(17)
-    nodes = family.points_m[:2]
+    nodes = family.ratios.points_m[:2]
     ends = []
     while len(ends) < 100:
         p = rng.uniform([-30.0, 20.0, 8.0], [30.0, 30.0, 16.0])
@@ -153,7 +159,7 @@ def hundred_ends(family: Family) -> np.ndarray:
         u = rng.normal(size=3)
         u /= np.linalg.norm(u)
         if len(ends) % 2:
-            best_axis(family.arrays, p, u)
+            best_axis(family.ratios, p, u)
         ends.append(polished(family, AxisField.free(), p, u)[0])
     return np.array(ends)
 
@@ -162,7 +168,7 @@ def test_a_fixed_position_leaves_the_axis(paper: Callable) -> None:
     """Where nothing but the axis is free, the polish finds the best axis of that position."""
     family = build_family(paper(10.0, altitude_m=(9.0, 9.0), x_m=(1.0, 1.0), y_m=(21.0, 21.0)))
     axis = np.empty(3)
-    best = best_axis(family.arrays, np.array([1.0, 21.0, 9.0]), axis)
+    best = best_axis(family.ratios, np.array([1.0, 21.0, 9.0]), axis)
     ends = []
     rng = np.random.default_rng(4)
     for _ in range(20):
@@ -180,7 +186,7 @@ def test_a_keep_out_ball_that_binds(paper: Callable) -> None:
     family = build_family(scene)
     value, p, u = polished(family, AxisField.free(), np.array([-15.0, 20.0, 12.0]), np.array([1.0, 0.0, 0.2]))
     assert inside(family, p)
-    distances = np.linalg.norm(family.points_m - p, axis=1)
+    distances = np.linalg.norm(family.ratios.points_m - p, axis=1)
     assert distances.min() == pytest.approx(26.5, abs=1e-8)
     assert stationarity(family, AxisField.free(), p, u) < 1e-4
     rng = np.random.default_rng(6)
@@ -189,7 +195,7 @@ def test_a_keep_out_ball_that_binds(paper: Callable) -> None:
         around[:, 2] = np.clip(around[:, 2], 8.0, 30.0)
         turned = u + size / 30.0 * rng.normal(size=(20_000, 3))
         turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-        allowed = np.all(np.linalg.norm(around[:, None] - family.points_m, axis=-1) >= 26.5, axis=1)
+        allowed = np.all(np.linalg.norm(around[:, None] - family.ratios.points_m, axis=-1) >= 26.5, axis=1)
         nearby = np.min(sinr(scene, around[allowed], turned[allowed]), axis=1)
         assert nearby.max() <= math.exp(value) * (1.0 + 1e-9)
 

@@ -18,7 +18,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 def box_of(family: Family, level: float) -> tuple[np.ndarray, np.ndarray]:
     """Returns the box outside which no pose reaches a log ratio."""
     low, high = np.empty(3), np.empty(3)
-    cut_box(family.arrays, family.low_m, family.high_m, level, low, high)
+    cut_box(family.ratios, family.domain.low_m, family.domain.high_m, level, low, high)
     return low, high
 
 
@@ -32,7 +32,7 @@ def test_no_better_pose_lies_outside_the_box(
     family = build_family(random_scene(rng, nodes, jammers, 10.0 ** rng.uniform(-2.0, 3.0)))
     positions = rng.uniform([-100.0, -100.0, 8.0], [200.0, 200.0, 30.0], (60, 3))
     axis = np.empty(3)
-    values = np.array([best_axis(family.arrays, p, axis) for p in positions])
+    values = np.array([best_axis(family.ratios, p, axis) for p in positions])
     for level in np.quantile(values, [0.0, 0.3, 0.7, 1.0]):
         low, high = box_of(family, level - 1e-12)
         better = positions[values >= level]
@@ -48,7 +48,7 @@ def test_no_better_pose_lies_outside_the_box_of_a_secrecy_family(seed: int, rand
     logs, out = np.empty(2), np.empty(3)
     values = np.array(
         [
-            log_objective(family.arrays, p, u, logs, out)
+            log_objective(family.ratios, p, u, logs, out)
             for p, u in zip(positions, rng.normal(size=(200, 3)), strict=True)
         ]
     )

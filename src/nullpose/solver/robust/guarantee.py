@@ -130,7 +130,7 @@ class Inner:
         self.scenario = scenario
         self.family = build_family(scenario, any_channel=True)
         self.reach_m = float(scenario.receiver.position_error_m)
-        channels = self.family.channels
+        channels = self.family.ratios.channels
         require_usage(
             self.reach_m == 0.0 or not np.any(channels[:, 0] == BY_ELEVATION),
             f"receiver.position_error_m: given {self.reach_m:g} with line of sight by elevation; allowed "
@@ -139,10 +139,10 @@ class Inner:
         self.angle_rad = math.radians(scenario.receiver.attitude_error_deg)
         self.none = ErrorCase.none(scenario)
         self.moved = f"{scenario.interferer}_offsets_m"
-        axes = self.family.ground_axes
-        self.dipoles = axes if len(axes) else np.zeros_like(self.family.points_m)
+        axes = self.family.ratios.ground_axes
+        self.dipoles = axes if len(axes) else np.zeros_like(self.family.ratios.points_m)
         self.radii = point_uncertainty_m(scenario)
-        self.is_closed = (self.family.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
+        self.is_closed = (self.family.ratios.leak == 0.0) & ~np.any(self.dipoles, axis=1)  # lemma 2
         if len(channels):
             self.is_closed &= channels[:, 0] == CONSTANT
         self.is_closed |= self.radii == 0.0
@@ -165,7 +165,7 @@ class Inner:
     @property
     def n_ratios(self) -> int:
         """How many ratios the nominal family has."""
-        return len(self.family.numerator_point)
+        return len(self.family.ratios.numerator_point)
 
     def _worst(
         self, ratio: int, p: FloatArray, u: FloatArray, accuracy: float, nominal: FloatArray
@@ -174,21 +174,21 @@ class Inner:
         from nullpose.solver.kernels.search.set_links import Sets
         from nullpose.solver.kernels.search.worst_case import Errors, Ratio
 
-        family = self.family
-        group = family.denominator_of[ratio]
-        entries = slice(family.denominator_start[group], family.denominator_start[group + 1])
-        points = family.denominator_point[entries]
-        noise, node = float(family.denominator_isotropic[group]), family.numerator_point[ratio]
+        ratios = self.family.ratios
+        group = ratios.denominator_of[ratio]
+        entries = slice(ratios.denominator_start[group], ratios.denominator_start[group + 1])
+        points = ratios.denominator_point[entries]
+        noise, node = float(ratios.denominator_isotropic[group]), ratios.numerator_point[ratio]
         # a copy, also of none: a kernel is compiled again for what is read-only
-        channels = family.channels[[*points, node] if len(family.channels) else []]
+        channels = ratios.channels[[*points, node] if len(ratios.channels) else []]
         numbers = Ratio(
-            isotropic=float(family.numerator_isotropic[ratio]) / noise,
-            weight=float(family.numerator_weight[ratio]) / noise,
-            node=tuple((family.points_m[node] - p).tolist()),
-            shares=family.denominator_weight[entries] / noise,
-            centres=family.points_m[points] - p,
+            isotropic=float(ratios.numerator_isotropic[ratio]) / noise,
+            weight=float(ratios.numerator_weight[ratio]) / noise,
+            node=tuple((ratios.points_m[node] - p).tolist()),
+            shares=ratios.denominator_weight[entries] / noise,
+            centres=ratios.points_m[points] - p,
             sets=Sets(self.radii[points], self.dipoles[points], channels),
-            leak=family.leak,
+            leak=ratios.leak,
             dipole=tuple(self.dipoles[node].tolist()),
         )
         errors = Errors(_frame(u), math.cos(self.angle_rad), math.sin(self.angle_rad), self.reach_m)
