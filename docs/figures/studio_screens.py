@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT))  # benchmarks are not installed: hence imports bel
 from benchmarks.chromium import opened  # noqa: E402
 
 from nullpose import load  # noqa: E402
-from nullpose.studio.answer import LeastTilt  # noqa: E402
+from nullpose.studio.answer import TiltNotice  # noqa: E402
 from nullpose.studio.case import case_named  # noqa: E402
 from nullpose.studio.server import studio  # noqa: E402
 from nullpose.studio.session import Session  # noqa: E402
@@ -47,7 +47,7 @@ def at_rest(page: Any, session: Session) -> None:
         session: the server's side.
     """
     page.mouse.move(300, 30)  # away from what would show its help
-    while session.state.present(LeastTilt) is None:  # the last that is worked out
+    while session.state.present(TiltNotice) is None:  # the last that is worked out
         page.wait_for_timeout(200)
     before, now = b"", page.screenshot()
     for _ in range(_MOST_LOOKS):

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import wraps
+from functools import partial, wraps
 from inspect import Parameter, signature
 from numbers import Integral, Real
 from reprlib import repr as shortened
@@ -67,18 +67,42 @@ class UsageError(NullposeError, ValueError):
     """A request that does not fit its scenario or its options, such as a null without a jammer."""
 
 
-def require_usage(holds: object, message: str) -> None:
-    """Raise a UsageError unless a condition holds.
+def require(kind: type[NullposeError], holds: object, message: str) -> None:
+    """Raise an error of a kind unless a condition holds.
 
     Args:
+        kind: of the error.
         holds: the condition.
         message: what was given, what is allowed and what to try.
 
     Raises:
-        UsageError: it does not hold.
+        NullposeError: it does not hold.
     """
     if not holds:
-        raise UsageError(message)
+        raise kind(message)
+
+
+require_usage = partial(require, UsageError)
+"""Raise a UsageError unless a condition holds, given with the message."""
+
+
+def require_number(noun: str, number: int, least: int, most: int | None = None) -> int:
+    """Return a whole number, as of a scene or of workers, unless it is out of range.
+
+    Args:
+        noun: in the message.
+        number: to check.
+        least: the smallest allowed.
+        most: the largest allowed; None for any.
+
+    Raises:
+        UsageError: it is out of range, or no whole number.
+    """
+    allowed = f"a whole number of at least {least}" if most is None else f"{least} to {most}"
+    is_whole = isinstance(number, int) and not isinstance(number, bool)
+    fits = is_whole and least <= number <= (number if most is None else most)
+    require_usage(fits, f"{noun}: given {number!r}; allowed: {allowed}")
+    return number
 
 
 def install_command(extra: str) -> str:

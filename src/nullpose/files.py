@@ -17,7 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, TypeAlias
 
-from nullpose.errors import Fault, OutputError, ScenarioError
+from nullpose.errors import Fault, OutputError, ScenarioError, require
 
 PlainTable: TypeAlias = dict[str, Any]
 """A table of plain values, as JSON and TOML hold them."""
@@ -114,10 +114,11 @@ def check_outputs(inputs: Mapping[str, Path], outputs: Iterable[tuple[str, Path 
         if path is None:
             continue
         for other, used in taken:
-            if _is_same(path, used):
-                raise OutputError(
-                    f"{option}: {path} is the file of {other} too, which would be lost; give another name"
-                )
+            require(
+                OutputError,
+                not _is_same(path, used),
+                f"{option}: {path} is the file of {other} too, which would be lost; give another name",
+            )
         with refusals(f"{option}: cannot write {path}"):
             prepare_folder(_target(path).parent)
         taken.append((option, path))

@@ -17,7 +17,7 @@ from nullpose.errors import ScenarioError, SolveError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solver import Status, solve
-from nullpose.studio.answer import Answer, Event, LeastTilt, PowerCurve, Progress
+from nullpose.studio.answer import Answer, Event, PowerCurve, Progress, TiltNotice
 from nullpose.studio.card import card_html
 from nullpose.studio.case import CASES, OPTIMUM, case_named
 from nullpose.studio.session import History, Session
@@ -95,7 +95,7 @@ def test_maps_and_curve_follow_at_rest(session: Session) -> None:
     assert curve is not None
     assert curve.complete
     assert curve.version == session.state.version
-    wait(lambda: session.state.present(LeastTilt) is not None)
+    wait(lambda: session.state.present(TiltNotice) is not None)
     (upright, *_) = least_tilt(session.state.scenario).mounts
     card = card_html(session.state)
     assert f"Least tilt {upright.suffices_deg:.1f}\N{DEGREE SIGN} (mount 0\N{DEGREE SIGN}) for 99 %" in card

@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from nullpose.certificate.certificate import COLUMNS, Certificate, Leaves, Tree
-from nullpose.errors import CertificateError, ScenarioError
+from nullpose.errors import CertificateError, ScenarioError, require
 from nullpose.files import parse_json, read_bytes, replacing
 from nullpose.scenario import Scenario
 from nullpose.scenario.wording import printable
@@ -30,6 +30,7 @@ _GZIP = 31  # for zlib: a header and a checksum as gzip writes them
 _START = 4096  # bytes in which the format has to be named
 _MOST_BYTES = 64_000_000  # three times what the most leaves that a proof keeps take
 _DEEPEST = 4  # tables below stand on one line
+_require = partial(require, CertificateError)
 
 
 def write_certificate(certificate: Certificate, path: Path) -> None:
@@ -93,11 +94,6 @@ def _unpacked(data: bytes) -> bytes:
             "is no certificate: it is cut off, or something follows it",
         )
     return data
-
-
-def _require(holds: object, message: str) -> None:
-    if not holds:
-        raise CertificateError(message)
 
 
 def scenario_digest(data: Mapping[str, object]) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.channel.convex import FloatArray
 from nullpose.channel.model import CUSTOM, LinkChannel
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, require_usage
 
 _PAIRS = 4000  # of links at which the bounds are tried
 _DISTANCES_M = 1.0, 1e5
@@ -106,11 +106,11 @@ class Custom:
         """
         links = np.broadcast_arrays(distance_m, elevation_rad, azimuth_rad)
         gain = np.asarray(self.gain(*links), dtype=float)
-        if gain.shape not in ((), links[0].shape) or not np.all(np.isfinite(gain) & (gain > 0.0)):
-            raise UsageError(
-                f"{self.name}: the function of the gain must return a positive number for each link, from "
-                "arrays of distances, elevations and azimuths"
-            )
+        require_usage(
+            gain.shape in ((), links[0].shape) and np.all(np.isfinite(gain) & (gain > 0.0)),
+            f"{self.name}: the function of the gain must return a positive number for each link, from "
+            "arrays of distances, elevations and azimuths",
+        )
         return np.asarray(gain * links[0] ** 2)
 
     def excess_range(

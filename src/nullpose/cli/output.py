@@ -12,7 +12,7 @@ import typer
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.printing import say
-from nullpose.errors import SolveError, require_usage
+from nullpose.errors import SolveError, require, require_usage
 
 if TYPE_CHECKING:
     from nullpose.cli.options import SceneOptions
@@ -64,8 +64,7 @@ def tell(
         show(shown, broken=broken)
         for path in files:
             say(f"Wrote {path}", err=isinstance(shown, str))  # a text may go to a file of its own
-    if fault:
-        raise SolveError(fault)
+    require(SolveError, not fault, fault)
     if getattr(found, "interrupted", False):
         raise typer.Exit(INTERRUPTED)
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import GroundAntennas
 from nullpose.channel import PointChannels
+from nullpose.errors import require_usage
 from nullpose.physics.error_case import ErrorCase
 from nullpose.physics.pose import Pose
 from nullpose.physics.sinr import received_power_w
@@ -45,12 +46,12 @@ def element_positions(
         Array of shape ``(..., K, 3)``, the centre of each dipole.
 
     Raises:
-        ValueError: another layout, or no element.
+        UsageError: another layout, or no element.
     """
-    if layout not in ("linear", "circular") or elements < 1:
-        raise ValueError(
-            f"an array takes one element or more, linear or circular; given {elements!r}, {layout!r}"
-        )
+    require_usage(
+        layout in ("linear", "circular") and elements >= 1,
+        f"an array takes one element or more, linear or circular; given {elements!r}, {layout!r}",
+    )
     n = np.arange(elements)
     if layout == "linear" or elements == 1:
         along, across = spacing_wavelengths * (n - 0.5 * (elements - 1)), np.zeros(elements)

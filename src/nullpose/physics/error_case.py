@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nullpose.errors import require_usage
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 
@@ -36,10 +37,10 @@ class ErrorCase:
         for field in fields(self):
             array = np.array(getattr(self, field.name), dtype=float)
             wanted = shapes.get(field.name, (*array.shape[-2:-1], 3))
-            if array.shape[-len(wanted) :] != wanted or not np.all(np.isfinite(array)):
-                raise ValueError(
-                    f"error case {field.name} must be finite, of shape {wanted}; given {array!r}"
-                )
+            require_usage(
+                array.shape[-len(wanted) :] == wanted and np.all(np.isfinite(array)),
+                f"error case {field.name} must be finite, of shape {wanted}; given {array.tolist()}",
+            )
             array.flags.writeable = False
             object.__setattr__(self, field.name, array)
 

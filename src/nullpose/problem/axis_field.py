@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.errors import require_usage
 from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS, FREE_AXIS, NARROW_AXIS, Axes
 from nullpose.scenario.arrays import read_only
 
@@ -41,12 +42,16 @@ class AxisField:
     def __post_init__(self) -> None:
         for name, shape in (("offset", (3,)), ("matrix", (3, 3))):
             array = np.array(getattr(self, name), dtype=float)
-            if array.shape != shape or not np.all(np.isfinite(array)):
-                raise ValueError(f"axis field {name} must be finite, of shape {shape}; given {array!r}")
+            require_usage(
+                array.shape == shape and np.all(np.isfinite(array)),
+                f"axis field {name} must be finite, of shape {shape}; given {array.tolist()}",
+            )
             object.__setattr__(self, name, read_only(array, shape))
         low, high = self.band
-        if not 0.0 <= low <= high <= 1.0:
-            raise ValueError(f"axis field band must be 0 <= low <= high <= 1; given {self.band!r}")
+        require_usage(
+            0.0 <= low <= high <= 1.0,
+            f"axis field band must be 0 <= low <= high <= 1; given {self.band!r}",
+        )
 
     @classmethod
     def free(cls) -> AxisField:

@@ -18,7 +18,7 @@ from nullpose.problem.axis_field import AxisField
 from nullpose.scenario import Array, Scenario
 from nullpose.solver.array_search import ArraySearch
 from nullpose.solver.options import SolveOptions
-from nullpose.solver.result import Answer, Stats
+from nullpose.solver.result import BoundedPose, Stats
 from nullpose.solver.solve_and_prove import solve_and_prove
 
 _MOST_BOXES = 300_000
@@ -60,7 +60,7 @@ class ArrayDetails:
         return {"array": self.array.to_dict() | {"combining": "digital", "weights": weights}}
 
 
-def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answer:
+def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> BoundedPose:
     """Find the best position, yaw and combining of an array of upright dipoles on a level vehicle.
 
     Maximises the smallest SINR over the nodes, each divided by what the node requires if any does. Every
@@ -87,7 +87,7 @@ def solve_array(scenario: Scenario, array: Array, options: SolveOptions) -> Answ
     places = placed_elements(scenario, pose)
     links = links_of(scenario, with_margins(scenario, digital_sinr(scenario, pose.position_m, places)))
     reached = bound is None or bound.value <= math.exp(search.best) * (1.0 + options.target)
-    return Answer(
+    return BoundedPose(
         scheme="array-digital",
         pose=pose,
         links=links,

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from nullpose.errors import SolveError
+from nullpose.errors import SolveError, require
 from nullpose.objectives import FloatArray
 from nullpose.physics.array import element_positions
 from nullpose.problem.axis_field import AxisField
@@ -78,8 +78,7 @@ class ArraySearch(EpigraphSearch):
         if not self.ends:
             self.start_from(multistart(self.family, AxisField.vertical(), seed=self.seed))
         self.ends.append(self.run(_DRAWN, _CLIMBED))
-        if not self.best > -math.inf:
-            raise SolveError(NOT_RECEIVED)
+        require(SolveError, self.best > -math.inf, NOT_RECEIVED)
 
     def search_on(self) -> None:
         """Search until enough searches agree, or until there have been too many."""

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from nullpose.errors import UsageError
+from nullpose.errors import UsageError, require_usage
 from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
@@ -19,7 +19,7 @@ from nullpose.scenario import Scenario
 from nullpose.solver.multistart import Incumbent
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.position_search import PositionSearch
-from nullpose.solver.result import Answer, Stats
+from nullpose.solver.result import BoundedPose, Stats
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
@@ -28,7 +28,7 @@ _WIDE = 1.1  # bound over value, beyond which a proof that met a limit was not a
 
 def solve_by_scheme(
     scenario: Scenario, scheme: Scheme, null_jammer: str | None, options: SolveOptions
-) -> Answer:
+) -> BoundedPose:
     """Solve a scenario with one antenna under a scheme.
 
     Args:
@@ -52,7 +52,7 @@ def solve_by_scheme(
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = evaluate(scenario, pose)
     is_verifiable = outcome.proofs and fields is not None and scenario.prisms is None
-    return Answer(
+    return BoundedPose(
         scheme=scheme,
         pose=pose,
         links=links,
@@ -117,8 +117,10 @@ def solve_scheme(
         UsageError: no jammer has that name.
         SolveError: no pose reaches every node.
     """
-    if null_jammer is not None and null_jammer not in (names := scenario.jammer_names):
-        raise UsageError(f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(names)}")
+    require_usage(
+        null_jammer in (None, *scenario.jammer_names),
+        f"null jammer: given {null_jammer!r}; the scenario's jammers are {', '.join(scenario.jammer_names)}",
+    )
     if scenario.objective_record.of_nodes is not None:
         from nullpose.solver.custom_objective import solve_by_function  # and SciPy with it
 

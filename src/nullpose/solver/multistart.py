@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nullpose.errors import SolveError
+from nullpose.errors import SolveError, require
 from nullpose.objectives import FloatArray
 from nullpose.problem.airspace import loosened
 from nullpose.problem.axis_field import AxisField
@@ -174,8 +174,8 @@ def _multistart(family: Family, axis_field: AxisField, seed: int, settings: Sear
     if not math.isfinite(found.log_value):  # what is allowed may be of no width: a point, a line or a wall
         places = np.vstack([places, _corners(family.domain)])
         found = _run(loosened(family, BORDER_M), axis_field, places, seed, settings)
-        if not math.isfinite(found.log_value):
-            raise SolveError(NOT_RECEIVED if found.evaluations else NO_POSITION)
+        reason = NOT_RECEIVED if found.evaluations else NO_POSITION
+        require(SolveError, math.isfinite(found.log_value), reason)
     return found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from nullpose.errors import SolveError
+from nullpose.errors import SolveError, require
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.scenario import Scenario
@@ -118,12 +118,13 @@ def status_of(objective: Objective, requested_gap: float, reason: str) -> tuple[
         return Status.BEST_FOUND, reason
     if gap <= requested_gap:
         return Status.CERTIFIED, reason if reason == INTERRUPT else ""
-    if not reason and gap > requested_gap + _ROUNDING * (1.0 + requested_gap):
-        raise SolveError(
-            f"the proof reached a relative gap of {requested_gap:g}, but the reported value "
-            f"{objective.value!r} and bound {objective.upper_bound!r} are {gap:.3g} apart; "
-            "this is a fault of nullpose: please report it with the scenario"
-        )
+    require(
+        SolveError,
+        reason or not gap > requested_gap + _ROUNDING * (1.0 + requested_gap),
+        f"the proof reached a relative gap of {requested_gap:g}, but the reported value "
+        f"{objective.value!r} and bound {objective.upper_bound!r} are {gap:.3g} apart; "
+        "this is a fault of nullpose: please report it with the scenario",
+    )
     return Status.GAP_NOT_REACHED, reason or "the rounding of value and bound"
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
-from nullpose.errors import require_usage
+from nullpose.errors import require_number, require_usage
 from nullpose.objectives import LEAST_RATE_BPS_HZ, Quantity
 from nullpose.scenario import Scenario
 
@@ -86,10 +86,10 @@ class SolveOptions:
         require_usage(
             self.time_limit_s > 0.0, f"time limit: given {self.time_limit_s!r}; allowed: more than 0 seconds"
         )
-        _require_whole("node limit", self.node_limit, 1)
-        _require_whole("seed", self.seed, 0)
+        require_number("node limit", self.node_limit, 1)
+        require_number("seed", self.seed, 0)
         if self.threads is not None:
-            _require_whole("threads", self.threads, 1)
+            require_number("threads", self.threads, 1)
 
     def of(self, scenario: Scenario, gap: float | None = None) -> SolveOptions:
         """Fill in what the options leave to a scenario: the gap, and whether it is one of a rate.
@@ -124,10 +124,3 @@ class SolveOptions:
     def settings(self) -> dict[str, float]:
         """The gap for a result's provenance; nothing without a proof."""
         return {"gap": self.target} if self.certify else {}
-
-
-def _require_whole(name: str, value: object, least: int) -> None:
-    require_usage(
-        not isinstance(value, bool) and isinstance(value, int) and value >= least,
-        f"{name}: given {value!r}; allowed: a whole number of at least {least}",
-    )

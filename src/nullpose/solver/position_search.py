@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nullpose.errors import SolveError
+from nullpose.errors import SolveError, require
 from nullpose.objectives import FloatArray
 from nullpose.problem.family import Family
 from nullpose.solver.local_search import LocalSearch
@@ -42,8 +42,7 @@ class PositionSearch(LocalSearch):
         Raises:
             SolveError: the objective is minus infinity at every position tried.
         """
-        if not self.run(_DRAWN, _CLIMBED) > -math.inf:
-            raise SolveError(NOT_RECEIVED)
+        require(SolveError, self.run(_DRAWN, _CLIMBED) > -math.inf, NOT_RECEIVED)
 
     def orient(self, positions_m: FloatArray) -> FloatArray:
         """Return the positions, which are the states."""

@@ -61,7 +61,7 @@ class Details(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Answer:
+class BoundedPose:
     """What a way of solving finds, from which the result is made.
 
     Args:

@@ -76,7 +76,7 @@ class Notice(Event):
     words: str
 
 
-class LeastTilt(Notice):
+class TiltNotice(Notice):
     """The least tilt that the vehicle needs, in words; empty where nothing is known of it."""
 
 

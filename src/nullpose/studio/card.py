@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from nullpose.report.numbers import MINUS
 from nullpose.solver import Status
-from nullpose.studio.answer import LeastTilt, Progress, per_cent
+from nullpose.studio.answer import Progress, TiltNotice, per_cent
 from nullpose.studio.camera import centre_of_m
 from nullpose.studio.field_map import Scale
 from nullpose.studio.look import css, scale_colours
@@ -26,7 +26,7 @@ def card_html(state: State) -> str:
     """
     scale = state.scale and _scale(state, state.scale)
     return str(
-        macros().card(state, proof(state), state.present(LeastTilt), scale, centre_of_m(state.scenario))
+        macros().card(state, proof(state), state.present(TiltNotice), scale, centre_of_m(state.scenario))
     )
 
 

@@ -24,7 +24,7 @@ RING = either("#d55e00", "#ff8a3c")
 _Points = list[tuple[float, float]]
 
 
-class _Frame(NamedTuple):
+class _ValueRange(NamedTuple):
     """The values at the lower and the upper edge of the drawing."""
 
     low: float
@@ -73,12 +73,12 @@ def power_plot_svg(
     return str(template.plot(state, unit, curves, powers, values, now, RING))
 
 
-def _frame(values: list[float], value: float | None) -> _Frame:
+def _frame(values: list[float], value: float | None) -> _ValueRange:
     now = [value] if value is not None and math.isfinite(value) else []
     high = max([*values, *now], default=5.0)
     low = min([max(min([*values, *now], default=-5.0), high - _MOST_SPAN), *now])
     margin = max(0.5, 0.08 * (high - low))
-    return _Frame(low - margin, high + margin)
+    return _ValueRange(low - margin, high + margin)
 
 
 def _lines(curve: PowerCurve) -> dict[str, _Points]:
@@ -90,7 +90,7 @@ def _lines(curve: PowerCurve) -> dict[str, _Points]:
     return {scheme: points for scheme, points in lines.items() if points}
 
 
-def _curve(scheme: str, points: Iterable[tuple[float, float]], frame: _Frame) -> dict[str, object]:
+def _curve(scheme: str, points: Iterable[tuple[float, float]], frame: _ValueRange) -> dict[str, object]:
     look = curve_of(scheme)
     return {
         "name": Scheme(scheme).record.short,

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from nullpose.solver import Scheme, SolveKeywords, solve
-from nullpose.studio.answer import Answer, LeastTilt, PowerCurve, answer_of, tilt_words, with_errors
+from nullpose.studio.answer import Answer, PowerCurve, TiltNotice, answer_of, tilt_words, with_errors
 from nullpose.studio.case import OPTIMUM, PoseCase
 from nullpose.studio.state import POWER_DB, State
 from nullpose.study import ResultRow, ResultTable
@@ -74,7 +74,7 @@ def proved_answers(
         yield answer_of(state.version, case, guarded)
 
 
-def least_tilts(state: State, go_on: Callable[..., None]) -> Iterator[LeastTilt]:
+def least_tilts(state: State, go_on: Callable[..., None]) -> Iterator[TiltNotice]:
     """Yield the least tilt that the chosen case's vehicle needs; no words for a robust case or a pattern.
 
     Args:
@@ -86,7 +86,7 @@ def least_tilts(state: State, go_on: Callable[..., None]) -> Iterator[LeastTilt]
         mount_deg = 0.0 if scenario.airframe is None else scenario.airframe.mount_deg
         search = tilt_search(scenario, _SHARE, _Watched(time_limit_s=_TILT_LIMIT_S, on_progress=go_on))
         words = tilt_words(search.sides(mount_deg), _SHARE)
-    yield LeastTilt(version=state.version, case=None, words=words)
+    yield TiltNotice(version=state.version, case=None, words=words)
 
 
 def power_curves(state: State, go_on: Callable[[], None] = lambda: None) -> Iterator[PowerCurve]:

@@ -27,7 +27,7 @@ _PATHS = (  # in the order that is usual in a file
 
 
 @dataclass(slots=True)
-class _Block:
+class _TomlBlock:
     """A table of a file: what stands before it, the comments directly above it, its header, its keys."""
 
     path: str
@@ -64,7 +64,7 @@ def _without_files(text: str) -> str:
     return _FILES.sub("", _joined(blocks)[:-1])
 
 
-def _joined(blocks: list[_Block]) -> str:
+def _joined(blocks: list[_TomlBlock]) -> str:
     return "".join(f"{block.gap}{block.lead}{block.header}{block.body}" for block in blocks)
 
 
@@ -87,13 +87,13 @@ def _updated(text: str, old: PlainTable, new: PlainTable) -> str:
     return _joined(blocks).rstrip("\n") + text[len(text.rstrip("\n")) :]
 
 
-def _blocks(text: str) -> list[_Block]:
+def _blocks(text: str) -> list[_TomlBlock]:
     """Return the blocks of a file; the first has the keys above all headers, the last what ends the file."""
     texts = _HEADER.split(text)
     bodies, gaps, leads = zip(*(_PARTS.findall(part)[0] for part in texts[::2]), strict=True)
     headers = ["", *texts[1::2], ""]
     paths = [re.sub(r"#.*|[^\w.]", "", header) for header in headers]
-    return list(map(_Block, paths, ["", *gaps], ["", *leads], headers, [*bodies, ""]))
+    return list(map(_TomlBlock, paths, ["", *gaps], ["", *leads], headers, [*bodies, ""]))
 
 
 def _tables(values: Any, path: str) -> list[PlainTable]:
@@ -103,7 +103,7 @@ def _tables(values: Any, path: str) -> list[PlainTable]:
     return [table for table in (values if isinstance(values, list) else [values]) if isinstance(table, dict)]
 
 
-def _update(blocks: list[_Block], path: str, old: list[PlainTable], new: list[PlainTable]) -> None:
+def _update(blocks: list[_TomlBlock], path: str, old: list[PlainTable], new: list[PlainTable]) -> None:
     """Bring the tables of one path up to date."""
     members, stay = [block for block in blocks[:-1] if block.path == path], _staying(old, new)
     if len(members) != len(old):
@@ -121,7 +121,7 @@ def _update(blocks: list[_Block], path: str, old: list[PlainTable], new: list[Pl
         before = [path] if members else _PATHS[: _PATHS.index(path) + 1]
         after = max(at for at, block in enumerate(blocks[:-1]) if block.path in before)
         header = f"[[{path}]]\n" if "name" in table else f"[{path}]\n"
-        blocks.insert(after + 1, _Block(path, "\n", "", header, _edited("", {}, table)))
+        blocks.insert(after + 1, _TomlBlock(path, "\n", "", header, _edited("", {}, table)))
 
 
 def _staying(old: list[PlainTable], new: list[PlainTable]) -> dict[int, int]:

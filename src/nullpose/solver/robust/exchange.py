@@ -23,7 +23,7 @@ from nullpose.solver.compiling import limit_clock, precompile
 from nullpose.solver.multistart import Incumbent, SearchSettings, climb, multistart, search_settings
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import prove
-from nullpose.solver.result import Answer, Stats
+from nullpose.solver.result import BoundedPose, Stats
 from nullpose.solver.rigour import Rigour
 from nullpose.solver.robust.guarantee import Inner, guarantee_of, require_dipole
 from nullpose.solver.robust.solution import GuardedPose, RobustDetails
@@ -46,7 +46,7 @@ _ACCURACIES = 1e-6, 3e-3
 _LEAST_GAP, _WIDEST_GAP = 1e-8, 10.0  # of a proof
 
 
-def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
+def solve_robust(scenario: Scenario, limits: SolveOptions) -> BoundedPose:
     """Find the pose whose objective is largest when the scenario's errors do their worst.
 
     What the pose guarantees is proved; that no pose guarantees much more is proved with ``certify``. On a
@@ -84,7 +84,7 @@ def solve_robust(scenario: Scenario, limits: SolveOptions) -> Answer:
         else "limit of the proof of what the pose guarantees: most cells of errors"
     )
     without_errors = guarantee_of(inner, nominal.position_m, nominal.antenna_axis, exchange.accuracy())
-    return Answer(
+    return BoundedPose(
         scheme="robust",
         pose=robust.pose,
         links=evaluate(scenario, robust.pose),

@@ -11,7 +11,7 @@ from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 
-from nullpose.errors import ClusterError, ScenarioError
+from nullpose.errors import ClusterError, ScenarioError, require
 from nullpose.scenario import Scenario
 from nullpose.study.monte_carlo.draw import Draws
 from nullpose.study.monte_carlo.rows import FAILED, Row, as_parquet, row_of
@@ -103,11 +103,12 @@ def seconds_per_scene(spec_json: str, expected: str) -> float:
 
 @lru_cache(maxsize=4)
 def _spec(spec_json: str, expected: str) -> StudySpec:
-    if fingerprint() != expected:
-        raise ClusterError(
-            f"workers: one has nullpose {fingerprint()}, and here it is {expected}; install the same on both "
-            "and start the workers again"
-        )
+    require(
+        ClusterError,
+        fingerprint() == expected,
+        f"workers: one has nullpose {fingerprint()}, and here it is {expected}; install the same on both "
+        "and start the workers again",
+    )
     return StudySpec.from_dict(json.loads(spec_json))
 
 

@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from nullpose.errors import ScenarioError
+from nullpose.errors import ScenarioError, require_number
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, Quantity
 from nullpose.physics.types import FloatArray
@@ -22,7 +22,7 @@ from nullpose.study.monte_carlo.blocks import Blocks, Town
 from nullpose.study.monte_carlo.distribution import Distribution
 from nullpose.study.monte_carlo.drawn_channel import DrawnChannel
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
-from nullpose.study.monte_carlo.spec import StudySpec, require_number
+from nullpose.study.monte_carlo.spec import StudySpec
 
 _Tables = Mapping[str, Points | DrawnChannel | Blocks]
 _Swept = tuple[_Tables, list[tuple[str, float]]]  # what is drawn, and what is set after that

@@ -46,7 +46,7 @@ QUANTITIES: dict[str, Quantity] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class PartFile:
     """A file with the rows of some scenes.
 
     Args:
@@ -161,7 +161,7 @@ class Folder:
             "go on with that version, or choose another folder with --out",
         )
 
-    def parts(self) -> list[Part]:
+    def parts(self) -> list[PartFile]:
         """List the parts in order: files whose names say scenes of this study in its own parts."""
         manifest = self.manifest()
         scenes, chunk = manifest["scenes"], manifest["chunk"]
@@ -170,10 +170,10 @@ class Folder:
             name = _NAME.fullmatch(path.name)
             first, last = map(int, name.groups()) if name else (-1, -1)
             if first % chunk == 0 and last == min(first + chunk, scenes) - 1 and path.is_file():
-                parts.append(Part(path, first, last))
+                parts.append(PartFile(path, first, last))
         return parts
 
-    def clean(self, spec: StudySpec) -> tuple[list[Part], int]:
+    def clean(self, spec: StudySpec) -> tuple[list[PartFile], int]:
         """Remove all but sound parts; return these and the number of damaged ones.
 
         A killed run or a full disk leaves temporary files.
@@ -191,13 +191,13 @@ class Folder:
                     path.unlink()
         return sound, len(parts) - len(sound)
 
-    def add(self, first: int, last: int, content: bytes) -> Part:
+    def add(self, first: int, last: int, content: bytes) -> PartFile:
         """Write a part: under a temporary name, to the disk, then renamed.
 
         Raises:
             OutputError: it cannot be written.
         """
-        part = Part(self.parts_folder / f"part-{first:09d}-{last:09d}.parquet", first, last)
+        part = PartFile(self.parts_folder / f"part-{first:09d}-{last:09d}.parquet", first, last)
         with replacing(part.path) as temporary, temporary.open("wb") as file:
             file.write(content)
             file.flush()
@@ -252,7 +252,7 @@ def require_extra(*more: str) -> None:
     )
 
 
-def _is_sound(spec: StudySpec, part: Part) -> bool:
+def _is_sound(spec: StudySpec, part: PartFile) -> bool:
     try:
         read_counts(part.path)
         read_parquet(spec, part.path)

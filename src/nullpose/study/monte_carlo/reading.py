@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from nullpose.errors import UsageError
 from nullpose.files import PlainTable
 from nullpose.solver import Rigour
-from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, Part, require_extra
+from nullpose.study.monte_carlo.folder import QUANTITIES, Folder, PartFile, require_extra
 from nullpose.study.monte_carlo.rows import read_counts, read_parquet, schema_of
 from nullpose.study.monte_carlo.spec import StudySpec
 
@@ -166,7 +166,7 @@ def study_status(out: str | os.PathLike[str]) -> StudyStatus:
         UsageError: no study is there.
     """
     folder = Folder(Path(out))
-    manifest, done = folder.manifest(), dict[Part, tuple[int, int, float]]()
+    manifest, done = folder.manifest(), dict[PartFile, tuple[int, int, float]]()
     for part in folder.parts():
         with suppress(ValueError):  # a damaged part is done anew by the next run
             done[part] = read_counts(part.path)

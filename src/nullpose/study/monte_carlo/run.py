@@ -13,15 +13,15 @@ from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
 
-from nullpose.errors import require_usage
+from nullpose.errors import require_number, require_usage
 from nullpose.files import prepare_folder
 from nullpose.study.monte_carlo.chunk import fingerprint, seconds_per_scene, solve_chunk
-from nullpose.study.monte_carlo.folder import Folder, Part, require_extra
+from nullpose.study.monte_carlo.folder import Folder, PartFile, require_extra
 from nullpose.study.monte_carlo.loading import require_sound
 from nullpose.study.monte_carlo.mounts import with_best_mounts
 from nullpose.study.monte_carlo.reading import StudyStatus, study_spec, study_status
 from nullpose.study.monte_carlo.rows import read_counts
-from nullpose.study.monte_carlo.spec import StudySpec, require_number
+from nullpose.study.monte_carlo.spec import StudySpec
 from nullpose.study.monte_carlo.workers import LOOK_S, WorkerDiedError, Workers, workers_of
 
 MOST_IN_A_PART = 5000  # scenes, however quick they are: a part is held in memory whole
@@ -72,7 +72,7 @@ class _Tally:
         """Count what is done from now on towards the rate."""
         self._began, self._before = time.monotonic(), self.at.done
 
-    def count(self, part: Part) -> None:
+    def count(self, part: PartFile) -> None:
         """Count a part."""
         (rows, failed, _), at = read_counts(part.path), self.at
         self.at = replace(at, done=at.done + part.scenes, rows=at.rows + rows, failed=at.failed + failed)

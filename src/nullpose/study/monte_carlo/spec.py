@@ -11,7 +11,6 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario.crosscheck import shared_names
@@ -167,22 +166,3 @@ class StudySpec(Section):
         for case in [each for each in values["cases"] if "mount_scenes" in each]:
             case["airframe"].pop("mount_deg", None)  # the scenes choose it, so it follows from the rest
         return hashlib.sha256(json.dumps(values, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
-
-
-def require_number(noun: str, number: int, least: int, most: int) -> int:
-    """Refuse a number of a scene, of workers and the like that is out of range.
-
-    Args:
-        noun: in the message.
-        number: to check.
-        least: the smallest allowed.
-        most: the largest allowed.
-
-    Raises:
-        UsageError: it is out of range.
-    """
-    require_usage(
-        not isinstance(number, bool) and isinstance(number, int) and least <= number <= most,
-        f"{noun}: given {number!r}; allowed: {least} to {most}",
-    )
-    return number

@@ -29,7 +29,7 @@ _KEYS: dict[str, Rule] = {
 Axis = tuple[str, tuple[float, ...]]
 
 
-class _Axes(Rule):
+class _SweptValues(Rule):
     """Swept values by path."""
 
     def read(self, value: object) -> tuple[Axis, ...]:
@@ -53,7 +53,7 @@ class _Axes(Rule):
         return tuple(axes)
 
 
-SweepAxes = Annotated[tuple[Axis, ...], _Axes()]  # paths, each with the values that it is set to
+SweepAxes = Annotated[tuple[Axis, ...], _SweptValues()]  # paths, each with the values that it is set to
 
 
 def _paths(table: Mapping[object, object], at: Place = ()) -> Iterator[tuple[str, object]]:

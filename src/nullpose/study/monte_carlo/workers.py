@@ -56,7 +56,7 @@ class _ThisProcess(Executor):
         return future
 
 
-class _Pool(Executor):
+class _LocalProcesses(Executor):
     """Processes on this machine: new ones after one died; all end when the other end of a pipe is closed."""
 
     def __init__(self, count: int) -> None:
@@ -197,7 +197,7 @@ def workers_of(scheduler: str | None, workers: int | None, on_look: OnLook) -> I
         yield Workers(_ThisProcess(), "this machine", on_look, ahead=1)
     else:
         count = workers or processors()
-        with _Pool(count) as pool:
+        with _LocalProcesses(count) as pool:
             crew = Workers(pool, "this machine", on_look, count=count)
             try:
                 crew.outcome(fingerprint)
