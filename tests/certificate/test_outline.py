@@ -84,7 +84,7 @@ def test_allowed_points_meet_an_alternative(is_fence: bool, on_grid: bool, seed:
     """Of one of the tuples every edge is kept to; without tuples nothing is allowed."""
     rng = np.random.default_rng(seed)
     edges = star(rng, on_grid)
-    outline = Outline.of(edges, is_fence)
+    outline = Outline(exact(edges), is_fence)
     low, high = rectangle_near(rng, edges, on_grid)
     met = [int(e) for e in np.flatnonzero(may_meet(edges, low[None], high[None])[0])]
     alternatives = outline.alternatives(met, low, high)
@@ -120,7 +120,7 @@ def around(point: tuple[float, float], half: float) -> list[tuple[int, ...]]:
     """Return the alternatives of the L around a point, as a forbidden zone and as a fence."""
     low, high = np.array(point) - half, np.array(point) + half
     met = [int(e) for e in np.flatnonzero(may_meet(L_EDGES, low[None], high[None])[0])]
-    return [Outline.of(L_EDGES, fence).alternatives(met, low, high) for fence in (False, True)]
+    return [Outline(exact(L_EDGES), fence).alternatives(met, low, high) for fence in (False, True)]
 
 
 def test_alternatives_are_as_few_as_can_be() -> None:
@@ -135,6 +135,6 @@ def test_alternatives_are_as_few_as_can_be() -> None:
     # a passage between walls that are not neighbours
     assert around((6.0, 6.0), 1.99) == [[], [()]]
     wide = np.array([3.9, 5.0]), np.array([8.1, 6.0])
-    outline = Outline.of(L_EDGES, True)
+    outline = Outline(exact(L_EDGES), True)
     assert outline.alternatives([1, 3], *wide) == [(1, 3)]
-    assert Outline.of(L_EDGES, False).alternatives([1, 3], *wide) == [(1,), (3,)]
+    assert Outline(exact(L_EDGES), False).alternatives([1, 3], *wide) == [(1,), (3,)]

@@ -108,10 +108,8 @@ def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hes
     values, vectors = np.linalg.eigh(full)
     convex = np.abs(np.einsum("bik,bk,bjk->bij", vectors, np.maximum(values, 0.0), vectors)).sum(axis=2).T
     steep, tiny = g.magnitude(), 1e-7 * np.abs(rest.high)
-    holds = _dual_negative(rest, g, middle, steep + np.maximum(lean, 0.0) + tiny)
-    for share in _SHARES:
-        holds |= _dual_negative(rest, g, middle, share * steep + convex + tiny)
-    return holds
+    guesses = [steep + np.maximum(lean, 0.0), *(share * steep + convex for share in _SHARES)]
+    return np.asarray(np.any([_dual_negative(rest, g, middle, mu + tiny) for mu in guesses], axis=0))
 
 
 def _dual_negative(rest: Interval, g: Interval, middle: FloatArray, mu: FloatArray) -> np.ndarray:

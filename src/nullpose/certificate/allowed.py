@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import reduce
 from typing import TypeAlias
 
 import numpy as np
@@ -54,9 +55,9 @@ def negative_where_allowed(
     holds[left] = True
     for rows, constraints in zone_alternatives(domain, leaves.ball[left] - balls, boxes.chosen(left)):
         named = left[rows]
-        excluded = np.zeros(len(named), dtype=bool)
-        for multipliers in _guesses(constraints, steep[:, named]):
-            excluded |= test(named, list(zip(multipliers, constraints, strict=True)))
+        guesses = _guesses(constraints, steep[:, named])
+        tests = (test(named, list(zip(guess, constraints, strict=True))) for guess in guesses)
+        excluded = reduce(np.logical_or, tests, np.zeros(len(named), dtype=bool))
         holds[named[~excluded]] = False  # a box may be named twice
     return holds
 

@@ -128,9 +128,7 @@ def _tilt_fault(airframe: Airframe | None, attitude_rad: tuple[float, float, flo
 
 def _axis_fault(fields: Mapping[str, AxisField], position: Exact, axis: Exact) -> str:
     off = [field_offset(field, position, axis) for field in fields.values() if not field.is_free]
-    if off and min(off) > Fraction(_AXIS_RAD) ** 2:
-        return "the antenna's axis is not one that the scheme allows"
     missed = [band_excess(field.band, axis) for field in fields.values() if field.is_free]
-    if missed and min(missed) > Fraction(_BAND_RAD):
-        return "the antenna's axis is not one that the airframe reaches"
-    return ""
+    misses = {"the scheme allows": (off, _AXIS_RAD**2), "the airframe reaches": (missed, _BAND_RAD)}
+    words = (who for who, (angles, most) in misses.items() if angles and min(angles) > most)
+    return next((f"the antenna's axis is not one that {who}" for who in words), "")

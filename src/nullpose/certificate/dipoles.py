@@ -13,7 +13,7 @@ from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import excess_end
 from nullpose.certificate.forms import COLUMN, IDENTITIES, IDENTITY, ROW, Linear, outer, squares, top_vectors
 from nullpose.certificate.interval import Interval, stack, swapped, where
-from nullpose.certificate.shear import Shear, link_vector, offset_to, shear_of
+from nullpose.certificate.shear import AxisShear, link_vector, offset_to, shear_of
 from nullpose.certificate.taylor import Taylor, chosen, cross
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import Ratios
@@ -24,7 +24,7 @@ _SHARE = 0.1
 _TINY = 1e-290
 
 
-def dipole_sum(ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval) -> tuple[Linear, Shear]:
+def dipole_sum(ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval) -> tuple[Linear, AxisShear]:
     """Bound the sum of a leaf from above over its box, linear in the position, in coordinates that turn.
 
     Args:
@@ -55,14 +55,11 @@ def dipole_sum(ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval)
     rest = rest + whole * leaking + shear.gram * square.most()
     if np.any(constant.magnitude() > 0.0):
         rest = rest + shear.form(constant)
-    centre = rest.at.value
-    for vector, _, scale, sign in links:
-        centre = centre + squares(vector.at.value) * (scale * sign)
+    centre = sum((squares(a.at.value) * (scale * sign) for a, _, scale, sign in links), rest.at.value)
     top = top_vectors(centre)
     total = linear_above(rest, np.abs(centre.middle()[:3]), top)
-    for vector, third, scale, sign in links:
-        total = total + square_over(vector, third, top, scale, sign)
-    return total, shear
+    squared = (square_over(a, third, top, scale, sign) for a, third, scale, sign in links)
+    return sum(squared, total), shear
 
 
 def _gain(r: Taylor, near: Taylor, axes: FloatArray) -> Taylor:

@@ -111,10 +111,9 @@ class Linear:
             horizontal: (b,) whether the horizontal plane is all that counts.
         """
         ahead = self.slopes * half
-        holds = np.ones(half.shape[1], dtype=bool)
-        for x, y, z in product(*((ahead[:, i], -ahead[:, i]) for i in range(3))):
-            holds &= negative_definite(self.value + x + y + z, horizontal)
-        return holds
+        corners = product(*((ahead[:, i], -ahead[:, i]) for i in range(3)))
+        every = [negative_definite(self.value + x + y + z, horizontal) for x, y, z in corners]
+        return np.asarray(np.all(every, axis=0))
 
 
 def negative_definite(a: Interval, horizontal: np.ndarray | bool = False) -> np.ndarray:

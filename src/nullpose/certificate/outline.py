@@ -46,16 +46,6 @@ class Outline:
     edges: Exact
     is_fence: bool
 
-    @classmethod
-    def of(cls, edges: FloatArray, is_fence: bool) -> Outline:
-        """Return the outline of edges in floating point.
-
-        Args:
-            edges: (e, 4).
-            is_fence: whether the outside is forbidden.
-        """
-        return cls(exact(edges), is_fence)
-
     def allowance(self, edge: int, point: Point) -> Fraction:
         """Return a multiple of how far a point is on the allowed side of an edge's line.
 

@@ -32,9 +32,7 @@ def out_of_reach(ratios: Ratios, level: FloatArray | float, square: FloatArray) 
     heard = most_excess(ratios, point, square) * Interval(ratios.numerator_weight)
     if len(ratios.shares):
         each = (heard / square + ratios.numerator_isotropic) / below + ratios.offset
-        total = Interval(0.0)
-        for k, share in enumerate(ratios.shares):
-            total = total + log(each[..., k]) * share
+        total = sum((log(each[..., k]) * share for k, share in enumerate(ratios.shares)), Interval(0.0))
         return np.asarray(total.high <= log(Interval(level)).low)
     if len(ratios.pairs):  # the node not jammed, the eavesdropper jammed as much as can be
         node, eavesdropper = ratios.pairs.T

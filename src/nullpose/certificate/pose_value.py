@@ -186,10 +186,9 @@ def value_of(ratios: Ratios, values: Exact) -> Fraction:
         return Fraction(min(values[node] / values[eavesdropper] for node, eavesdropper in ratios.pairs))
     if not len(ratios.shares):
         return Fraction(min(values))
-    power = Interval(0.0)
-    for share, ratio in zip(ratios.shares, values, strict=True):
-        x = ratio + Fraction(ratios.offset)  # of which a double is off by less than its last two places
-        power = power + log(Interval(*(float(x) * np.array([1.0 - 1e-15, 1.0 + 1e-15])))) * share
+    near = Interval(1.0 - 1e-15, 1.0 + 1e-15)  # a double is off by less than its last two places
+    logs = (log(near * float(value + Fraction(ratios.offset))) for value in values)
+    power = sum((each * share for each, share in zip(logs, ratios.shares, strict=True)), Interval(0.0))
     return Fraction(float(exp(power).low))
 
 

@@ -27,7 +27,7 @@ _SHARP = 1e-8  # how well an anchor's vector must be known, so that the basis is
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shear:
+class AxisShear:
     """Coordinates of the axis that turn with a point, ``u = (I + E) u'``, E = 0 at the centres, and a basis.
 
     E is ``d0 w^T`` for a point with a dipole and ``w d0^T`` for another.
@@ -92,14 +92,14 @@ def link_vector(r: Taylor, near: Taylor, axes: FloatArray) -> Taylor:
     return near * v - r * ((r * v).total() * near * near.squared())
 
 
-def shear_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> Shear:
+def shear_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> AxisShear:
     """Find coordinates that turn for boxes, each with its leaf; with a fixed frame they stand still."""
     turning = leaves.test == TOWARDS
     anchor = np.where(turning, leaves.point, 0)
     if not np.any(turning):
         none, still = Interval(np.zeros((6, len(boxes)))), coordinates(Interval(boxes.centre.T), boxes.hull)
         basis = Interval(np.tile(UNIT, len(boxes)))
-        return Shear(turning, anchor, none[:4], basis, gram(basis), still.alike(basis), still.alike(none))
+        return AxisShear(turning, anchor, none[:4], basis, gram(basis), still.alike(basis), still.alike(none))
     axes = ratios.ground_axes[anchor]
     is_dipole = np.any(axes != 0.0, axis=1)
     r, near = offset_to(ratios.points_m[anchor], boxes)
@@ -121,7 +121,7 @@ def shear_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> Shear:
     flat = (-(across[ROW] * across[COLUMN] * near.squared()) + products) * near.squared()
     flat = flat * np.where(COLUMN == 2, 0.0, 1.0)[:, None]
     still = flat.alike(upright * length.squared())
-    return Shear(on, anchor, most, basis, products, turned + basis, chosen(is_dipole, still, flat))
+    return AxisShear(on, anchor, most, basis, products, turned + basis, chosen(is_dipole, still, flat))
 
 
 def _sizes(w: Interval, along: Interval, near: Interval, is_dipole: np.ndarray) -> Interval:

@@ -14,6 +14,7 @@ import numpy as np
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.interval import Interval, dot, stack
 from nullpose.certificate.outline import Outline, may_meet
+from nullpose.certificate.pose_value import exact
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.airspace import FENCE, FORBIDDEN_CYLINDER
@@ -120,7 +121,7 @@ def _beyond_edges(domain: Domain, zone: int, rows: IntArray, boxes: Boxes) -> It
     """Yield a box's row and the edges, by their index in the domain, of an alternative."""
     first, last = domain.zone_start[zone], domain.zone_start[zone + 1]
     edges = domain.zone_edges[first:last]
-    outline = Outline.of(edges, bool(domain.zone_kind[zone] == FENCE))
+    outline = Outline(exact(edges), bool(domain.zone_kind[zone] == FENCE))
     low, high = boxes.hull.low[:2].T, boxes.hull.high[:2].T
     for row, meets, south_west, north_east in zip(rows, may_meet(edges, low, high), low, high, strict=True):
         alternatives = outline.alternatives(np.flatnonzero(meets).tolist(), south_west, north_east)

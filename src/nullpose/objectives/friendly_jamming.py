@@ -48,11 +48,6 @@ def _ratios(scenario: Scenario) -> Ratios:
     )
 
 
-def _evaluate(reception: Reception) -> dict[str, FloatArray]:
-    """Evaluate every node's SINR, and its secrecy rate."""
-    return {"sinr": reception.jammed_sinr, "secrecy_rate_bps_hz": reception.jammed_secrecy_rate}
-
-
 def _ratios_at(reception: Reception) -> FloatArray:
     """Evaluate ``(1 + SINR_k) / (1 + SINR_e)`` of every node and eavesdropper."""
     return np.asarray((1.0 + reception.jammed_sinr[..., None]) / (1.0 + reception.overheard_sinr))
@@ -64,7 +59,10 @@ FRIENDLY_JAMMING = ObjectiveRecord(
     quantities=(_RATE,),
     quantity=lambda scenario: _RATE,
     ratios=_ratios,
-    evaluate=_evaluate,
+    evaluate=lambda reception: {
+        "sinr": reception.jammed_sinr,
+        "secrecy_rate_bps_hz": reception.jammed_secrecy_rate,
+    },
     ratios_at=_ratios_at,
     interferers="eavesdroppers",
     transmits=True,

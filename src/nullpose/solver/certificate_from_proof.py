@@ -122,16 +122,12 @@ def _mixes(
         weights: (l, n) theirs.
         used: (l,) how many count.
     """
-    table: dict[tuple[float, ...], int] = {}
-    mixes: list[dict[int, float]] = []
+    table: dict[tuple[tuple[int, float], ...], int] = {}
     mix = np.full(len(used), -1, dtype=np.int64)
     for i in np.flatnonzero(used):
         of, by = ratios[i, : used[i]].tolist(), weights[i, : used[i]].tolist()
-        if (key := (*of, *by)) not in table:
-            table[key] = len(mixes)
-            mixes.append(dict(zip(of, by, strict=True)))
-        mix[i] = table[key]
-    return mix, tuple(mixes)
+        mix[i] = table.setdefault(tuple(zip(of, by, strict=True)), len(table))
+    return mix, tuple(map(dict, table))
 
 
 def _cells(rows: FloatArray, face: int, cell: int) -> IntArray:

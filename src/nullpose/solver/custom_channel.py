@@ -114,13 +114,10 @@ class CustomSearch(PositionSearch):
     def side_of(self, low_m: FloatArray, high_m: FloatArray) -> int:
         """Choose the side to halve: that which leaves the least range of excess gains, or the longest."""
         half_m = 0.5 * (high_m - low_m)
-        spreads = []
-        for side in range(3):
-            part_m = half_m.copy()
-            part_m[side] *= 0.5
-            least, most = self.excess_range(0.5 * (low_m + high_m), part_m)
-            spreads.append(np.sum(np.log(most / least)) - 1e-3 * half_m[side])
-        return int(np.argmin(spreads))
+        parts_m = half_m * (1.0 - 0.5 * np.eye(3))
+        ranges = (self.excess_range(0.5 * (low_m + high_m), part_m) for part_m in parts_m)
+        spreads = [np.sum(np.log(most / least)) for least, most in ranges]
+        return int(np.argmin(np.array(spreads) - 1e-3 * half_m))
 
     def bound_of(self, low_m: FloatArray, high_m: FloatArray, options: SolveOptions) -> tuple[float, int]:
         """Bound the smallest ratio in a box, the best pose found counting as in it; and count the boxes."""
