@@ -163,7 +163,7 @@ def tilt_words(mount: MountTilt, share: float) -> str:
         mount: the tilts of the vehicle's mount.
         share: of the value that suffices.
     """
-    at = f"(mount {mount.mount_deg:g}\N{DEGREE SIGN}) for {per_cent(share)} of the best value"
+    at = f"(mount {mount.mount_deg:g}\N{DEGREE SIGN}) for {percent_rounded_up(share)} of the best value"
     if mount.suffices_deg is None:
         return (
             "" if mount.fails_deg is None else f"Least tilt above {mount.fails_deg:.1f}\N{DEGREE SIGN} {at}"
@@ -187,11 +187,11 @@ def status_words(answer: Answer | None) -> str:
         return "Best found so far"
     if result.status is Status.CERTIFIED:
         unsure = ", in floating point" if result.rigour is Rigour.FLOATING_POINT else ""
-        return f"Proved optimal (gap {per_cent(gap)}{unsure})"
-    return f"At most {per_cent(gap / (1.0 + gap))} below the optimum"
+        return f"Proved optimal (gap {percent_rounded_up(gap)}{unsure})"
+    return f"At most {percent_rounded_up(gap / (1.0 + gap))} below the optimum"
 
 
-def per_cent(share: float) -> str:
+def percent_rounded_up(share: float) -> str:
     """Write a share in per cent, rounded up.
 
     Args:

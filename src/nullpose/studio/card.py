@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from nullpose.report.numbers import MINUS
 from nullpose.solver import Status
-from nullpose.studio.answer import Progress, TiltNotice, per_cent
+from nullpose.studio.answer import Progress, TiltNotice, percent_rounded_up
 from nullpose.studio.camera import centre_of_m
 from nullpose.studio.field_map import Scale
 from nullpose.studio.look import css, scale_colours
@@ -77,5 +77,7 @@ def proof(state: State) -> Bar:
         is_proved = answer.result.status is Status.CERTIFIED  # to the gap that was aimed at
         return Bar(0.0 if is_proved else gap, f"{answer.result.stats.boxes:,} boxes examined")
     if progress is not None:
-        return Bar(progress.gap, f"gap {per_cent(progress.gap)} so far, {progress.boxes:,} boxes examined")
+        return Bar(
+            progress.gap, f"gap {percent_rounded_up(progress.gap)} so far, {progress.boxes:,} boxes examined"
+        )
     return Bar(math.inf, "no bound yet")
