@@ -6,7 +6,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 # Before numpy is there: threads that share a small matrix take four times the processors' time.
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
@@ -75,11 +75,22 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _few_climbs(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Where arrays are only shown, a search climbs from a tenth of the states; tests/solver has them all."""
+def _coarse(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Has arrays searched from a tenth of the states, and figures of few dots, where both are only made.
+
+    tests/solver has all states, and tests/report the dots.
+    """
+    rooms = set(request.path.relative_to(Path(__file__).parent).parts[:2])
     with pytest.MonkeyPatch.context() as patch:
-        if {"cli", "docs", "report", "study"} & set(request.path.parts):
+        if {"cli", "docs", "report", "study"} & rooms:
             patch.setattr(array_search, "_CLIMBED", 4)
+        if {"cli", "docs"} & rooms or {"report", "study"} <= rooms:
+            from matplotlib.figure import Figure
+
+            def save(self: Figure, *paths: Any, draw: Any = Figure.savefig, **options: Any) -> None:
+                draw(self, *paths, **options | {"dpi": 40})
+
+            patch.setattr(Figure, "savefig", save)
         yield
 
 

@@ -5,7 +5,6 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from typer.testing import CliRunner, Result
@@ -52,14 +51,3 @@ def process() -> Process:
         check=False,
         timeout=600,
     )
-
-
-@pytest.fixture(autouse=True)
-def _coarse(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draws figures with few dots, which are looked at in tests/report."""
-    from matplotlib.figure import Figure
-
-    def save(self: Figure, *paths: Any, draw: Any = Figure.savefig, **options: Any) -> None:
-        draw(self, *paths, **options | {"dpi": 40})
-
-    monkeypatch.setattr(Figure, "savefig", save)

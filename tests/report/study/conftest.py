@@ -125,14 +125,3 @@ def ladder() -> Callable[..., list[list[list[float]]]]:
         ]
 
     return rows
-
-
-@pytest.fixture(autouse=True)
-def _coarse(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draws figures with few dots, but for what a reader sees."""
-    from matplotlib.figure import Figure
-
-    def save(self: Figure, *paths: Any, draw: Any = Figure.savefig, **options: Any) -> None:
-        draw(self, *paths, **options | {"dpi": 40})
-
-    monkeypatch.setattr(Figure, "savefig", save)
