@@ -221,7 +221,7 @@ def test_a_certificate_with_other_multipliers_is_rejected(certificate: Certifica
         mixes = tuple(dict(change(mix)) for mix in tree.leaves.mixes)
         return verify(replace(certificate, trees=(replace(tree, leaves=replace(tree.leaves, mixes=mixes)),)))
 
-    for factor in (0.0, 0.3, 3.0):
+    for factor in (0.0, 3.0):
         assert not verdict_of(
             lambda mix, f=factor: {q: w * (f if q >= pairs else 1.0) for q, w in mix.items()}
         ).proved
