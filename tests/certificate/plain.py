@@ -92,7 +92,7 @@ def put_together(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3)
     position = exact(outcome.incumbent.position_m)
     axis, gains = antenna_axis(attitude, mount_rad), excess_at(family.ratios, position)
     value = float(value_at(family, position, axis, gains=gains))
-    trees = zip(fields, outcome.proofs, strict=True)
+    trees = zip(fields.items(), outcome.proofs, strict=True)
     return Certificate(
         scenario=scenario,
         scheme=scheme,
@@ -103,7 +103,9 @@ def put_together(scenario: Scenario, scheme: str = "optimum", gap: float = 1e-3)
         roll_rad=attitude[0],
         pitch_rad=attitude[1],
         yaw_rad=attitude[2],
-        trees=tuple(Tree(axis=axis, root_m=p.root, leaves=leaves_of(p, axis, family)) for axis, p in trees),
+        trees=tuple(
+            Tree(axis=axis, root_m=p.root, leaves=leaves_of(p, field, family)) for (axis, field), p in trees
+        ),
     )
 
 

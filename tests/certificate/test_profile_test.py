@@ -20,6 +20,7 @@ from nullpose.solver.certificate_from_proof import certificate_of
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HALF_WAVE = {"kind": "half-wave"}
 TILTED = ["airframe.tilt_max_deg=30", "airframe.mount_deg=90"]
+LEANING = ["airframe.tilt_max_deg=10", "airframe.mount_deg=60"]
 UNEVEN = {
     "kind": "profile",
     "harmonics": profile_harmonics(np.arange(181.0), 1.0 + 0.5 * np.cos(np.radians(np.arange(181.0)))).rows(),
@@ -36,7 +37,7 @@ def certificate(name: str, antenna: dict[str, object], *changes: str, gap: float
 @pytest.fixture(scope="module")
 def half_wave() -> Certificate:
     """Return the certificate of the paper's scene with a half-wave dipole."""
-    return certificate("paper", HALF_WAVE, gap=0.1)
+    return certificate("paper", HALF_WAVE, gap=0.3)
 
 
 @pytest.mark.parametrize("power_w", [0.01, 100.0])
@@ -56,9 +57,17 @@ def test_half_wave_dipoles_are_proved(power_w: float, gap: float) -> None:
         ("no-fly", HALF_WAVE, [], 0.3),
         ("eavesdropper", HALF_WAVE, [], 0.3),
         ("paper", HALF_WAVE, TILTED, 0.5),  # leaves are few and large, many with axes out of reach
-        ("paper", UNEVEN, ["airframe.tilt_max_deg=0"], 0.5),
+        ("paper", UNEVEN, ["airframe.tilt_max_deg=0"], 0.1),
+        ("paper", HALF_WAVE, ["airframe.tilt_max_deg=0"], 1e-2),
+        ("paper", HALF_WAVE, ["airframe.tilt_max_deg=0", "airframe.mount_deg=60"], 0.1),
+        ("paper", UNEVEN, ["airframe.tilt_max_deg=10", "airframe.mount_deg=80"], 0.3),
+        ("paper", HALF_WAVE, ["airframe.tilt_max_deg=30", "jammers.M.power_w=3"], 0.5),
+        ("paper", HALF_WAVE, [*LEANING, "jammers.M.power_w=100"], 1.0),
     ],
-    ids=["uneven", "tilted", "requirements", "zones", "secrecy", "wide", "wide-level"],
+    ids=[
+        *("uneven", "tilted", "requirements", "zones", "secrecy", "wide", "uneven-level", "level", "leaning"),
+        *("uneven-leaning", "largest-angle", "least-angle"),
+    ],
 )
 def test_other_scenes_are_proved(
     name: str, antenna: dict[str, object], changes: list[str], gap: float
@@ -85,6 +94,14 @@ def less(made: Certificate) -> Certificate:
     return with_tree(made, leaves=leaves.chosen(np.arange(1, len(leaves))))
 
 
+def two_anchors(made: Certificate) -> Certificate:
+    """Take the angles of a box's leaf from another point than those of its other leaves."""
+    leaves = made.trees[0].leaves
+    point = leaves.point.copy()
+    point[np.argmax(np.min(leaves.cell[:, 1::2], axis=1))] = (point[0] + 1) % 3
+    return with_leaves(made, point=lambda _: point)
+
+
 def first(value: object) -> Callable[[np.ndarray], np.ndarray]:
     """Return a change of the first entry of a column."""
     return lambda column: np.concatenate([np.array([value]), column[1:]])
@@ -98,7 +115,7 @@ FORGED: dict[str, tuple[Callable[[Certificate], Certificate], str]] = {
     "face": (lambda c: with_leaves(c, cell=first([-1, 0, 0, 0, 0])), "its cell is that of a dipole"),
     "test of a dipole": (lambda c: with_leaves(c, test=lambda x: 0 * x + WORLD), "for another antenna"),
     "anchor": (lambda c: with_leaves(c, point=first(3)), "its point does not exist"),
-    "other anchor": (lambda c: with_leaves(c, point=lambda x: 0 * x), "is not excluded"),
+    "anchors of one box": (two_anchors, "do not cover the root"),
     "multipliers": (lambda c: with_leaves(c, mix=lambda x: np.roll(x, 1)), "is not excluded"),
     "value": (lambda c: replace(c, value=c.value * (1.0 + 1e-6)), "its smallest SINR is"),
     "attitude": (lambda c: replace(c, roll_rad=c.roll_rad + 1e-3), "its smallest SINR is"),

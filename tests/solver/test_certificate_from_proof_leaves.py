@@ -6,6 +6,7 @@ import numpy as np
 
 from nullpose import load
 from nullpose.certificate.certificate import FAR, WORLD
+from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.solver.certificate_from_proof import leaves_of
 from nullpose.solver.kernels.bounds import node
@@ -43,7 +44,7 @@ def test_boxes_become_dyadic() -> None:
         index = [int(rng.integers(1 << int(d))) for d in depth]
         boxes.append(tuple(int(x) for pair in zip(depth, index, strict=True) for x in pair))
     proof.leaves = np.array([row_of(box, proof) for box in boxes])
-    assert leaves_of(proof, "free", FAMILY).box.tolist() == [list(box) for box in boxes]
+    assert leaves_of(proof, AxisField.free(), FAMILY).box.tolist() == [list(box) for box in boxes]
 
 
 def test_cells_become_dyadic() -> None:
@@ -62,7 +63,7 @@ def test_cells_become_dyadic() -> None:
         rows.append(row)
         cells.append([face, depth[0], index[0], depth[1], index[1]])
     proof.leaves = np.array(rows)
-    assert leaves_of(proof, "free", FAMILY).cell.tolist() == cells
+    assert leaves_of(proof, AxisField.free(), FAMILY).cell.tolist() == cells
 
 
 def test_equal_mixes_are_shared() -> None:
@@ -73,7 +74,7 @@ def test_equal_mixes_are_shared() -> None:
     rows[1][node.WEIGHT + 1] = 0.75
     rows[3][node.KIND], rows[3][node.ANCHOR] = FAR, 2.0
     proof.leaves = np.array(rows)
-    leaves = leaves_of(proof, "free", FAMILY)
+    leaves = leaves_of(proof, AxisField.free(), FAMILY)
     assert leaves.mix.tolist() == [0, 1, 0, -1]
     assert leaves.mixes == ({0: 1.0}, {0: 0.25, 3: 0.75})
     assert leaves.point.tolist() == [-1, -1, -1, 2]

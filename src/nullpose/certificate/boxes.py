@@ -110,11 +110,12 @@ def uncovered(leaves: Leaves) -> str:
 
     Args:
         leaves: to be checked; depths and indices in range. Those for an antenna that is the same all round
-            hold all axes in any one chart; those of a dipole on three faces.
+            hold all axes by any one anchor and chart; those of a dipole on three faces.
     """
     faces, depths, indices = leaves.face, leaves.depths, leaves.indices
     depths[faces < 0, 3:] = 0  # without a cell it is whole
-    is_profile = bool(np.all(leaves.test == PROFILE))
+    if is_profile := bool(np.all(leaves.test == PROFILE)):
+        faces = faces + 3 * (leaves.point + 1)
     # of each leaf that is left: its number, its region, and that one's depths and face, -1 for all of them
     leaf, region, depth = np.arange(len(leaves)), np.zeros(len(leaves), dtype=np.int64), np.zeros_like(depths)
     on_face = np.full(len(leaves), -1)
@@ -131,7 +132,7 @@ def uncovered(leaves: Leaves) -> str:
         holds = np.all(depths[leaf] <= depth, axis=1) & ((faces[leaf] < 0) | (on_face >= 0))
         rows, side = np.arange(len(leaf)), np.argmax(finer, axis=1)[group]
         half = indices[leaf, side] >> np.maximum(depths[leaf, side] - depth[rows, side] - 1, 0) & 1
-        key = 3 * group + np.where(by_face[group], faces[leaf], half)
+        key = 3 * group + np.where(by_face[group], faces[leaf] % 3, half)
         found = np.bincount(np.unique(key) // 3, minlength=len(start))
         enough = found >= np.where(by_face, 1 if is_profile else 3, 2)
         covered = np.where(parted, enough, np.logical_or.reduceat(holds, start))

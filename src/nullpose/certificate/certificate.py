@@ -48,16 +48,18 @@ class Leaves:
     Args:
         box: (l, 6) depth and index along x, y and z.
         cell: (l, 5) face of the cube of axes, -1 for every axis, then depth and index along its two sides;
-            for ``PROFILE`` the chart, then depth and index of the angle from the anchor and of the spin.
+            for ``PROFILE`` the chart, then depth and index of the angle from the anchor and of the spin,
+            of all that there are, or, from the zenith, of those that the airframe reaches.
         test: (l,) which test: ``WORLD``, ``TOWARDS``, ``AFFINE``, ``FAR``, ``KEPT_OUT``, ``OFF_BAND`` or
             ``PROFILE``.
         point: (l,) the point that the frame turns towards, the anchor, the ratio that is out of reach, or
-            the keep-out ball or zone; -1 where there is none.
+            the keep-out ball or zone; -1 where there is none, or where the zenith is the anchor.
         level: (l,) the smallest ratio that no pose of the leaf reaches.
         mix: (l,) index into ``mixes``; -1 where none is needed.
         mixes: multipliers of ratios, each a mapping from ratio to weight.
         sides: (l, 2) multipliers of the cell's two sides.
-        band: (l,) multiplier of the band's upper end, or, if negative, minus that of its lower end.
+        band: (l,) multiplier of the band's upper end, or, if negative, minus that of its lower end; for
+            ``PROFILE`` of the largest angle from the vertical, or minus that of the least.
         ball: (l,) the keep-out ball that counts in the box, or, counted on from the balls, the zone; or -1.
         ball_multiplier: (l,) the ball's multiplier, 1/m^2; a zone's are found anew.
     """

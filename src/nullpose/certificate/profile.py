@@ -106,11 +106,14 @@ class ProfileField(AxisField):
     Args:
         profile: its gain.
         ends: sine and cosine of the least and of the largest angle between vertical and axis.
+        spans: least and largest angle of an axis and of the spin, in multiples of pi, a hair wide: from a
+            point, and from the zenith; (2, 2, 2).
         even: whether opposite directions have the same gain.
     """
 
     profile: Profile
     ends: tuple[tuple[float, float], tuple[float, float]]
+    spans: FloatArray
     even: bool
 
     @classmethod
@@ -122,13 +125,15 @@ class ProfileField(AxisField):
         """
         if not antenna.is_axisymmetric:
             raise ValueError(f"{antenna.label}: its gain changes round its axis")
+        reach, even = _reach(scenario), antenna.harmonics.is_even
         return cls(
             is_free=True,
             offset=np.zeros(3),
             matrix=np.zeros((3, 3)),
             profile=_profile(antenna.harmonics.cosine[:, 0].tobytes()),
-            ends=_ends(scenario),
-            even=antenna.harmonics.is_even,
+            ends=_ends(*reach),
+            spans=np.array([[[0.0, 0.5 if even else 1.0], [-1.0, 1.0]], [_widened(*reach), [-1.0, 1.0]]]),
+            even=even,
         )
 
 
@@ -161,13 +166,24 @@ def _profile(terms: bytes) -> Profile:
     return Profile(cosine * np.sqrt(2.0 * np.arange(len(cosine)) + 1.0))
 
 
-def _ends(scenario: Scenario) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return sine and cosine of the least and of the greatest angle from the vertical that an axis has."""
-    if (airframe := scenario.airframe) is None or airframe.tilt_max_rad >= math.pi:
-        return (0.0, 1.0), (0.0, -1.0)
+def _reach(scenario: Scenario) -> tuple[float, float]:
+    """Return the least and the greatest angle from the vertical that an axis has, radians."""
+    if (airframe := scenario.airframe) is None:
+        return 0.0, math.pi
     least, most = airframe.mount_rad - airframe.tilt_max_rad, airframe.mount_rad + airframe.tilt_max_rad
-    low, high = (sine_cosine(Fraction(min(max(end, 0.0), math.pi))) for end in (least, most))
-    return (float(low[0]), float(low[1])), (float(high[0]), float(high[1]))
+    return max(least, 0.0), min(most, math.pi)
+
+
+def _ends(least: float, most: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return sine and cosine of both angles."""
+    low, high = sine_cosine(Fraction(least)), sine_cosine(Fraction(most))
+    last = (float(high[0]), float(high[1])) if most < math.pi else (0.0, -1.0)
+    return (float(low[0]), float(low[1])), last
+
+
+def _widened(least: float, most: float) -> tuple[float, float]:
+    """Return angles over pi, rounded outwards."""
+    return least / math.pi * (1.0 - 1e-15), min(most / math.pi * (1.0 + 1e-15), 1.0)
 
 
 def _powers(weights: FloatArray) -> list[Fraction]:

@@ -19,36 +19,48 @@ Link: TypeAlias = tuple[Taylor, Taylor]
 
 
 def links_of(
-    apart: Interval, anchor: int, offset: Interval, turns: list[tuple[Interval, Interval]], half: FloatArray
-) -> list[Link]:
+    apart: Interval,
+    anchor: int,
+    upright: int,
+    offset: Interval,
+    turns: list[tuple[Interval, Interval]],
+    half: FloatArray,
+) -> tuple[list[Link], Taylor]:
     """Evaluate, for each point, the cosine to the antenna's axis, and one over the squared distance.
 
+    And the cosine of the axis to the vertical.
+
     Args:
-        apart: (m, 3) from the anchor to each point, in the chart's order.
-        anchor: which point that is.
-        offset: (3, b) from the positions to the anchor, at the centres.
+        apart: (m, 3) from the anchor to each point, or from the first one, in the chart's order.
+        anchor: which point that is, or -1 for the zenith.
+        upright: which coordinate is the altitude.
+        offset: (3, b) from the positions to the anchor or the first point, at the centres.
         turns: sine and cosine of the angle, then of the spin, at the centres.
         half: (5, b) the cells' half sides.
     """
     centre = stack([*(-offset[i] for i in range(3)), *(Interval(np.zeros(half.shape[1])),) * 2])
     cell = coordinates(centre, centre + Interval(-half, half))
     (su, cu), (ss, cs) = (_sine_cosine_over(cell[i], turns[i - 3], half[i]) for i in (3, 4))
-    r = -cell[:3]
+    r, across, upwards = -cell[:3], su * cs, su * ss
     x, y, z = r[0], r[1], r[2]
     f = x.squared() + z.squared()
     level, length = f.of(inverse_root), r.squared().total().of(inverse_root)
-    across, upwards = su * cs, su * ss
+
+    def along(w: Taylor | FloatArray, d: Interval | FloatArray) -> Taylor:
+        """Multiply the axis by a vector w, from which d differs along r alone."""
+        if anchor < 0:
+            return cu * w[2] + upwards * w[1] - across * w[0]
+        ahead = cu * ((r * w).total() * length)
+        ahead = ahead + upwards * ((f * d[1] - y * (x * d[0] + z * d[2])) * (level * length))
+        return ahead - across * ((z * d[0] - x * d[2]) * level)
+
     found = []
     for j, d in enumerate(apart[j] for j in range(len(apart.low))):
         w = r + d[:, None]
         near = w.squared().total().of(inverse_root)
-        cosine = cu
-        if j != anchor:
-            cosine = cu * ((r * w).total() * length)
-            cosine = cosine + upwards * ((f * d[1] - y * (x * d[0] + z * d[2])) * (level * length))
-            cosine = (cosine - across * ((z * d[0] - x * d[2]) * level)) * near
-        found.append((cosine, near.squared()))
-    return found
+        found.append((cu if j == anchor else along(w, d) * near, near.squared()))
+    vertical = np.eye(3)[upright][:, None]
+    return found, along(vertical, vertical)
 
 
 def _sine_cosine_over(

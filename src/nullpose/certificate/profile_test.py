@@ -22,9 +22,9 @@ from nullpose.certificate.boxes import Boxes, halved
 from nullpose.certificate.certificate import DEEPEST, Leaves
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.plain_tests import kept_out_holds
-from nullpose.certificate.profile import Profile, ProfileField
+from nullpose.certificate.profile import ProfileField
 from nullpose.certificate.profile_links import PI, Link, links_of, sine_cosine
-from nullpose.certificate.taylor import joined, pairs
+from nullpose.certificate.taylor import Taylor, joined, pairs
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -118,14 +118,17 @@ def _negative(
     """Check the sums of cells with one anchor and one chart for being negative, or no axis is reached."""
     chart, anchor = int(leaves.cell[0, 0]), int(leaves.point[0])
     order = np.array([chart, chart + 1, chart + 2]) % 3
+    upright, begin = (2 - chart) % 3, family.ratios.points_m[max(anchor, 0), order]
     points_m, centre_m = family.ratios.points_m[:, order], cells.boxes.centre.T[order]
-    apart, offset = Interval(points_m) - points_m[anchor], Interval(points_m[anchor][:, None]) - centre_m
+    apart, offset = Interval(points_m) - begin, Interval(begin[:, None]) - centre_m
     depth, index = cells.turn.T[::2], cells.turn.T[1::2]
-    span = np.array([[0.5 if field.even else 1.0], [2.0]])  # of both angles, in multiples of pi
-    half = np.vstack([cells.boxes.half.T[order], (PI * (span * np.ldexp(0.5, -depth))).high])
-    turns = [sine_cosine(x) for x in span * np.ldexp(index + 0.5, -depth) - [[0.0], [1.0]]]
-    missed = _out_of_reach(field, offset, turns, half, (2 - chart) % 3)
-    bound, shares = _largest(family, field.profile, leaves, links_of(apart, anchor, offset, turns, half))
+    low, high = field.spans[int(anchor < 0)].T[:, :, None]  # of both angles, in multiples of pi
+    half_turn = PI * ((high - low) * np.ldexp(0.5, -depth)) + _ANGLE_SLACK_RAD * (low < high)
+    half = np.vstack([cells.boxes.half.T[order], half_turn.high])
+    turns = [sine_cosine(x) for x in low + (high - low) * np.ldexp(index + 0.5, -depth)]
+    missed = (anchor >= 0) & _out_of_reach(field, offset, turns, half, upright)
+    links, vertical = links_of(apart, anchor, upright, offset, turns, half)
+    bound, shares = _largest(family, field, leaves, links, vertical)
     # a gain that hardly changes needs no cuts across the turn: what adds most is halved
     length_m = np.linalg.norm(offset.middle(), axis=0)
     sizes = half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))])
@@ -136,27 +139,48 @@ def _negative(
 
 
 def _largest(
-    family: Family, profile: Profile, leaves: Leaves, links: list[Link]
+    family: Family, field: ProfileField, leaves: Leaves, links: list[Link], vertical: Taylor
 ) -> tuple[FloatArray, FloatArray]:
     """Return upper bounds of the sums over cells, (b,), and about what each coordinate adds to them, (5, b).
 
     Args:
         family: the ratios.
-        profile: the antenna's gain.
+        field: with the antenna's gain.
         leaves: with multipliers and level.
         links: of each point.
+        vertical: cosine of the axis to the vertical.
     """
-    _, identity, terms = weighted_sum(family.ratios, leaves)
+    profile, (_, identity, terms) = field.profile, weighted_sum(family.ratios, leaves)
     zero, total = Interval(np.zeros(len(leaves))), links[0][0].alike(identity)
     for j, (cosine, near) in enumerate(links):
         weight = sum((where(point == j, scale * sign, 0.0) for point, scale, sign in terms), zero)
         at, over = cosine.at.value, cosine.over.value
         gain = cosine.composed(*(joined(profile.near(n, at), profile.within(n, over)) for n in range(3)))
         total = total + gain * near * weight
+    if np.any(leaves.band):
+        total = total + _within_reach(field, leaves.band, vertical)
     shares, bent = total.at.slopes.magnitude() * total.half, total.over.bends.magnitude()
     for pair, (i, j) in enumerate(zip(*pairs(5)[:2], strict=True)):
         shares[[i, j]] += bent[pair] * total.half[i] * total.half[j]
     return np.asarray(np.fmin(total.largest().high, total.over.value.high)), shares
+
+
+def _within_reach(field: ProfileField, band: FloatArray, vertical: Taylor) -> Taylor:
+    """Multiply by its multiplier what is not negative for axes within reach (proofs, "The reach").
+
+    Args:
+        field: with the ends of what is reached.
+        band: multipliers of the largest angle from the vertical, or minus those of the least.
+        vertical: cosine of the axis to the vertical.
+    """
+    least, most = field.ends[0][1], field.ends[1][1]
+    side = np.ones(len(band))
+    if field.even:  # the nearer of both directions, where all of the cell has the same
+        ahead, behind = vertical.over.value.low > 0.0, vertical.over.value.high < 0.0
+        side = ahead.astype(float) - behind.astype(float)
+        least = max(least, -most)
+    end = where(band > 0.0, np.nextafter(most, -1.0), np.nextafter(least, 1.0))
+    return (vertical * side - end) * (band * np.abs(side))
 
 
 def _out_of_reach(

@@ -87,7 +87,7 @@ _TESTS = {
     KEPT_OUT: _Test("keep-out", kept_out_holds, points=_borders),
     OFF_BAND: _Test("axes out of reach", off_band_holds),
     PROFILE: _Test(
-        "any axis of a profile", profile_holds, has_mix=True, points=lambda f: len(f.ratios.points_m)
+        "any axis of a profile", profile_holds, has_mix=True, points=lambda f: len(f.ratios.points_m) + 1
     ),
 }
 
@@ -181,7 +181,11 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "its test is for another antenna": (leaves.test == PROFILE) != isinstance(field, ProfileField),
         "its cell is that of a dipole": (leaves.test == PROFILE) & (leaves.face < 0),
         "its point does not exist": np.any(
-            [(leaves.test == kind) & _outside(leaves.point, count) for kind, count in points.items()], axis=0
+            [
+                (leaves.test == kind) & _outside(leaves.point + (kind == PROFILE), count)
+                for kind, count in points.items()
+            ],
+            axis=0,
         ),
         "its multipliers do not exist": has_mix & _outside(leaves.mix, len(leaves.mixes)),
         "its keep-out ball or zone does not exist": leaves.ball >= _borders(family),

@@ -12,7 +12,7 @@ from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes, verify
 from nullpose.certificate.certificate import AFFINE, OFF_BAND, PROFILE, TOWARDS, WORLD
 from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import antenna_axis, exact, ratios_at, value_of
-from nullpose.certificate.profile import profiles_of
+from nullpose.certificate.profile import ProfileField, profiles_of
 from nullpose.errors import UsageError, checked, require_usage
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -26,15 +26,15 @@ from nullpose.solver.result import Result
 from nullpose.solver.rigour import Rigour, bound_above
 
 
-def leaves_of(proof: Proof, axis: str, family: Family) -> Leaves:
+def leaves_of(proof: Proof, field: AxisField, family: Family) -> Leaves:
     """Convert a proof's leaves, their boxes as dyadic parts of the root.
 
     Args:
         proof: with its root and leaves.
-        axis: the name of its axis field in a certificate.
+        field: its axes.
         family: the ratios.
     """
-    return _of_profile(proof) if axis == "profile" else _of_dipole(proof, family)
+    return _of_profile(proof, field) if isinstance(field, ProfileField) else _of_dipole(proof, family)
 
 
 def _of_dipole(proof: Proof, family: Family) -> Leaves:
@@ -73,14 +73,13 @@ def _of_dipole(proof: Proof, family: Family) -> Leaves:
     )
 
 
-def _of_profile(proof: Proof) -> Leaves:
+def _of_profile(proof: Proof, field: ProfileField) -> Leaves:
     """Convert leaves of an antenna that is the same all round; they all hold at the bound."""
-    from nullpose.solver.kernels.bounds.attitude import ANCHOR, CHART, HALF, WARM
+    from nullpose.solver.kernels.bounds.attitude import ANCHOR, BAND, CHART, HALF, WARM
 
-    rows, none = proof.leaves, np.zeros(len(proof.leaves))
-    widest = math.pi / 2.0 if proof.is_even else math.pi
-    turns = rows[:, [3, 5]], rows[:, [HALF + 3, HALF + 5]]
-    turned = _parts(np.array([0.0, -math.pi]), np.array([widest, math.pi]), *turns)
+    rows = proof.leaves
+    low, high = math.pi * field.spans[(rows[:, ANCHOR] < 0.0).astype(np.int64)].transpose(2, 0, 1)
+    turned = _parts(low, high, rows[:, [3, 5]], rows[:, [HALF + 3, HALF + 5]])
     mix, mixes = _mixes(*_order_multipliers(rows[:, WARM:]))
     return Leaves(
         box=_parts(proof.root[0], proof.root[1], rows[:, :3], rows[:, HALF : HALF + 3]),
@@ -91,9 +90,9 @@ def _of_profile(proof: Proof) -> Leaves:
         mix=mix,
         mixes=mixes,
         sides=np.zeros((len(rows), 2)),
-        band=none,
+        band=rows[:, BAND].copy(),
         ball=np.full(len(rows), -1),
-        ball_multiplier=none,
+        ball_multiplier=np.zeros(len(rows)),
     )
 
 
@@ -105,7 +104,7 @@ def _order_multipliers(weights: FloatArray) -> tuple[IntArray, FloatArray, IntAr
 
 def _parts(low: FloatArray, high: FloatArray, centre: FloatArray, half: FloatArray) -> IntArray:
     """Locate boxes by depth and index along each coordinate in turn, (l, 2 n)."""
-    flat = high <= low
+    flat = (high <= low) | (half == 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         depth = np.where(flat, 0, np.rint(np.log2(0.5 * (high - low) / half)))
         index = np.where(flat, 0, np.rint((centre - low) / (2.0 * half) - 0.5))
@@ -217,8 +216,8 @@ def certificate_of(solution: Result) -> Certificate:
         pitch_rad=pose.pitch_rad,
         yaw_rad=pose.yaw_rad,
         trees=tuple(
-            Tree(axis=axis, root_m=proof.root, leaves=leaves_of(proof, axis, family))
-            for axis, proof in zip(fields, solution.proofs, strict=True)
+            Tree(axis=axis, root_m=proof.root, leaves=leaves_of(proof, field, family))
+            for (axis, field), proof in zip(fields.items(), solution.proofs, strict=True)
         ),
         provenance=dict(solution.provenance),
     )

@@ -28,6 +28,9 @@ from nullpose.solver.worker_pool import Kernel, WorkerPool
 
 _DIRECT_SHARE = 0.6  # of the time, for the gap asked for; then come wider ones, which show some bound
 _GAPS = (0.5, 0.1, 0.02)
+_IN_TURN = 150_000  # cells after which the other alignment is tried
+_SWING = 4.0  # over the noise: interference let in by turning a null through the reach, above which it leads
+_WIDEST_RAD = 1.5  # radians: of a reach for them
 _CLEAR = 0.35  # least cosine of the anchor's latitude in a chart
 
 
@@ -73,7 +76,7 @@ class PatternRun(BranchAndBound):
         options: what is asked for.
     """
 
-    chunk, nodes_of_search = 5_000, 60_000
+    chunk, nodes_of_search = 5_000, 300_000
 
     def __init__(
         self, family: Family, antenna: PatternAntenna, reach: AttitudeReach, options: SolveOptions
@@ -122,7 +125,6 @@ class PatternRun(BranchAndBound):
             leaves=self.leaves,
             reason=reason,
             nodes=self.nodes,
-            is_even=self.reach.even,
         )
         cells, proofs = (0, (proof,)) if len(self.leaves) else (self.nodes, ())
         return Outcome(incumbent=found, upper_bound=bound, reason=reason, proofs=proofs, cells=cells)
@@ -152,8 +154,12 @@ class PatternRun(BranchAndBound):
     def _stage(self, gap: float, until: float) -> str:
         """Exclude all above ``value (1 + gap)``; return why it stopped short, if it did."""
         root, self.keeps_leaves = self.root_of(gap), self.reach.spins
-        workers = WorkerPool(np.array(list(self._roots(*root))), orientation=(3, 3))
-        reason = self.work_off(workers, gap, self.node_limit - self.nodes, until)
+        pools = [WorkerPool(np.array(cells), orientation=(3, 3)) for cells in self._alignments(*root)]
+        in_turn = [(pool, _IN_TURN) for pool in pools] if len(pools) > 1 else []
+        for workers, most in (*in_turn, (pools[0], self.node_limit)):
+            reason = self.work_off(workers, gap, min(most, self.node_limit - self.nodes), until)
+            if not reason:
+                break
         bound = self.value * (1.0 + gap)
         if not reason and bound < self.proved:
             self.proved, self.root = bound, root
@@ -195,6 +201,46 @@ class PatternRun(BranchAndBound):
         low_m, high_m = self.search.box(level)
         return np.array([low_m, np.maximum(low_m, high_m)])
 
+    def _alignments(self, low_m: FloatArray, high_m: FloatArray) -> list[list[FloatArray]]:
+        """List the cells to begin with, aligned to a point or to the zenith, what promises more first.
+
+        The null follows a strong interferer in cells aligned to it; the reach is of angles from the zenith.
+        """
+        zenith, width_rad = self._zenith_cell(0.5 * (low_m + high_m), 0.5 * (high_m - low_m))
+        if width_rad == 0.0:
+            return [[zenith]]
+        to_point = list(self._roots(low_m, high_m))
+        if width_rad > _WIDEST_RAD or not self.reach.spins:
+            return [to_point]
+        is_strong = width_rad**2 * self.search.interference > _SWING
+        return [to_point, [zenith]] if is_strong else [[zenith], to_point]
+
+    def _zenith_cell(self, middle: FloatArray, half: FloatArray) -> tuple[FloatArray, float]:
+        """Return a cell of all attitudes aligned to the zenith, and the width of the reach, radians.
+
+        For an antenna that is not the same all round the attitudes are those of a level vehicle.
+        """
+        from nullpose.solver.kernels.bounds import attitude as a
+
+        cell, reach = self._cell(middle, half), self.reach
+        cell[a.ANCHOR], cell[a.HALF + 5] = -1, math.pi
+        if not reach.spins:
+            cell[3], cell[4] = math.atan2(reach.up[0], reach.up[2]), -math.asin(reach.up[1])
+            return cell, reach.tilt_max_rad
+        least = max(0.0, reach.mount_rad - reach.tilt_max_rad)
+        most = min(math.pi, reach.mount_rad + reach.tilt_max_rad)
+        cell[3], cell[a.HALF + 3] = 0.5 * (least + most), 0.5 * (most - least)  # u is the axis' angle
+        return cell, most - least
+
+    def _cell(self, middle: FloatArray, half: FloatArray) -> FloatArray:
+        """Return a cell of positions, whose multipliers are equal."""
+        from nullpose.solver.kernels.bounds import attitude as a
+
+        cell = np.zeros(a.WARM + len(self.family.ratios.numerator_point))
+        cell[:3], cell[a.HALF : a.HALF + 3] = middle, half * (1.0 + 1e-12)
+        cell[a.WARM :] = 1.0 / len(self.family.ratios.numerator_point)
+        return cell
+
     def _roots(self, low_m: FloatArray, high_m: FloatArray) -> Iterator[FloatArray]:
         """Yield cells of positions in a box and of all attitudes, to begin with."""
         from nullpose.solver.kernels.bounds import attitude as a
@@ -210,14 +256,12 @@ class PatternRun(BranchAndBound):
             yield from self._roots(upper, high_m)
             return
         for face in range(1 if self.reach.spins else 6):
-            cell = np.zeros(a.WARM + len(self.family.ratios.numerator_point))
-            cell[:3], cell[a.HALF : a.HALF + 3] = middle, half * (1.0 + 1e-12)
+            cell = self._cell(middle, half)
             cell[a.HALF + 3 : a.HALF + 6] = math.pi / 4.0, math.pi / 4.0, math.pi
             if self.reach.spins:  # u alone says where the anchor is: half a turn, or a quarter
                 cell[3] = cell[a.HALF + 3] = math.pi / 4.0 if self.reach.even else math.pi / 2.0
                 cell[a.HALF + 4] = 0.0
             cell[a.FACE], cell[a.CHART], cell[a.ANCHOR] = face, chart, anchor
-            cell[a.WARM :] = 1.0 / len(self.family.ratios.numerator_point)
             yield cell
 
     def _clearance(self, anchor: int, chart: int, middle: FloatArray, half: FloatArray) -> float:

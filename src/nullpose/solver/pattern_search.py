@@ -118,7 +118,18 @@ class PatternSearch(EpigraphSearch):
         np.add.at(weight, self.family.ratios.numerator_point, self.family.ratios.numerator_weight)
         weight /= len(self.family.ratios.numerator_point) * math.exp(self.best)
         np.add.at(weight, self.family.ratios.denominator_point, self.family.ratios.denominator_weight)
-        return int(np.argmax(weight / np.sum((self.family.ratios.points_m - self.state[:3]) ** 2, axis=1)))
+        return int(np.argmax(self._heard(weight)))
+
+    @property
+    def interference(self) -> float:
+        """The strongest interferer over the noise at the best position, for an isotropic gain of 1."""
+        weight = np.zeros(len(self.family.ratios.points_m))
+        np.add.at(weight, self.family.ratios.denominator_point, self.family.ratios.denominator_weight)
+        return float(np.max(self._heard(weight)))
+
+    def _heard(self, weight: FloatArray) -> FloatArray:
+        """Evaluate weights of points, (m,) m², over squared distances from the best position."""
+        return np.asarray(weight / np.sum((self.family.ratios.points_m - self.state[:3]) ** 2, axis=1))
 
     def _draw_attitudes(self, count: int) -> FloatArray:
         """Draw rotations that the airframe reaches, (count, 3, 3)."""

@@ -65,7 +65,6 @@ class Proof:
             rows if they are too many for a certificate.
         reason: why the target gap was not reached; empty if it was.
         nodes: boxes examined.
-        is_even: of an antenna with a pattern: whether opposite directions have the same gain.
     """
 
     incumbent: Incumbent
@@ -74,7 +73,6 @@ class Proof:
     leaves: FloatArray
     reason: str
     nodes: int
-    is_even: bool = False
 
 
 class _Run(BranchAndBound):

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from nullpose.antenna.caps import pattern_arrays
+from nullpose.antenna.half_wave import half_wave_harmonics
 from nullpose.antenna.harmonics import Harmonics
 from nullpose.problem.family import Family
 from nullpose.problem.records import AttitudeReach
@@ -93,6 +94,38 @@ def test_a_pose_keeps_its_cell(which: int, seed: int) -> None:
     stack = np.empty((4000, len(cell)))
     stack[0] = cell
     problem, pose = (family.ratios, family.domain, ARRAYS[which], ANY), (np.empty(3), np.empty((3, 3)))
+    code, top, *_ = branch_pattern(*problem, level, np.inf, False, stack, 1, stack, 0, 400, *pose)
+    assert code != DONE
+    assert top > 0
+
+
+LOBE = Harmonics(np.array([[1.0, 0.0], [-0.5, 0.0]]), np.zeros((2, 2)))
+THIN = half_wave_harmonics()
+
+
+@pytest.mark.parametrize("even", [True, False], ids=["even", "uneven"])
+@settings(max_examples=100)
+@given(seed=st.integers(0, 2**32 - 1), tilt=st.floats(0.0, 1.5), share=st.floats(-1.0, 1.0))
+def test_a_pose_within_reach_keeps_its_cell(even: bool, seed: int, tilt: float, share: float) -> None:
+    """So it is for antennas that are the same all round, by any anchor and at the ends of the reach."""
+    rng = np.random.default_rng(seed)
+    family = random_family(rng)
+    pattern = pattern_arrays(THIN if even else LOBE)
+    cell = random_cell(rng, family)
+    cell[FACE], cell[ANCHOR] = 0.0, rng.integers(-1, len(family.ratios.points_m))
+    cell[CHART] *= cell[ANCHOR] >= 0
+    cell[3], cell[4], cell[HALF + 4] = rng.uniform(0.0, np.pi / 2.0 if even else np.pi), 0.0, 0.0
+    inside = cell.copy()
+    inside[:6] += cell[HALF : HALF + 6] * rng.uniform(-1.0, 1.0, 6)
+    rotation, value = rotation_at(family, inside), np.empty(1)
+    angle = np.arccos(np.clip(abs(rotation[2, 2]) if even else rotation[2, 2], -1.0, 1.0))
+    mount = np.clip(angle + share * tilt, 0.0, np.pi / 2.0 if even else np.pi)
+    reach = AttitudeReach(tilt, mount, np.array([-np.sin(mount), 0.0, np.cos(mount)]), True, even)
+    judge(family.ratios, family.domain, pattern, np.append(inside[:3], rotation)[None], value)
+    level = float(np.exp(value[0])) * (1.0 - 1e-9)
+    stack = np.empty((4000, len(cell)))
+    stack[0] = cell
+    problem, pose = (family.ratios, family.domain, pattern, reach), (np.empty(3), np.empty((3, 3)))
     code, top, *_ = branch_pattern(*problem, level, np.inf, False, stack, 1, stack, 0, 400, *pose)
     assert code != DONE
     assert top > 0

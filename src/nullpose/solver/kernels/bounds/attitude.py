@@ -4,7 +4,11 @@ A pose is ``Q = S Ry(u) Rx(v) Rz(spin) A(p)``, body from world. A(p) turns the w
 ground point, to the third axis: ``A = Rx(-beta) Ry(-alpha)`` with the anchor's longitude alpha and latitude
 beta. So the anchor's direction in the body is a matter of u and v alone, a latitude and a longitude about the
 middle of one of six faces, which S turns to. Coordinates of positions and of the body are taken in cyclic
-order from ``row[CHART]`` and ``row[FACE]`` on: the poles are then far from where the cell is.
+order from ``row[CHART]`` and ``row[FACE]`` on: the poles are then far from where the cell is. The zenith as
+an anchor, in the first chart, has A = I: u and v then say where the body sees the vertical.
+
+An antenna that is the same all round hears the same under ``Rz(-spin) Q``, v being zero. That turns by less
+than Q, by ``2 sin(u/2)`` in place of 1 a radian of spin.
 """
 
 from __future__ import annotations
@@ -27,9 +31,9 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
     store,
 )
 
-CENTRE, HALF, FACE, CHART, ANCHOR, WARM = 0, 6, 12, 13, 14, 15
+CENTRE, HALF, FACE, CHART, ANCHOR, BAND, WARM = 0, 6, 12, 13, 14, 15, 16
 """A cell's row: middle and half-widths of position, u, v and spin; its face, its chart, the index of its
-anchor, and the multipliers to begin with."""
+anchor, -1 for the zenith, and the multipliers to begin with: that of the reach, and those of the ratios."""
 
 
 @inner_kernel
@@ -111,30 +115,31 @@ def in_body(frame, vector):
 
 
 @inner_kernel
-def move(frame, a, firsts, seconds):
-    """Fill how the way to a point moves in body axes, to second order.
+def move(frame, a, pace, firsts, seconds):
+    """Fill how the way to a point, or a direction of the world, moves in body axes, to second order.
 
     Args:
         frame: of the cell.
         a: the way at its middle, in body axes.
+        pace: 1 for a way, which shortens as the position moves along it, or 0 for a direction.
         firsts: output, (6, 3): derivatives along the coordinates.
         seconds: output, (6, 6, 3): likewise; the upper half.
     """
     for i in range(3):
-        store(minus(cross(row(frame, 3 + i), a), row(frame, i)), firsts[i])
+        store(along(cross(row(frame, 3 + i), a), -pace, row(frame, i)), firsts[i])
         store(cross(row(frame, 6 + i), a), firsts[3 + i])
     for i in range(3):
         about, step, slope = row(frame, 3 + i), row(frame, i), row(firsts, i)
         for j in range(i, 3):
             bent = along(cross(row(frame, 9 + 3 * i + j), a), 1.0, cross(about, row(firsts, j)))
-            store(minus(bent, cross(row(frame, 3 + j), step)), seconds[i, j])
+            store(along(bent, -pace, cross(row(frame, 3 + j), step)), seconds[i, j])
             store(cross(row(frame, 6 + i), row(firsts, 3 + j)), seconds[3 + i, 3 + j])
         for j in range(3):
             store(cross(row(frame, 6 + j), slope), seconds[i, 3 + j])
 
 
 @inner_kernel
-def rates(cell, reach_m, anchor_m, anchor_near_m):
+def rates(cell, spins, reach_m, anchor_m, anchor_near_m):
     """Bound how fast a cell's frames turn along any straight line from its middle into it.
 
     Bounds of the turning, of its first and of its second derivative, for the frame that holds the anchor
@@ -142,6 +147,7 @@ def rates(cell, reach_m, anchor_m, anchor_near_m):
 
     Args:
         cell: the cell.
+        spins: whether the antenna is the same all round.
         reach_m: half-diagonal of its positions.
         anchor_m: from its middle to the anchor, in the chart's order.
         anchor_near_m: the least distance between anchor and cell.
@@ -151,6 +157,11 @@ def rates(cell, reach_m, anchor_m, anchor_near_m):
     held = (wy, hu * hv, hu * hu * hv)
     we, we2 = wy + hs, hu * hv + hs * wy
     we3 = held[2] + hs * (hu * hv + wy * wy)
+    if spins:  # the largest sin u and 2 sin(u/2)
+        across = min(1.0, abs(math.sin(cell[3])) + hu)
+        chord = min(2.0, 2.0 * abs(math.sin(0.5 * cell[3])) + hu)
+        we, we2 = math.hypot(hu, chord * hs), hs * math.hypot(2.0 * hu, hs * across)
+        we3 = hs * (3.0 * hu * hs + across * hs * hs + hu * hu)
     level = math.hypot(anchor_m[0], anchor_m[2]) - reach_m
     if level <= 0.0 or anchor_near_m <= 0.0:
         return held, (math.inf, math.inf, math.inf)
@@ -173,7 +184,7 @@ def rates(cell, reach_m, anchor_m, anchor_near_m):
 
 
 @inner_kernel
-def direction_rate(cell, frame, a, turning, away):
+def direction_rate(cell, spins, frame, a, turning, away):
     """Bound how far the direction to a point moves from a cell's middle into it, radians.
 
     From its derivatives at the middle, and a bound on the second derivative between; or from the turning and
@@ -181,6 +192,7 @@ def direction_rate(cell, frame, a, turning, away):
 
     Args:
         cell: the cell.
+        spins: whether the antenna is the same all round.
         frame: its frame.
         a: the way to the point at its middle, in body axes.
         turning: bounds of the turning and of its derivatives.
@@ -196,6 +208,8 @@ def direction_rate(cell, frame, a, turning, away):
         shift = minus(cross(row(frame, 3 + i), b), over(row(frame, i), length))
         store(scaled(sides[i], shift), steps[i])
         store(scaled(cell[HALF + 3 + i], cross(row(frame, 6 + i), b)), steps[3 + i])
+    if spins:
+        store(along(row(steps, 5), -cell[HALF + 5], cross((0.0, 0.0, 1.0), b)), steps[5])
     for i in range(6):
         along_i = dot(steps[i], b)
         for j in range(i, 6):

@@ -42,11 +42,15 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
 from nullpose.solver.kernels.search.pattern_search import quotient
 
 _WIDEST = 1.0  # radians: directions in wider caps are not expanded
+_ZENITH_M = 1e30  # metres to an anchor that no position changes the direction to
 _HALVINGS = 14
 _PACE = 2.0
 _STEPS = 40
 
 LEAST, MOST, REST = 0, 1, 2  # rows of a point's bounds over a cell
+CONSTANT, NU, SIDE, BOUND, BY_NU = 0, 1, 2, 3, 4
+"""Of the reach's term (:mod:`.tilt_reach`): its constant from above, its multiplier, and 1 or -1 for the
+largest or the least angle; of the last sum that was bounded: the bound, and its slope by that multiplier."""
 
 
 @inner_kernel
@@ -58,25 +62,34 @@ def vector_to(points, j, row):
 
 
 @inner_kernel
-def fill_points(family, pattern, row, space):
+def anchor_of(points, row):
+    """Return the way from a cell's middle to its anchor, in the chart's order, and the least in the cell."""
+    anchor = int(row[ANCHOR])
+    if anchor < 0:
+        return (0.0, 0.0, _ZENITH_M), _ZENITH_M
+    near, _ = square_range(points[anchor], row, row[HALF:], 3)
+    return vector_to(points, anchor, row), math.sqrt(near)
+
+
+@inner_kernel
+def fill_points(family, pattern, spins, row, space):
     """Fill every point's bounds over the cell.
 
     Of ``g / r^2``: least and largest over the cell, and a bound on the remainder of the second
-    order, with a margin for rounding. Returns how far any frame may turn in the cell, radians.
+    order, with a margin for rounding. Returns by how much any frame may turn in the cell, radians, and a
+    bound on the remainder of a direction of the world.
     """
     points, caps = family.points_m, scratch(5)
-    anchor = int(row[ANCHOR])
-    anchor_m = vector_to(points, anchor, row)
+    anchor_m, anchor_near_m = anchor_of(points, row)
     fill_frame(row, anchor_m, space.frame)
     reach = norm(row[HALF : HALF + 3])
-    near, _ = square_range(points[anchor], row, row[HALF:], 3)
-    held, whole = rates(row, reach, anchor_m, math.sqrt(near))
+    held, whole = rates(row, spins, reach, anchor_m, anchor_near_m)
     for j in range(points.shape[0]):
         a = in_body(space.frame, vector_to(points, j, row))
         near, far = square_range(points[j], row, row[HALF:], 3)
         e = reach / math.sqrt(near) if near > 0.0 else math.inf
-        is_anchor = j == anchor
-        width = held[0] if is_anchor else direction_rate(row, space.frame, a, whole, e)
+        is_anchor = j == int(row[ANCHOR])
+        width = held[0] if is_anchor else direction_rate(row, spins, space.frame, a, whole, e)
         cap_bounds(pattern, unit(a), min(width, math.pi), caps)
         least, most = -caps[0], caps[1]
         low, high = excess_range(family, j, row[:3], row[HALF : HALF + 3])
@@ -93,7 +106,7 @@ def fill_points(family, pattern, row, space):
             rest = third(turning, width, e, away, g0, caps[2], caps[3], caps[4])
             below = (high - low) * max(0.0, -least)  # where a gain is negative the other end counts
             space.wide[REST, j] = (end * (rest + pattern.rounding) + below) / near
-    return whole[0]
+    return whole[0], (whole[2] + 3.0 * whole[1] * whole[0] + whole[0] ** 3) / 6.0
 
 
 @inner_kernel
@@ -139,7 +152,7 @@ def expand(family, pattern, row, space):
         a = in_body(space.frame, vector_to(points, j, row))
         square = dot(a, a)
         length, excess = math.sqrt(square), space.excess[j]
-        move(space.frame, a, firsts, seconds)
+        move(space.frame, a, 1.0, firsts, seconds)
         space.value[j] = excess * gain_jet(pattern, over(a, length), slopes, stiff) / square
         p1, p2 = excess / (square * length), excess / (square * square)
         pull = scaled(p1, slopes)
@@ -185,9 +198,10 @@ def fill_constants(family, level, space):
 
 @inner_kernel
 def weigh(family, level, multipliers, space):
-    """Fill every point's factor in ``sum_k l_k (N_k - t D_k)``; return the sum of the constants."""
+    """Fill the factors of points and reach in ``sum_k l_k (N_k - t D_k) + nu h``; return its constant."""
     space.factor[:] = 0.0
-    total = 0.0
+    space.factor[-1] = space.reach[NU]
+    total = space.reach[NU] * space.reach[CONSTANT]
     for k in range(multipliers.shape[0]):
         total += multipliers[k] * space.f[k]
         g = family.denominator_of[k]
@@ -199,7 +213,7 @@ def weigh(family, level, multipliers, space):
 
 @inner_kernel
 def upper(family, level, half, multipliers, space):
-    """Return an upper bound of ``sum_k l_k (N_k - t D_k)`` over the cell, convex in l; fill its slopes by l.
+    """Return an upper bound of the sum over the cell, convex in l and nu; fill its slopes by both.
 
     With ``|x_i| <= h_i`` the Hessian's mixed terms are
     ``|x_i x_j| <= (x_i^2 h_j / h_i + x_j^2 h_i / h_j) / 2``: what is left is one parabola for each
@@ -248,6 +262,8 @@ def upper(family, level, half, multipliers, space):
         for e in range(family.denominator_start[g], family.denominator_start[g + 1]):
             by -= level * family.denominator_weight[e] * parts[family.denominator_point[e]]
         space.by_l[k] = by
+    space.reach[BOUND] = total
+    space.reach[BY_NU] = space.reach[CONSTANT] + parts[points - 1]
     return total
 
 

@@ -8,24 +8,23 @@ from typing import NamedTuple
 import numpy as np
 
 from nullpose.objectives import FloatArray
-from nullpose.solver.kernels.bounds.attitude import ANCHOR, CENTRE, CHART, HALF, WARM
+from nullpose.solver.kernels.bounds.attitude import ANCHOR, BAND, CENTRE, CHART, HALF, WARM
 from nullpose.solver.kernels.bounds.branch import BETTER, BY_POSITION, DONE, EXCLUDED, FULL, LIMIT
 from nullpose.solver.kernels.bounds.node import split_across
 from nullpose.solver.kernels.bounds.pattern_bound import (
-    excluded_by_sum,
     expand,
     fill_constants,
     fill_points,
     middle,
     weak_ratio,
 )
+from nullpose.solver.kernels.bounds.tilt_reach import ROUNDING_RAD, excluded_within_reach, fill_reach
 from nullpose.solver.kernels.compiler.jit import heap_kernel, inner_heap_kernel, inner_kernel
+from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.symmetric import copy_into
 from nullpose.solver.kernels.linear_algebra.vectors import row as row_of, square_range, store
 from nullpose.solver.kernels.search.domain import contains, forbidding
 from nullpose.solver.kernels.search.pattern_search import bring_within_reach, fill_log_ratios, tilt_of
-
-_ROUNDING_RAD = 1e-9  # radians
 
 
 class Space(NamedTuple):
@@ -47,24 +46,27 @@ class Space(NamedTuple):
     one_sided: FloatArray
     is_numerator: FloatArray
     excess: FloatArray
+    reach: FloatArray
+    kept: FloatArray
 
 
 @inner_kernel
-def choose(family, row, space):
+def choose(family, spins, row, space):
     """Return the coordinate to split: the one that adds most to the bound."""
-    anchor = int(row[ANCHOR])
+    anchor, reach = max(0, int(row[ANCHOR])), scratch(6)
     near, far = square_range(family.points_m[anchor], row, row[HALF:], 3)
     length = math.sqrt(0.5 * (near + far))
-    total = 0.0
     for i in range(6):
-        total += row[HALF + i] * (2.0 / length if i < 3 else 1.0)
+        reach[i] = row[HALF + i] * (2.0 / length if i < 3 else 1.0)
+    if spins:  # beside the anchor a spin moves the axis by little
+        reach[5] *= min(1.0, abs(math.sin(row[3])) + row[HALF + 3])
+    total = np.sum(reach)
     rest = 0.0
     for k in range(space.rest.shape[0]):
         rest += row[WARM + k] * space.rest[k]
     most, axis = -1.0, 0
     for i in range(6):
-        rate = row[HALF + i] * (2.0 / length if i < 3 else 1.0)
-        score = rate if not math.isfinite(rest) else space.score[i] + 3.0 * rest * rate / total
+        score = reach[i] if not math.isfinite(rest) else space.score[i] + 3.0 * rest * reach[i] / total
         if score > most:
             most, axis = score, i
     return axis
@@ -81,9 +83,9 @@ def space_of(family):
             if family.denominator_point[e] == family.numerator_point[k]:
                 one_sided[family.numerator_point[k]] = 0.0
     return Space(
-        np.empty((3, m)), np.empty(m), np.empty((m, 6)), np.empty((m, 6, 6)), np.empty((18, 3)),
-        np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m),
-        np.empty(m), one_sided, is_numerator, np.empty(m),
+        np.empty((3, m)), np.empty(m), np.empty((m + 1, 6)), np.empty((m + 1, 6, 6)), np.empty((18, 3)),
+        np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(6), np.empty(6), np.empty(m + 1),
+        np.empty(m + 1), one_sided, is_numerator, np.empty(m), np.zeros(5), np.empty(n),
     )  # fmt: skip
 
 
@@ -103,13 +105,13 @@ def is_better(family, domain, pattern, reach, floor, row, space, position, rotat
 def examine_cell(family, domain, pattern, reach, level, floor, row, space, position, rotation):
     """Examine a cell: EXCLUDED, BETTER or BY_POSITION; fill its multipliers, zero where it has no pose."""
     if forbidding(domain, row[CENTRE:], row[HALF:]) >= 0:
-        row[WARM:] = 0.0
+        row[BAND:] = 0.0
         return EXCLUDED
-    turning = fill_points(family, pattern, row, space)
+    turning, rest = fill_points(family, pattern, reach.spins, row, space)
     tilt, _ = tilt_of(reach, row_of(space.frame, (2 - int(row[CHART])) % 3))
     weak = weak_ratio(family, level, space)
-    if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + _ROUNDING_RAD:
-        row[WARM:] = 0.0
+    if weak >= 0 or abs(tilt) - turning > reach.tilt_max_rad + ROUNDING_RAD:
+        row[BAND:] = 0.0
         if weak >= 0:
             row[WARM + weak] = 1.0
         return EXCLUDED
@@ -121,7 +123,8 @@ def examine_cell(family, domain, pattern, reach, level, floor, row, space, posit
         return BY_POSITION
     expand(family, pattern, row, space)
     fill_constants(family, level, space)
-    return EXCLUDED if excluded_by_sum(family, level, row, space) else BY_POSITION
+    fill_reach(row, reach, turning, rest, space)
+    return EXCLUDED if excluded_within_reach(family, level, row, space) else BY_POSITION
 
 
 @heap_kernel
@@ -142,7 +145,7 @@ def branch_pattern(
         top: how many of them there are.
         keep: whether excluded cells become leaves.
         leaves: (l, columns) output, excluded cells with the multipliers that do so in place of those to begin
-            with; all zero where no pose of the cell is allowed.
+            with, that of the least angle negated; all zero where no pose of the cell is allowed.
         filled: how many leaves there are.
         budget: cells to examine at most.
         position: output, (3,): that of the better pose.
@@ -162,7 +165,7 @@ def branch_pattern(
         if verdict == BETTER:
             return BETTER, top + 1, filled, done, 0
         if verdict == BY_POSITION:
-            side = choose(family, row, space)
+            side = choose(family, reach.spins, row, space)
             split_across(row, side, HALF + side, stack[top], stack[top + 1])
             top += 2
         elif keep:
