@@ -94,6 +94,11 @@ def less(made: Certificate) -> Certificate:
     return with_tree(made, leaves=leaves.chosen(np.arange(1, len(leaves))))
 
 
+def of_objective(made: Certificate, objective: str) -> Certificate:
+    """Claim the same of another objective."""
+    return replace(made, scenario=apply_overrides(made.scenario, [f"objective={objective}"]))
+
+
 def two_anchors(made: Certificate) -> Certificate:
     """Take the angles of a box's leaf from another point than those of its other leaves."""
     leaves = made.trees[0].leaves
@@ -112,9 +117,11 @@ FORGED: dict[str, tuple[Callable[[Certificate], Certificate], str]] = {
     "leaf left out": (less, "do not cover the root"),
     "root": (shrunk, "beyond which poses could exceed"),
     "chart": (lambda c: with_leaves(c, cell=first([3, 0, 0, 0, 0])), "its cell does not exist"),
-    "face": (lambda c: with_leaves(c, cell=first([-1, 0, 0, 0, 0])), "its cell is that of a dipole"),
+    "face": (lambda c: with_leaves(c, cell=first([-1, 0, 0, 0, 0])), "it has no chart"),
     "test of a dipole": (lambda c: with_leaves(c, test=lambda x: 0 * x + WORLD), "for another antenna"),
     "anchor": (lambda c: with_leaves(c, point=first(3)), "its point does not exist"),
+    "chart of the zenith": (lambda c: with_leaves(c, point=lambda p: 0 * p - 1), "which has chart 0 alone"),
+    "mean": (lambda c: of_objective(c, "sum-rate"), "for a dipole only"),
     "anchors of one box": (two_anchors, "do not cover the root"),
     "multipliers": (lambda c: with_leaves(c, mix=lambda x: np.roll(x, 1)), "is not excluded"),
     "value": (lambda c: replace(c, value=c.value * (1.0 + 1e-6)), "its smallest SINR is"),

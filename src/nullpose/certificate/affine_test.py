@@ -1,7 +1,7 @@
 """Leaves of an axis that the position gives: a weighted sum that stays negative all over the box.
 
 Each link is ``f = |u x r|^2 / (|u|^2 |r|^4)`` with ``u = o + M p`` and ``r = q - p``, evaluated as a Taylor
-number; the maximum of the quadratic is bounded by its dual (see "The certificate explained").
+number; the maximum of the quadratic is bounded by its dual (see docs/proofs.md).
 """
 
 from __future__ import annotations

@@ -115,7 +115,7 @@ def uncovered(leaves: Leaves) -> str:
     faces, depths, indices = leaves.face, leaves.depths, leaves.indices
     depths[faces < 0, 3:] = 0  # without a cell it is whole
     if is_profile := bool(np.all(leaves.test == PROFILE)):
-        faces = faces + 3 * (leaves.point + 1)
+        faces = leaves.chart + 3 * (leaves.point + 1)
     # of each leaf that is left: its number, its region, and that one's depths and face, -1 for all of them
     leaf, region, depth = np.arange(len(leaves)), np.zeros(len(leaves), dtype=np.int64), np.zeros_like(depths)
     on_face = np.full(len(leaves), -1)

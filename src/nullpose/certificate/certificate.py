@@ -81,7 +81,12 @@ class Leaves:
 
     @property
     def face(self) -> IntArray:
-        """The face of the cube of axes, (l,), -1 for every axis; or the chart."""
+        """The face of the cube of axes, (l,), -1 for every axis."""
+        return self.cell[:, 0]
+
+    @property
+    def chart(self) -> IntArray:
+        """The chart of leaves of rotationally symmetric antennas, (l,)."""
         return self.cell[:, 0]
 
     @property

@@ -57,8 +57,12 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
         "antennas with a pattern have certificates in free space only": (
             len(family.ratios.channels) > 0 and not certificate.scenario.antenna_record.is_quadratic
         ),
-        "the objective friendly-jamming has certificates for a dipole only": (
-            len(family.ratios.pairs) > 0 and not certificate.scenario.antenna_record.is_quadratic
+        f"the objective {certificate.scenario.objective} has certificates for a dipole only": (
+            max(len(family.ratios.pairs), len(family.ratios.shares)) > 0
+            and not certificate.scenario.antenna_record.is_quadratic
+        ),
+        "antennas with a pattern have certificates without dipoles on the ground only": (
+            len(family.ratios.ground_axes) > 0 and not certificate.scenario.antenna_record.is_quadratic
         ),
         f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
         "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),

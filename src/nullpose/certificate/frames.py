@@ -1,6 +1,6 @@
 """Forms of points seen from a box, in a frame that stands still or turns towards a point.
 
-The same lemmas as the solver's (see "The certificate explained"), written down again: in world coordinates,
+The same lemmas as the solver's (see docs/proofs.md), written down again: in world coordinates,
 turned into a convenient basis by a congruence, which changes no sign, and in interval arithmetic. Vectors
 have their components, and forms their six numbers, along the first axis, the boxes along the last.
 
@@ -94,7 +94,7 @@ def expansion(
 ) -> tuple[Linear, Interval, Interval]:
     """Expand the form of one point for each box, and bound two second derivatives, (b,) each: lemmas 1 and 2.
 
-    The first bounds the form's from above, or minus it, as ``is_above`` says, and multiplies the identity;
+    The first bounds that of the form (``is_above``) or of minus the form, a multiple of the identity;
     for the anchor of a turning frame, what its form is made of: :func:`anchor_shape`. The second bounds the
     length of the link vector's.
     """

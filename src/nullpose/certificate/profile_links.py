@@ -32,7 +32,7 @@ def links_of(
 
     Args:
         apart: (m, 3) from the anchor to each point, or from the first one, in the chart's order.
-        anchor: which point that is, or -1 for the zenith.
+        anchor: which point that is, or -1 for the zenith, whose chart is 0: u is then from the vertical.
         upright: which coordinate is the altitude.
         offset: (3, b) from the positions to the anchor or the first point, at the centres.
         turns: sine and cosine of the angle, then of the spin, at the centres.
@@ -47,7 +47,7 @@ def links_of(
     level, length = f.of(inverse_root), r.squared().total().of(inverse_root)
 
     def along(w: Taylor | FloatArray, d: Interval | FloatArray) -> Taylor:
-        """Multiply the axis by a vector w, from which d differs along r alone."""
+        """Multiply the axis by a vector w; d is w, or w less r, which the terms across r do not see."""
         if anchor < 0:
             return cu * w[2] + upwards * w[1] - across * w[0]
         ahead = cu * ((r * w).total() * length)

@@ -9,7 +9,8 @@ cyclic order from the leaf's chart on, the cosine between axis and w_j is
 
 The sum of ``g(c_j) / |w_j|^2`` with the leaf's multipliers is bounded by its value and slopes at the centre
 and its second derivatives over the box. Where the polynomial g is below zero, the gain is zero. For an
-interferer the sum is then too large, which is safe; for a node its ratio is below the level, which is tested.
+interferer the sum is then too large, which is safe; for a node its ratio is below the level, which is tested:
+that holds for the smallest ratio, and no mean has a certificate here.
 """
 
 from __future__ import annotations
@@ -105,18 +106,20 @@ def _excluded(
     """Check which cells are excluded, and find the coordinate to halve of those that are not."""
     excluded = _all_kept_out(family, field, leaves, cells.boxes)
     side = np.zeros(len(cells.boxes), dtype=np.int64)
-    key = leaves.point * 3 + leaves.face
+    key = leaves.point * 3 + leaves.chart
     for shared in np.unique(key):
         if len(rows := np.flatnonzero((key == shared) & ~excluded)):
-            excluded[rows], side[rows] = _negative(family, field, leaves.chosen(rows), cells.chosen(rows))
+            excluded[rows], side[rows] = _excluded_by_bound(
+                family, field, leaves.chosen(rows), cells.chosen(rows)
+            )
     return excluded, side
 
 
-def _negative(
+def _excluded_by_bound(
     family: Family, field: ProfileField, leaves: Leaves, cells: _Cells
 ) -> tuple[np.ndarray, IntArray]:
-    """Check the sums of cells with one anchor and one chart for being negative, or no axis is reached."""
-    chart, anchor = int(leaves.cell[0, 0]), int(leaves.point[0])
+    """Check which cells of one anchor and chart have a negative sum, or no axis within reach."""
+    chart, anchor = int(leaves.chart[0]), int(leaves.point[0])
     order = np.array([chart, chart + 1, chart + 2]) % 3
     upright, begin = (2 - chart) % 3, family.ratios.points_m[max(anchor, 0), order]
     points_m, centre_m = family.ratios.points_m[:, order], cells.boxes.centre.T[order]
@@ -132,7 +135,7 @@ def _negative(
     # a gain that hardly changes needs no cuts across the turn: what adds most is halved
     length_m = np.linalg.norm(offset.middle(), axis=0)
     sizes = half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))])
-    # without a multiplier the leaf is out of the airframe's reach, whatever the sum
+    # without multipliers of ratios the leaf is out of reach, whatever the sum: the largest side is cut
     tells = np.all(np.isfinite(shares), axis=0) & np.any(shares > _NOTHING, axis=0)
     side = np.argmax(np.where(tells, shares, sizes), axis=0)
     return missed | (bound < 0.0), np.where(side < 3, order[np.minimum(side, 2)], side)
@@ -166,7 +169,7 @@ def _largest(
 
 
 def _within_reach(field: ProfileField, band: FloatArray, vertical: Taylor) -> Taylor:
-    """Multiply by its multiplier what is not negative for axes within reach (proofs, "The reach").
+    """Multiply what is not negative for axes within reach by its multiplier.
 
     Args:
         field: with the ends of what is reached.

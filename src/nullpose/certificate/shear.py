@@ -1,6 +1,6 @@
 """Link vectors over boxes, and the coordinates in which a point's form stands still.
 
-The same lemmas as the solver's (see "The certificate explained", "Dipoles on the ground"). Vectors have their
+The same lemmas as the solver's (see docs/proofs.md, "Dipoles on the ground"). Vectors have their
 components along the first axis, boxes lie along the last. Derivatives are those of Taylor numbers but for the
 third, which none has: bounding what is left of a link vector by the range of its second derivatives instead
 would make a remainder several times as large, and every other leaf fail. There lemma 5 stays.

@@ -179,7 +179,10 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "its test is unknown": ~np.isin(leaves.test, list(_TESTS)),
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
         "its test is for another antenna": (leaves.test == PROFILE) != isinstance(field, ProfileField),
-        "its cell is that of a dipole": (leaves.test == PROFILE) & (leaves.face < 0),
+        "it has no chart": (leaves.test == PROFILE) & (leaves.chart < 0),
+        "its angles are from the zenith, which has chart 0 alone": (
+            (leaves.test == PROFILE) & (leaves.point < 0) & (leaves.chart != 0)
+        ),
         "its point does not exist": np.any(
             [
                 (leaves.test == kind) & _outside(leaves.point + (kind == PROFILE), count)

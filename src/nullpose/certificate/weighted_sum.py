@@ -120,7 +120,7 @@ def level_factor(
 
 
 def weighted_sum(ratios: Ratios, leaves: Leaves) -> tuple[Ratios, Interval, list[Term]]:
-    """State a sum's multiple of the identity, and its terms.
+    """State a sum's multiple of the identity, and its terms: weak duality.
 
     A dipole of leak f is two points at one place: ``1 - f`` times the dipole, and f times an isotropic one.
     The ratios that are returned first have both.
