@@ -99,3 +99,17 @@ def test_faults_of_a_motion_have_their_path(run: Run) -> None:
     assert done.exit_code == 2
     assert "time.step_s: got 61, must be at most duration_s = 60" in done.stderr
     assert run("check", MOVING, "--set", "time.step_s=2", "--at", 3).exit_code == 0
+
+
+def test_one_pose_is_held_for_all_instants(run: Run) -> None:
+    """The value is the smallest of every instant; options of one instant or another pose are refused."""
+    level = ("--set", "airframe.tilt_max_deg=0", "--set", "time.step_s=10")
+    found = json.loads(run("solve", MOVING, "--hover", *level, "--json").stdout)
+    assert found["hover"]["time_s"] == [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0]
+    assert found["objective"]["value"] == min(found["hover"]["value"])
+    assert found["scenario"]["at_s"] == found["hover"]["worst_s"]
+    assert found["status"] == "certified"
+    for words in (("--at", 3), ("--verify",), ("--robust",), ("--scheme", "vertical")):
+        done = run("solve", MOVING, "--hover", *words)
+        assert done.exit_code == 2
+        assert "with --hover" in done.stderr

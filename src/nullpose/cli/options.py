@@ -123,8 +123,11 @@ class SceneOptions:
     allow_outside: AllowOutside = False
     at_s: At = None
 
-    def read(self) -> Scenario:
+    def read(self, in_motion: bool = False) -> Scenario:
         """Read the scenario with its values changed, still at an instant; warn of what looks like a mistake.
+
+        Args:
+            in_motion: whether all instants are asked for, and not one.
 
         Raises:
             ScenarioError: with every fault of the file or of the changes.
@@ -140,7 +143,9 @@ class SceneOptions:
         )
         for warning in doubts(scenario):
             say(f"warning: {warning}", err=True)
-        return scenario.still(self.at_s)
+        if in_motion:
+            refuse("with --hover", at=self.at_s is not None)
+        return scenario if in_motion else scenario.still(self.at_s)
 
     def check_outputs(self, outputs: Iterable[tuple[str, Path | None]]) -> None:
         """Make sure, before any work, that outputs can be written and take no input's place.

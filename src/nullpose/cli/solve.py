@@ -54,6 +54,14 @@ def solve(
             "--robust", help="Maximise the value guaranteed under the scenario's errors; default gap 1e-2."
         ),
     ] = False,
+    hover: Annotated[
+        bool,
+        typer.Option(
+            "--hover",
+            help="For a scene in motion: hold one pose at all its instants, the value being the smallest; "
+            "default gap 1e-4.",
+        ),
+    ] = False,
     off: Off = None,
     null_jammer: Annotated[
         str | None,
@@ -107,21 +115,23 @@ def solve(
     from nullpose.report.words import error_words
     from nullpose.solver import solve as solve_scenario
     from nullpose.solver.certificate_from_proof import require_certificate, verified
+    from nullpose.solver.hover import HOVER_GAP
     from nullpose.solver.options import SolveOptions
     from nullpose.solver.robust import ROBUST_GAP
 
-    scenario = scene.read()
+    scenario = scene.read(in_motion=hover)
     if exports := export or []:
         from nullpose.report.export import require_exports
 
-        require_exports(scenario, exports)
+        require_exports(scenario.still(), exports)
     prepare_outputs(scene, certificate=certificate, export=exports, figure=figure or [], width=width)
     options, sizes = proof.keywords(fast), error_sizes(off)
     is_checked = verify or certificate is not None
     is_array = scenario.array is not None and not robust
-    if robust or is_array:
+    if robust or hover or is_array:
         refuse(
-            "with --robust" if robust else "for a scenario with an [array]",
+            "with --hover" if hover else "with --robust" if robust else "for a scenario with an [array]",
+            robust=robust and hover,
             export=exports if is_array else None,
             scheme=scheme is not Scheme.OPTIMUM,
             null_jammer=null_jammer,
@@ -136,15 +146,17 @@ def solve(
     if robust and not scenario.is_uncertain:
         scenario = _with_errors(scenario, sizes)
         note = _ASSUMED.format(error_words(scenario))
-    target = SolveOptions(**options).of(scenario, ROBUST_GAP if robust else None).target
+    gap = ROBUST_GAP if robust else HOVER_GAP if hover else None
+    target = SolveOptions(**options).of(scenario, gap).target
     with compiling_announced(proof.time_limit), GapBar(target) as bar:
         found = solve_scenario(
-            scenario, scheme, null_jammer=null_jammer, robust=robust, on_progress=bar, **options
+            scenario, scheme, null_jammer=null_jammer, robust=robust, hover=hover, on_progress=bar, **options
         )
     if is_checked:
         with Ticker("checking leaves") as ticker:
             found = verified(found, ticker)
-    found = replace(found, error_sizes=sizes, note=" ".join(filter(None, (note, found.note))))
+    note = " ".join(filter(None, (note, found.note)))
+    found = replace(found, error_sizes=None if hover else sizes, note=note)
     is_rejected = is_checked and found.rigour.value != "verified"
     files = _write(found, None if is_rejected else certificate, exports, figure or [], width)
     fault = _REJECTED.format(found.reason) if is_rejected else ""

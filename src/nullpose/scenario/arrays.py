@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 _IN_MOTION = (
     "scenario: given a scene in motion; allowed: a still one; call .at(t) with a time in seconds, as in "
-    "scenario.at(0.0), or .instants_s for all times"
+    "scenario.at(0.0), or .instants_s for all times; solve(scenario, hover=True) holds one pose for all"
 )
 
 

@@ -4,6 +4,7 @@ from nullpose.problem.schemes import Scheme, as_scheme
 from nullpose.solver.api import best_axis, compare, solve
 from nullpose.solver.array import ArrayDetails
 from nullpose.solver.compiling import announce_compiling
+from nullpose.solver.hover import HoverDetails
 from nullpose.solver.many import ManySolutions, solve_many
 from nullpose.solver.objective import Objective
 from nullpose.solver.options import (
@@ -23,6 +24,7 @@ __all__ = [
     "TIME_LIMIT_S",
     "ArrayDetails",
     "ErrorSizes",
+    "HoverDetails",
     "ManySolutions",
     "Objective",
     "Result",

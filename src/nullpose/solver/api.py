@@ -19,10 +19,12 @@ from nullpose.scenario import Scenario
 from nullpose.solver.array import solve_array
 from nullpose.solver.by_scheme import solve_by_scheme
 from nullpose.solver.compiling import working_clock
+from nullpose.solver.hover import HOVER_GAP, solve_hover
 from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.result import Result, Results, provenance
 from nullpose.solver.robust.exchange import ROBUST_GAP, solve_robust
+from nullpose.solver.sensitivity import ErrorSizes
 from nullpose.solver.solve_and_prove import solve_and_prove
 
 
@@ -32,6 +34,7 @@ def solve(
     scheme: Scheme | str = Scheme.OPTIMUM,
     *,
     robust: bool = False,
+    hover: bool = False,
     null_jammer: str | None = None,
     on_progress: Callable[[float, int], None] | None = None,
     **options: Unpack[SolveKeywords],
@@ -41,7 +44,8 @@ def solve(
     Maximises what the scenario asks for, the smallest SINR over the nodes (paper eq. 2.2), the smallest
     margin or the smallest secrecy rate, with the axes that the scheme and the airframe allow. A scenario with
     an array is solved for position and yaw of a level vehicle, each node with combining weights of its own.
-    With ``robust`` the pose is found that guarantees most when the scenario's errors do their worst.
+    With ``robust`` the pose is found that guarantees most when the scenario's errors do their worst, with
+    ``hover`` the one pose for a whole scene in motion whose smallest value over all instants is largest.
 
     The value is re-evaluated by :mod:`nullpose.physics` from the pose that is reported; the bound comes from
     a branch and bound over positions and axes. On a limit or an interrupt the best pose and the best bound so
@@ -53,6 +57,9 @@ def solve(
         robust: maximise over all errors together: an actual axis within ``attitude_error_deg`` and an actual
             position within ``position_error_m`` of the commanded ones, every jammer or eavesdropper anywhere
             in its set. The gap is 1e-2 unless another is given.
+        hover: for a scene in motion: hold one pose at all its instants. The result is of the scene at the
+            instant at which the pose is worst; its details have the values of all. The gap is 1e-4 unless
+            another is given.
         null_jammer: zero interference only: the jammer to null; without it, each is tried.
         on_progress: called during the proof with the gap and the boxes examined; never for an array.
         options: those of :class:`SolveOptions`: ``gap``, ``time_limit_s``, ``node_limit``, ``threads``,
@@ -77,12 +84,17 @@ def solve(
         True
     """
     scheme, limits = as_scheme(scheme), SolveOptions(**options, on_progress=on_progress)
-    if (robust or scenario.array is not None) and (scheme is not Scheme.OPTIMUM or null_jammer is not None):
+    require_usage(not (robust and hover), "solve: given robust with hover; allowed: one of them")
+    is_alone = robust or hover or scenario.array is not None
+    if is_alone and (scheme is not Scheme.OPTIMUM or null_jammer is not None):
         refused = f"scheme {scheme.value}" if null_jammer is None else f"null jammer {null_jammer!r}"
-        kind = "a robust pose" if robust else "a scenario with an [array]"
+        kind = "a robust pose" if robust else "a hover" if hover else "a scenario with an [array]"
         raise UsageError(f"solve: given {refused} for {kind}; allowed: the scheme {Scheme.OPTIMUM.value}")
-    limits, began = limits.of(scenario, ROBUST_GAP if robust else None), working_clock()
-    if robust:
+    gap = ROBUST_GAP if robust else HOVER_GAP if hover else None
+    limits, began = limits.of(scenario, gap), working_clock()
+    if hover:
+        answer, scenario = solve_hover(scenario, limits)
+    elif robust:
         answer = solve_robust(scenario, limits)
     elif scenario.array is not None:
         answer = solve_array(scenario, scenario.array, limits)
@@ -104,6 +116,7 @@ def solve(
         null_jammer=null_jammer,
         proofs=answer.proofs,
         details=answer.details,
+        error_sizes=None if hover else ErrorSizes(),  # at one instant they tell nothing of the others
     )
 
 

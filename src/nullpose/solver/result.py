@@ -50,7 +50,7 @@ class Stats:
 
 
 class Details(Protocol):
-    """What a result of an array, of a robust pose or of a given pose has beside the numbers of all."""
+    """What a result of an array, a robust pose, a hover or a given pose has beside the numbers of all."""
 
     @property
     def label(self) -> str:
@@ -112,7 +112,7 @@ class Result:
         proofs: what the branch and bound showed, for each axis field of the scheme.
         error_sizes: the errors that :attr:`sensitivity` tries; None for one of many poses, which tells none.
         details: :class:`ArrayDetails` of an array, :class:`nullpose.solver.robust.RobustDetails` of a robust
-            pose; None of one antenna.
+            pose, :class:`nullpose.solver.HoverDetails` of a hover; None of one antenna.
     """
 
     scenario: Scenario
