@@ -15,8 +15,8 @@ Process = Callable[..., subprocess.CompletedProcess[str]]
 
 SCENE, PROOF = "--set --allow-outside --at", "--gap --time-limit --node-limit --seed"
 VERBS = {
-    "solve": f"{SCENE} {PROOF} --scheme --fast --robust --off --null-jammer --certificate --verify --export "
-    "--figure --width --json",
+    "solve": f"{SCENE} {PROOF} --scheme --fast --robust --hover --off --null-jammer --certificate --verify "
+    "--export --figure --width --json",
     "compare": f"{SCENE} {PROOF} --airframes --fast --figure --width --json",
     "evaluate": f"{SCENE} {PROOF} --pose --pose-lat-lon --attitude --poses --off --json",
     "map": f"{SCENE} {PROOF} --scheme --altitude --cells --fast --out --width --json",

@@ -172,7 +172,7 @@ class _Hover:
             settings={"gap": self.limits.target},
             stats=Stats(starts=self.starts, evaluations=self.evaluations, boxes=self.boxes),
             rigour=Rigour.FLOATING_POINT,
-            note=f"one pose for {count} instants from 0 to {last_s:g} s; value and links are those of the "
-            f"worst, {details.worst_s:g} s, and the bound is on the smallest value over all",
+            note=f"one pose for {count} instants from 0 to {last_s:g} s; value, links and bound are of the "
+            f"smallest value over all, that at {details.worst_s:g} s",
             details=details,
         ), worst
