@@ -15,6 +15,7 @@ from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.style import prepare_figure_file, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.report.geometry import outline_m
+from nullpose.scenario import apply_overrides
 from nullpose.study.value_map import value_map
 from nullpose.study.vehicles import compare_schemes
 from scenes import best_found
@@ -114,3 +115,18 @@ def test_long_names_stay_within_every_figure(paper: Scenario, width: str | None)
             assert box.x1 <= figure.bbox.x1
         for axes in figure.axes:
             assert axes.xaxis.get_offset_text().get_text() == axes.yaxis.get_offset_text().get_text() == ""
+
+
+def test_a_hover_is_drawn_over_time() -> None:
+    """Beside the plan of the worst instant stand the value at each instant, and the bound."""
+    scenario = apply_overrides(
+        load(EXAMPLES / "moving_jammer.toml"), ["airframe.tilt_max_deg=0", "time.step_s=10"]
+    )
+    found = solve(scenario, hover=True, gap=1e-2)
+    plan, over_time = draw_result(found).axes
+    curve, worst, bound = (line.get_xydata() for line in over_time.lines)
+    np.testing.assert_allclose(10.0 ** (0.1 * curve[:, 1]), found.details.values)
+    np.testing.assert_array_equal(curve[:, 0], scenario.instants_s)
+    assert worst.tolist() == [[found.scenario.at_s, found.objective.value_db]]
+    assert 10.0 ** (0.1 * bound[0, 1]) == pytest.approx(found.objective.upper_bound)
+    assert any(text.get_text().startswith("M") for text in plan.texts)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import product
 from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from nullpose.objectives import Quantity
@@ -17,14 +19,15 @@ from nullpose.physics import Pose
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.plan_scene import PlanScene
-from nullpose.report.figures.style import Look, house_style, inches, is_column
+from nullpose.report.figures.style import GREY, INK, Look, house_style, inches, is_column
 from nullpose.report.geometry import axis_angle_rad
-from nullpose.report.numbers import MINUS, with_unit
+from nullpose.report.numbers import MINUS, capitalised, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
 from nullpose.report.words import error_words
 from nullpose.scenario import Scenario
 from nullpose.solver import Objective, Result
 from nullpose.solver.array import ArrayDetails
+from nullpose.solver.hover import HoverDetails
 from nullpose.solver.robust import RobustDetails
 from nullpose.study import ResultRow
 
@@ -37,7 +40,12 @@ _LOWEST_INCH, _HIGHEST_INCH = 1.0, 75.0 / 25.4  # of such a plan, and of the fig
 
 
 def draw_panels(
-    scene: PlanScene, *, head: str = "", titles: Sequence[str] = ("",), width: str | None = None
+    scene: PlanScene,
+    *,
+    head: str = "",
+    titles: Sequence[str] = ("",),
+    width: str | None = None,
+    beside: Callable[[Axes], None] | None = None,
 ) -> Figure:
     """Draw each pose from above, several side by side.
 
@@ -46,25 +54,28 @@ def draw_panels(
         head: title of the figure; empty for none. In print there is none.
         titles: of the plans.
         width: in print, a key of ``WIDTHS_MM``; None for a screen.
+        beside: draws what stands beside the plans; None for nothing.
     """
-    count, is_narrow = len(scene.poses), is_column(width)
+    count, is_narrow = len(scene.poses) + (beside is not None), is_column(width)
     usual = _ALONE_INCH if count == 1 else (_EACH_INCH[0] * count, _EACH_INCH[1])
     share = (_COLUMN_SHARES if is_narrow else _PAGE_SHARES)[count > 1]
     with house_style(width), rc_context({"text.parse_math": False}):
         figure = Figure(figsize=inches(usual, width, share), layout="constrained")
-        for axes, pose, title in zip(
-            figure.subplots(1, count, squeeze=False)[0], scene.poses, titles, strict=True
-        ):
+        panels = figure.subplots(1, count, squeeze=False)[0]
+        plans = panels[: len(scene.poses)]
+        for axes, pose, title in zip(plans, scene.poses, titles, strict=True):
             axes.set_title(
                 title.replace(", ", "\n") if is_narrow else title,
                 fontsize="small" if is_narrow else "medium",
                 parse_math=True,
             )
             draw_plan(axes, scene, pose)
+        if beside is not None:
+            beside(panels[-1])
         if width is None:
             figure.suptitle(head, fontsize=10, wrap=True)
         _draw_legend(figure, scene)
-        for axes in figure.axes:
+        for axes in plans:
             place_names(axes)
     return figure
 
@@ -108,7 +119,7 @@ def draw_poses(scenario: Scenario, rows: Sequence[ResultRow]) -> Figure:
 def draw_result(result: Result, width: str | None = None) -> Figure:
     """Draw the scene, its fence and its no-fly zones, and the pose.
 
-    With errors there are two poses.
+    With errors there are two poses, and a hover has its values over time beside it.
 
     Args:
         result: of any kind.
@@ -117,13 +128,31 @@ def draw_result(result: Result, width: str | None = None) -> Figure:
     if isinstance(result.details, RobustDetails):
         return _draw_robust(result, result.details, width)
     words = _words(result.scenario, result.objective, result.pose)
+    beside = partial(_draw_instants, result) if isinstance(result.details, HoverDetails) else None
     if isinstance(result.details, ArrayDetails):
         yaw = f"{math.degrees(result.pose.yaw_rad):.1f}°".replace("-", MINUS)
         words = f"{result.label}: {words}, yaw {yaw}"
     words = "\n".join(filter(None, (words, sensitivity_caption(result))))
     return draw_panels(
-        PlanScene.of(result, is_narrow=is_column(width)), head=f"{result.scenario.name}\n{words}", width=width
+        PlanScene.of(result, is_narrow=is_column(width)),
+        head=f"{result.scenario.name}\n{words}",
+        width=width,
+        beside=beside,
     )
+
+
+def _draw_instants(result: Result, axes: Axes) -> None:
+    """Draw what a pose gives at every instant, and the bound on the smallest of them."""
+    assert isinstance(result.details, HoverDetails)
+    quantity, bound = result.objective.quantity, result.objective.upper_bound
+    values = [quantity.in_unit(value) for value in result.details.values.tolist()]
+    ring: Look = {"color": INK, "markerfacecolor": "white", "markersize": 6.0}
+    axes.plot(result.details.times_s, values, color=INK, marker=".", markersize=3.0, label="at each instant")
+    axes.plot(result.details.worst_s, min(values), "o", **ring, label="the worst, in the plan")
+    if bound is not None:
+        look: Look = {"color": GREY, "linestyle": "--", "linewidth": 0.9}
+        axes.axhline(quantity.in_unit(bound), label="no pose has its worst above", **look)
+    axes.set(xlabel="Time (s)", ylabel=f"{capitalised(quantity.smallest)} ({quantity.unit})")
 
 
 def _draw_robust(result: Result, details: RobustDetails, width: str | None) -> Figure:
