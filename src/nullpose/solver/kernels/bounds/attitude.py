@@ -7,8 +7,8 @@ middle of one of six faces, which S turns to. Coordinates of positions and of th
 order from ``row[CHART]`` and ``row[FACE]`` on: the poles are then far from where the cell is. The zenith as
 an anchor, in the first chart, has A = I: u and v then say where the body sees the vertical.
 
-An antenna that is the same all round hears the same under ``Rz(-spin) Q``, v being zero. That turns by less
-than Q, by ``2 sin(u/2)`` in place of 1 a radian of spin.
+An antenna that is the same all round hears the same under ``Rz(-spin) Q`` and ``Rz(spin) Q``, v being zero.
+Near the anchor and opposite to it they turn by less than Q: ``2 sin(u/2)`` and ``2 cos(u/2)`` times as much.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from nullpose.solver.kernels.linear_algebra.vectors import (
     store,
 )
 
+_UNWOUND = 0.75  # least cosine of the angle to the anchor's line at which spins are unwound
 CENTRE, HALF, FACE, CHART, ANCHOR, BAND, WARM = 0, 6, 12, 13, 14, 15, 16
 """A cell's row: middle and half-widths of position, u, v and spin; its face, its chart, the index of its
 anchor, -1 for the zenith, and the multipliers to begin with: that of the reach, and those of the ratios."""
@@ -139,6 +140,14 @@ def move(frame, a, pace, firsts, seconds):
 
 
 @inner_kernel
+def unwound(cell, spins):
+    """Return the turn about the body's axis a radian of spin, -1, 0 or 1, by which frames turn least."""
+    if not spins or abs(math.cos(cell[3])) < _UNWOUND:
+        return 0.0
+    return -math.copysign(1.0, math.cos(cell[3]))
+
+
+@inner_kernel
 def rates(cell, spins, reach_m, anchor_m, anchor_near_m):
     """Bound how fast a cell's frames turn along any straight line from its middle into it.
 
@@ -157,9 +166,11 @@ def rates(cell, spins, reach_m, anchor_m, anchor_near_m):
     held = (wy, hu * hv, hu * hu * hv)
     we, we2 = wy + hs, hu * hv + hs * wy
     we3 = held[2] + hs * (hu * hv + wy * wy)
-    if spins:  # the largest sin u and 2 sin(u/2)
+    if spins:
+        we = math.hypot(hu, hs)
+    if unwound(cell, spins) != 0.0:  # the largest sin u, and 2 sin(u/2) or 2 cos(u/2)
         across = min(1.0, abs(math.sin(cell[3])) + hu)
-        chord = min(2.0, 2.0 * abs(math.sin(0.5 * cell[3])) + hu)
+        chord = min(2.0, math.sqrt(2.0 - 2.0 * abs(math.cos(cell[3]))) + hu)
         we, we2 = math.hypot(hu, chord * hs), hs * math.hypot(2.0 * hu, hs * across)
         we3 = hs * (3.0 * hu * hs + across * hs * hs + hu * hu)
     level = math.hypot(anchor_m[0], anchor_m[2]) - reach_m
@@ -208,8 +219,8 @@ def direction_rate(cell, spins, frame, a, turning, away):
         shift = minus(cross(row(frame, 3 + i), b), over(row(frame, i), length))
         store(scaled(sides[i], shift), steps[i])
         store(scaled(cell[HALF + 3 + i], cross(row(frame, 6 + i), b)), steps[3 + i])
-    if spins:
-        store(along(row(steps, 5), -cell[HALF + 5], cross((0.0, 0.0, 1.0), b)), steps[5])
+    turn = cell[HALF + 5] * unwound(cell, spins)
+    store(along(row(steps, 5), turn, cross((0.0, 0.0, 1.0), b)), steps[5])
     for i in range(6):
         along_i = dot(steps[i], b)
         for j in range(i, 6):
