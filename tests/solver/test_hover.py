@@ -89,6 +89,7 @@ def test_a_search_alone_proves_nothing() -> None:
     """Without a proof there is a pose and no bound."""
     found = nullpose.solve(circling(6), hover=True, certify=False)
     assert found.objective.upper_bound is None
+    assert found.rigour == "none"
     assert found.objective.value == min(values_of(circling(6), found.pose))
 
 

@@ -138,18 +138,20 @@ def started(data: Mapping[str, object]) -> Mapping[str, object]:
         return data
     keys = ("lat_deg", "lon_deg", "alt_msl_m" if _value(origin, "alt_m") is None else "alt_m")
     return {**data} | {
-        key: [_begun(table, keys) for table in each] if isinstance(each, list | tuple) else _begun(each, keys)
+        key: [_with_start(table, keys) for table in each]
+        if isinstance(each, list | tuple)
+        else _with_start(each, keys)
         for key, each in kinds.items()
     }
 
 
-def _begun(table: object, keys: Sequence[str]) -> object:
+def _with_start(table: object, keys: Sequence[str]) -> object:
     if not isinstance(table, Mapping) or table.keys() & PLACE_KEYS or not (place := place_of_start(table)):
         return table
     return {**table, **dict(zip(keys, place, strict=True))}
 
 
-def _stated(table: object, keys: Sequence[str]) -> list[str]:
+def _keys_in(table: object, keys: Sequence[str]) -> list[str]:
     return [key for key in keys if _value(table, key) is not None]
 
 
@@ -157,18 +159,18 @@ def _value(table: object, key: str) -> Any:
     return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
 
 
-def time_of(scenario: Scenario, asked: str) -> Time:
+def time_of(scenario: Scenario, purpose: str) -> Time:
     """Return the times of a scene in motion.
 
     Args:
         scenario: any.
-        asked: what they are needed for.
+        purpose: what they are needed for.
 
     Raises:
         UsageError: nothing moves in the scene.
     """
     if scenario.time is None:
-        raise UsageError(f"{asked}, but the scene has no [time]; allowed: a scene in motion; add [time]")
+        raise UsageError(f"{purpose}, but the scene has no [time]; allowed: a scene in motion; add [time]")
     return scenario.time
 
 
@@ -219,9 +221,9 @@ def motion_faults(
         raw: the raw scenario.
     """
     time, airframe = scenario.time, scenario.airframe
-    moves = [(*place, key) for place, point in points.items() for key in _stated(point, _MOTION)]
+    moves = [(*place, key) for place, point in points.items() for key in _keys_in(point, _MOTION)]
     if raw.get("time") is None:
-        flight = [("airframe", key) for key in _stated(airframe, FLIGHT_KEYS)]
+        flight = [("airframe", key) for key in _keys_in(airframe, FLIGHT_KEYS)]
         for place in [*moves, *flight][:1]:
             yield (
                 place,
@@ -231,7 +233,7 @@ def motion_faults(
         return
     if raw.get("at_s") is not None:
         yield ("at_s",), "given, but the scene has a [time] and so many instants; remove either"
-    if not moves and not any(_stated(reduce(getitem, place, raw), _MOTION) for place in points):
+    if not moves and not any(_keys_in(reduce(getitem, place, raw), _MOTION) for place in points):
         yield (
             ("time",),
             "given, but nothing moves; give a point velocity_m_s, track or track_from, or remove this table",

@@ -59,7 +59,7 @@ def track_faults(track: Track | None, raw: PlainTable) -> Iterator[tuple[Place, 
     if times_s and times_s[0] > 0.0 and not raw.keys() & PLACE_KEYS:
         got = f"the track begins at t = {times_s[0]:g}"
         yield ("track", 0, 0), f"{got}; state the place at t = 0 too: by a row, or as position_m"
-    back = [index for index, (one, other) in enumerate(pairwise(times_s), 1) if other <= one]
+    back = [index for index, (earlier_s, later_s) in enumerate(pairwise(times_s), 1) if later_s <= earlier_s]
     for index in back[:1]:
         yield (
             ("track", index, 0),

@@ -41,20 +41,20 @@ class ListedTrack(NamedTuple):
     places: Mapping[str, str]
 
     def beside(self, table: PlainTable) -> PlainTable:
-        """Return what the track adds to a raw point: itself, and the place at which it begins at t = 0.
+        """List the keys that the track adds to a raw point: itself, and the place of its start at t = 0.
 
         Raises:
             ScenarioError: the point states its place in another way.
         """
-        stated, keys = table.keys() & PLACE_KEYS, self.keys if self.keys[0] != LOCAL[0] else ()
+        places, keys = table.keys() & PLACE_KEYS, self.keys if self.keys[0] != LOCAL[0] else ()
         require(
-            not stated or stated - {"position_m"} == set(keys),
+            not places or places - {"position_m"} == set(keys),
             "",
             f"its places are by {', '.join(self.keys)}, but the place beside it is by "
-            f"{', '.join(sorted(stated))}; state both in one way, or remove the place",
+            f"{', '.join(sorted(places))}; state both in one way, or remove the place",
         )
         track: PlainTable = {"track": self.rows}
-        if stated or (place := place_of_start(track)) is None:
+        if places or (place := place_of_start(track)) is None:
             return track
         return track | (dict(zip(keys, place, strict=True)) if keys else {"position_m": place})
 
@@ -124,8 +124,8 @@ def _track(
 ) -> ListedTrack:
     places = {f"track[{i}][{j}]": name for i, row in enumerate(names) for j, name in enumerate(row)}
     places |= {f"track[{i}]": where for i, where in enumerate(wheres)}
-    begun = dict.fromkeys(PLACE_KEYS, wheres[0]) if rows else {}
-    return ListedTrack(keys, rows, places | begun)
+    start = dict.fromkeys(PLACE_KEYS, wheres[0]) if rows else {}
+    return ListedTrack(keys, rows, places | start)
 
 
 def _seconds(times: Sequence[object], wheres: Sequence[str]) -> list[object]:

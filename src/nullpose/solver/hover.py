@@ -20,7 +20,6 @@ from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.compiling import limit_clock, precompile
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.result import BoundedPose, Stats
-from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
 HOVER_GAP = 1e-4
@@ -56,7 +55,7 @@ class HoverDetails:
 
     def to_dict(self, objective: PlainTable) -> PlainTable:
         """Write plain data for JSON."""
-        values = dict(zip(("time_s", "value"), (self.times_s.tolist(), self.values.tolist()), strict=True))
+        values = {"time_s": self.times_s.tolist(), "value": self.values.tolist()}
         return {"hover": {"worst_s": self.worst_s, "binding_instants": self.binding, **values}}
 
 
@@ -169,9 +168,8 @@ class _Hover:
             value=float(np.min(values)),
             upper_bound=self.bound if self.limits.certify else None,
             reason=self.reason,
-            settings={"gap": self.limits.target},
+            settings=self.limits.settings,
             stats=Stats(starts=self.starts, evaluations=self.evaluations, boxes=self.boxes),
-            rigour=Rigour.FLOATING_POINT,
             note=f"one pose for {count} instants from 0 to {last_s:g} s; value, links and bound are of the "
             f"smallest value over all, that at {details.worst_s:g} s",
             details=details,
