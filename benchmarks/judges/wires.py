@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.judges.verdict import Verdict
+from nullpose.antenna.dipoles import half_wave_harmonics
 from nullpose.antenna.files import read_pattern
-from nullpose.antenna.half_wave import half_wave_harmonics
 from nullpose.physics import dipole_gain
 
 _MHZ = 299.792458  # a wavelength of one metre

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from claims.study import JammingStudy
-from nullpose.report.certainty import counted
+from nullpose.report.answer import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

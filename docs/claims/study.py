@@ -6,9 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from nullpose.paper.printed import PrintedPoint, search_as_printed
+from nullpose.paper.printed import JAMMER_POWER, PrintedPoint, search_as_printed
 from nullpose.paper.reproduce import Reproduction
-from nullpose.paper.scene import JAMMER_POWER
 from nullpose.report.numbers import rounded_up
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.study import ResultRow, sweep

@@ -52,7 +52,7 @@ from .solver import (
 )
 from .solver.certificate_from_proof import certificate_of as certificate_of
 from .solver.robust import guarantee as guarantee
-from .studio.show import (
+from .studio.exports import (
     show as show,
 )
 from .study import (

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nullpose.antenna import PatternAntenna
-from nullpose.antenna.half_wave import half_wave_harmonics
+from nullpose.antenna.dipoles import half_wave_harmonics
 from nullpose.antenna.harmonics import directions
 from nullpose.antenna.pattern import harmonics_of_rows, normalised, profile_harmonics, table_harmonics
 from nullpose.antenna.table import PatternTable

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from nullpose.antenna.half_wave import half_wave_harmonics
+from nullpose.antenna.dipoles import half_wave_harmonics
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.profile import Profile, ProfileField
 from nullpose.scenario import Scenario, apply_overrides, load

@@ -9,8 +9,8 @@ from claims.claim import Claim
 from claims.page import check_claims, claims_page
 
 from nullpose import Scenario
+from nullpose.paper.printed import JAMMER_POWER, paper_scenario
 from nullpose.paper.reproduce import Reproduction
-from nullpose.paper.scene import JAMMER_POWER, paper_scenario
 from nullpose.physics import maximum_gain_sinr
 from nullpose.scenario import Override, apply_overrides
 

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.optimize import differential_evolution
 
-from nullpose.paper.printed import search_as_printed, sinr_as_printed
-from nullpose.paper.scene import JAMMER_POWER, paper_scenario
+from nullpose.paper.printed import JAMMER_POWER, paper_scenario, search_as_printed, sinr_as_printed
 from nullpose.physics import maximum_gain_sinr, to_db
 from nullpose.scenario import Override, apply_overrides
 

@@ -6,9 +6,15 @@ from pathlib import Path
 import pytest
 
 from nullpose import load
-from nullpose.paper.printed import sinr_as_printed
+from nullpose.paper.printed import (
+    JAMMER_POWER,
+    JAMMING_LEVELS,
+    POSE_LEVELS,
+    PRINTED_LEVELS,
+    paper_scenario,
+    sinr_as_printed,
+)
 from nullpose.paper.reproduce import Reproduction
-from nullpose.paper.scene import JAMMER_POWER, JAMMING_LEVELS, POSE_LEVELS, PRINTED_LEVELS, paper_scenario
 from nullpose.physics import min_sinr, to_db
 from nullpose.scenario import Override, apply_overrides
 

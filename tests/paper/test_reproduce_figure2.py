@@ -9,8 +9,8 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
+from nullpose.paper.printed import paper_scenario
 from nullpose.paper.reproduce import Reproduction, draw_figure2
-from nullpose.paper.scene import paper_scenario
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES
 from nullpose.study import ResultTable

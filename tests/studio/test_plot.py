@@ -11,7 +11,7 @@ from nullpose.scenario import Scenario
 from nullpose.studio.answer import PowerCurve
 from nullpose.studio.plot import power_plot_svg
 from nullpose.studio.state import POWER_DB, State
-from nullpose.studio.steps import power_curves
+from nullpose.studio.worker import power_curves
 
 
 def _drawn(text: str) -> ElementTree.Element:

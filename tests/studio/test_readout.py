@@ -15,11 +15,10 @@ from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solver import solve
 from nullpose.studio.answer import Answer, answer_of
-from nullpose.studio.card import card_html
 from nullpose.studio.case import OPTIMUM, case_named
-from nullpose.studio.readout import macros, readout_html
+from nullpose.studio.readout import card_html, macros, readout_html
 from nullpose.studio.state import State
-from nullpose.studio.steps import quick_answers
+from nullpose.studio.worker import quick_answers
 
 ROBUST = case_named("Robust pose")
 

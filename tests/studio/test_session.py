@@ -18,8 +18,8 @@ from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.solver import Status, solve
 from nullpose.studio.answer import Answer, Event, PowerCurve, Progress, TiltNotice
-from nullpose.studio.card import card_html
 from nullpose.studio.case import CASES, OPTIMUM, case_named
+from nullpose.studio.readout import card_html
 from nullpose.studio.session import History, Session
 from nullpose.studio.state import Key, State
 
@@ -122,7 +122,7 @@ def test_a_session_goes_on_after_failures(session: Session, monkeypatch: pytest.
         raise SolveError("no position was found")
 
     with monkeypatch.context() as patched:
-        patched.setattr("nullpose.studio.steps.solve", none)
+        patched.setattr("nullpose.studio.worker.solve", none)
         session.change(lambda view: view.with_power_db(10.0))
         wait(lambda: session.state.status(OPTIMUM) == "no pose: no position was found")
     session.undo()

@@ -10,11 +10,11 @@ from nullpose import apply_overrides, load, solve
 from nullpose.channel.buildings import is_blocked
 from nullpose.scenario import Scenario
 from nullpose.studio.answer import answer_of
-from nullpose.studio.card import card_html
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.drawing import Shapes
 from nullpose.studio.field_map import MAPS, field_map
 from nullpose.studio.look import LIGHT
+from nullpose.studio.readout import card_html
 from nullpose.studio.shadows import shadow_shapes
 from nullpose.studio.state import State
 

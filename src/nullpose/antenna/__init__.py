@@ -1,17 +1,15 @@
-"""The antennas, one file each: the drone's, what power they receive from each direction, and the ground's.
+"""The antennas: the drone's, what power they receive from each direction, and the ground's.
 
 Physics, solver, certificate, tables and figures ask the antenna.
 """
 
 from __future__ import annotations
 
+from nullpose.antenna.dipoles import DIPOLE, HALF_WAVE, SHORT_DIPOLE, short_dipole
 from nullpose.antenna.from_file import PATTERN, PROFILE
 from nullpose.antenna.ground import GROUND_ANTENNAS, GroundAntennas, unit_axis
-from nullpose.antenna.half_wave import HALF_WAVE
-from nullpose.antenna.kind import AntennaKind, AnyAntenna
+from nullpose.antenna.kind import AntennaKind, AnyAntenna, QuadraticAntenna
 from nullpose.antenna.pattern import PatternAntenna
-from nullpose.antenna.quadratic import QuadraticAntenna
-from nullpose.antenna.short_dipole import DIPOLE, SHORT_DIPOLE, short_dipole
 
 __all__ = [
     "ANTENNAS",

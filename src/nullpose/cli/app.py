@@ -18,8 +18,7 @@ from nullpose.cli.printing import replace_lacking_letters, say
 from nullpose.cli.reproduce import reproduce
 from nullpose.cli.solve import solve
 from nullpose.cli.studio import studio
-from nullpose.cli.study import study
-from nullpose.cli.study_report import report
+from nullpose.cli.study import report, study
 from nullpose.cli.sweep import sweep
 from nullpose.cli.vehicle import vehicle
 from nullpose.cli.verify import verify

@@ -41,7 +41,7 @@ def best_map(
     It writes a table (CSV) and a figure (PNG, PDF).
     """
     from nullpose.files import prepare_folder
-    from nullpose.report.value_map import map_view, write_map
+    from nullpose.report.sweep import map_view, write_map
     from nullpose.solver import solve
     from nullpose.solver.options import SolveOptions
     from nullpose.study.value_map import require_map, value_map

@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nullpose.files import check_outputs, write_csv
-from nullpose.paper.printed import PrintedPoint, search_as_printed
-from nullpose.paper.scene import (
+from nullpose.paper.printed import (
     JAMMER_POWER,
     JAMMING_LEVELS,
     POSE_LEVELS,
     PRINTED_LEVELS,
+    PrintedPoint,
     paper_scenario,
+    search_as_printed,
 )
 from nullpose.problem.schemes import Scheme
-from nullpose.report.certainty import counted, labelled_certainty
+from nullpose.report.answer import counted, labelled_certainty
 from nullpose.report.document import View, document, grouped
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES, Curve, draw_curve, house_style, write_figure

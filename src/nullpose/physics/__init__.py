@@ -51,8 +51,15 @@ from nullpose.physics.rotation import (
     attitude_of_axis,
     rotation_world_from_body,
 )
-from nullpose.physics.secrecy import destination_snr, eavesdropper_snr, node_snr, secrecy_rate
-from nullpose.physics.sinr import received_from_sources_w, received_power_w, sinr
+from nullpose.physics.sinr import (
+    destination_snr,
+    eavesdropper_snr,
+    node_snr,
+    received_from_sources_w,
+    received_power_w,
+    secrecy_rate,
+    sinr,
+)
 
 __all__ = [
     "ErrorCase",

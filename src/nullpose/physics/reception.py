@@ -9,15 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.physics.error_case import ErrorCase
-from nullpose.physics.secrecy import (
+from nullpose.physics.sinr import (
     destination_snr,
     eavesdropper_snr,
     jammed_sinr,
     node_snr,
     overheard_sinr,
+    received_from_sources_w,
     secrecy_rate_of,
+    sinr,
 )
-from nullpose.physics.sinr import received_from_sources_w, sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 

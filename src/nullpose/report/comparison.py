@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.answer import answer_lines, antennas_answer, sufficing
-from nullpose.report.certainty import rigour_lines
+from nullpose.report.answer import answer_lines, antennas_answer, rigour_lines, sufficing
 from nullpose.report.document import Row, View, beside, cell, document, grouped, head, rows, table
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.links import binding_nodes

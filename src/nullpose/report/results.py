@@ -10,11 +10,20 @@ from nullpose.physics import (
     Pose,
     pose_frames,
 )
-from nullpose.report.decimals import COMPONENTS, DEGREES, METRES, more_decimals
 from nullpose.report.document import View, beside, cell, document, head, pairs, rows, table
 from nullpose.report.geometry import azimuth_rad, tilt_rad
 from nullpose.report.links import gain_columns, hop_words, links_table, nulls_table
-from nullpose.report.numbers import bound_text, bound_words, capitalised, value_words, with_unit
+from nullpose.report.numbers import (
+    COMPONENTS,
+    DEGREES,
+    METRES,
+    bound_text,
+    bound_words,
+    capitalised,
+    more_decimals,
+    value_words,
+    with_unit,
+)
 from nullpose.report.sensitivity import sensitivity_view
 from nullpose.report.words import airframe_words, array_words, error_words, place_words, requirement_words
 from nullpose.scenario import Scenario

@@ -1,17 +1,19 @@
-"""A sweep written to files, and shown in a terminal."""
+"""A sweep or a map, written to files and shown in a terminal."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from nullpose.problem.schemes import Scheme
-from nullpose.report.certainty import certainty_lines, rigour_lines
+from nullpose.report.answer import certainty_lines, rigour_lines
 from nullpose.report.document import View, document, grouped, table
+from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.style import curve_of, write_figure
 from nullpose.report.figures.sweep import draw_sweep, value_label
 from nullpose.report.numbers import bound_text, capitalised
-from nullpose.solver import Status
-from nullpose.study import ResultRow, ResultTable
+from nullpose.report.results import result_head
+from nullpose.solver import Result, Status
+from nullpose.study import Field, ResultRow, ResultTable
 
 _SHARED = "{} of {} points reuse another's valid bound. Solved alone, each has a certificate."
 _SHOWN = 40  # rows of a longer sweep are thinned out on the screen, not in the file
@@ -71,3 +73,27 @@ def _cell(row: ResultRow) -> str:
         return "\ntoo little: ".join("-" if deg is None else f"{deg:.1f}" for deg in (enough_deg, little_deg))
     bound = f"\nupper bound {bound_text(row.objective, 2)}" if row.status == Status.GAP_NOT_REACHED else ""
     return f"{row.objective.quantity.in_unit(row.objective.value):.4f}{bound}"
+
+
+def write_map(result: Result, field: Field, folder: Path, width: str | None = None) -> tuple[Path, ...]:
+    """Write the map of a result as CSV, PNG and PDF to an existing folder; return the paths.
+
+    Raises:
+        OutputError: a file cannot be written.
+    """
+    return (
+        field.write_csv(folder / "map.csv"),
+        *write_figure(draw_value_map(result, field, width), folder / "map.png", folder / "map.pdf"),
+    )
+
+
+def map_view(result: Result, field: Field) -> View:
+    """Write the best value of a result's map, where it is, and what is proved of the best pose."""
+    value, position_m = field.best
+    place = ", ".join(f"{x:z.3f}" for x in position_m)
+    rows, columns = field.values.shape
+    return result_head(
+        result,
+        f"map: {rows * columns:,} places {field.altitude_m:.4g} m up, "
+        f"{field.east_m[1] - field.east_m[0]:.3g} m apart; best {value:.7g} {field.unit} at ({place}) m",
+    )

@@ -12,8 +12,7 @@ from nullpose.errors import Fault
 from nullpose.files import PlainTable
 from nullpose.scenario.area_files import reach_deg
 from nullpose.scenario.areas import Area, account, area_of, unique
-from nullpose.scenario.building_heights import BuildingHeight, height_of
-from nullpose.scenario.building_states import GONE, MARK, state_of
+from nullpose.scenario.building_heights import GONE, MARK, BuildingHeight, height_of, state_of
 from nullpose.scenario.buildings import MOST_BUILDINGS, Building
 from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, require
 from nullpose.scenario.geo_file import Feature

@@ -14,11 +14,10 @@ from nullpose.channel.profile import MOST_ROWS, mean_gain
 from nullpose.files import PlainTable
 from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place
-from nullpose.scenario.radio import NOISE, POWER, Noisy, Powered
+from nullpose.scenario.radio import NOISE, POWER, Noisy, Powered, Uncertain
 from nullpose.scenario.rules import Choice, Limits, ListOf
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.track import MOTION, Track, Velocity, track_faults, with_start
-from nullpose.scenario.uncertainty import Uncertain
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
     GEODETIC_KEYS,

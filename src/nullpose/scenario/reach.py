@@ -12,7 +12,7 @@ from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.polygon import MOST_CORNERS
-from nullpose.scenario.uncertainty import Uncertain
+from nullpose.scenario.radio import Uncertain
 
 _TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled out counts as found
 _BATCH = 256

@@ -20,12 +20,10 @@ from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio import exports
 from nullpose.studio.camera import NARROW_PX, aim, canvas_px, ray
 from nullpose.studio.case import case_named, cases_of, new_scenario
-from nullpose.studio.controls import NO_CASE
 from nullpose.studio.edits import Entry, with_typed, without
 from nullpose.studio.look import DARK, LIGHT
-from nullpose.studio.panel import Panel, by_hand
-from nullpose.studio.picking import clicked, dragged_to_m
-from nullpose.studio.reading import reading
+from nullpose.studio.panel import NO_CASE, Panel, by_hand
+from nullpose.studio.picking import clicked, dragged_to_m, reading
 from nullpose.studio.readout import macros
 from nullpose.studio.session import History, Session
 from nullpose.studio.stage import Drag, Stage

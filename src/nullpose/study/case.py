@@ -18,7 +18,7 @@ from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
 from nullpose.scenario.wording import described
-from nullpose.study.fixed_pose import FixedPose
+from nullpose.study.evaluation import FixedPose
 
 OMNIDIRECTIONAL = "omnidirectional"  # the case that other vehicles are compared with
 FILE_VEHICLE = "stated"  # the case of the scenario's own vehicle, if it is none of the others

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from nullpose.antenna.caps import pattern_arrays
-from nullpose.antenna.half_wave import half_wave_harmonics
+from nullpose.antenna.dipoles import half_wave_harmonics
 from nullpose.antenna.harmonics import Harmonics
 from nullpose.problem.family import Family
 from nullpose.problem.records import AttitudeReach

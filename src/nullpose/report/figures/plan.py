@@ -1,6 +1,8 @@
-"""A scene from above, alone or on a map of values."""
+"""A scene from above, alone or on a map of values: points, zones, buildings and their shadows, the drone."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import numpy as np
 import shapely
@@ -14,15 +16,52 @@ from scipy.ndimage import distance_transform_edt
 
 from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.buildings import draw_outlines, draw_shadows
 from nullpose.report.figures.names import place_names, write_name
 from nullpose.report.figures.plan_scene import PlanScene, set_outline_m
 from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, INK, MARKS, NULL, Look, house_style, inches
-from nullpose.report.geometry import outline_m
+from nullpose.report.geometry import outline_m, shadow_outlines_m
 from nullpose.report.numbers import MINUS, capitalised
 from nullpose.scenario import Scenario, Terminal
 from nullpose.solver import Result
 from nullpose.study import Field
+
+_ROOF = "#d4d4d4"
+
+
+def draw_outlines(axes: Axes, scenario: Scenario, *, is_filled: bool) -> None:
+    """Draw the outlines of buildings and their courtyards from above."""
+    look: Look = {"facecolor": _ROOF, "edgecolor": GREY}
+    if not is_filled:  # apart from contours, on any colour
+        look = {"fill": False, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
+    rings = [
+        ring
+        for each in scenario.buildings
+        for ring in (
+            each.outline_m,
+            *(yard[::-1] for yard in each.courtyard_outlines_m),
+        )  # holes run backwards
+    ]
+    _add(axes, rings, linewidth=0.7, zorder=1.2, label="building", **look)
+
+
+def draw_shadows(axes: Axes, scene: PlanScene, altitude_m: float, frame_m: FloatArray) -> None:
+    """Draw where the line of sight to each point is blocked at an altitude, within a frame, (2, 2), metres.
+
+    It is filled for nodes, the darker the more are blocked, and hatched for all others.
+    """
+    for kind, point in scene.points:
+        colour = MARKS[kind][0]
+        hatched: Look = {"facecolor": "none", "hatch": "////", "alpha": 0.5}
+        look = {"facecolor": colour, "alpha": 0.14} if kind == "node" else hatched
+        outlines = shadow_outlines_m(scene.scenario, point, altitude_m, frame_m)
+        _add(axes, outlines, edgecolor=colour, linewidth=0.0, label=f"{kind} blocked", **look)
+
+
+def _add(axes: Axes, rings: Iterable[FloatArray], **look: object) -> None:
+    """Draw polygons as one, of which overlaps are drawn once."""
+    if paths := [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]:
+        axes.add_patch(PathPatch(Path.make_compound_path(*paths), **look))
+
 
 _MOST_SPAN, _LEAST_SPAN = 30.0, 1.0  # of the colours: what is farther below the best is as dark as it gets
 _LEVELS, _FREE = 8, 0.03  # of a map's contours; kept free around their numbers, of its longer side

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from nullpose.physics.types import FloatArray
-from nullpose.report.certainty import certainty_lines
+from nullpose.report.answer import certainty_lines
 from nullpose.report.figures.style import (
     GREY,
     Look,

@@ -19,8 +19,7 @@ from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.origin import DRAWN_LISTS, POINT_LISTS
 from nullpose.study.monte_carlo.blocks import Blocks, Town
-from nullpose.study.monte_carlo.distribution import Distribution
-from nullpose.study.monte_carlo.drawn_channel import DrawnChannel
+from nullpose.study.monte_carlo.distribution import Distribution, DrawnChannel
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
 from nullpose.study.monte_carlo.spec import StudySpec
 

@@ -15,10 +15,9 @@ from pathlib import Path
 
 from nullpose.errors import require_number, require_usage
 from nullpose.files import prepare_folder
-from nullpose.study.monte_carlo.chunk import fingerprint, seconds_per_scene, solve_chunk
+from nullpose.study.monte_carlo.chunk import fingerprint, seconds_per_scene, solve_chunk, with_best_mounts
 from nullpose.study.monte_carlo.folder import Folder, PartFile, require_extra
 from nullpose.study.monte_carlo.loading import require_sound
-from nullpose.study.monte_carlo.mounts import with_best_mounts
 from nullpose.study.monte_carlo.reading import StudyStatus, study_spec, study_status
 from nullpose.study.monte_carlo.rows import read_counts
 from nullpose.study.monte_carlo.spec import StudySpec

@@ -33,7 +33,7 @@ from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label, Seconds
 from nullpose.scenario.ways import Ways, at_most_one
-from nullpose.study.monte_carlo.drawn_channel import DrawnChannel, FixedOrDrawn
+from nullpose.study.monte_carlo.distribution import DrawnChannel, FixedOrDrawn
 
 
 class SceneBase(Section):

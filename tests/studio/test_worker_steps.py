@@ -7,7 +7,7 @@ from nullpose.scenario import Scenario
 from nullpose.solver import Status, solve
 from nullpose.studio.case import cases_of
 from nullpose.studio.state import State
-from nullpose.studio.steps import least_tilts, power_curves, quick_answers
+from nullpose.studio.worker import least_tilts, power_curves, quick_answers
 
 
 @pytest.mark.parametrize("power_db", [-30.0, 0.0, 20.0, 40.0])

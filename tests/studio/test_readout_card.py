@@ -10,11 +10,10 @@ from nullpose import Scenario, load, solve
 from nullpose.report.numbers import MINUS
 from nullpose.solver import Result
 from nullpose.studio.answer import Notice, Progress, answer_of, signed
-from nullpose.studio.card import card_html, proof
 from nullpose.studio.case import OPTIMUM, case_named
 from nullpose.studio.field_map import MAPS, FieldMap
 from nullpose.studio.look import scale_colours
-from nullpose.studio.readout import readout_html
+from nullpose.studio.readout import card_html, proof, readout_html
 from nullpose.studio.state import State
 from nullpose.study import Field
 

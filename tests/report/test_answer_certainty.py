@@ -6,7 +6,7 @@ from hypothesis import given, strategies as st
 
 from nullpose import Pose, Status
 from nullpose.objectives import RECORDS, USUAL
-from nullpose.report.certainty import certainty_lines, counted
+from nullpose.report.answer import certainty_lines, counted
 from nullpose.report.numbers import rounded_up
 from nullpose.solver import Objective
 from nullpose.study import Case, ResultRow, ResultTable
