@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, create_model
 from pydantic_core import CoreSchema, core_schema
 
 from nullpose.channel import ENVIRONMENTS
@@ -160,43 +160,17 @@ class Environments(Section):
 _OR_NAME = ByName("an environment", {name: {"choice": [name]} for name in ENVIRONMENTS})
 
 
-def _number(key: str) -> Drawn:
-    return Drawn.of(Channel.model_fields[key].annotation)
-
-
-def _key(key: str) -> Any:
-    """Make the field of a key from that of a channel."""
-    field = Channel.model_fields[key]
-    return Field(default=field.default, description=field.description)
-
-
 class DrawnChannel(Section):
     """The table ``[scene.channel]`` with a distribution where a number stands, or several environments.
 
-    Args:
-        model: as of :class:`nullpose.scenario.Channel`, like all other keys.
-        exponent, reference_distance_m: numbers, or how they are drawn.
-        environment: a name, or a choice of several.
-        a, b, los_loss_db, nlos_loss_db: numbers, or how they are drawn.
-        average: power, db or guaranteed.
-        blocked_loss_db, shadow_margin_m: numbers, or how they are drawn.
+    It has the keys of :class:`nullpose.scenario.Channel`; those of numbers are added below.
     """
 
     ways: ClassVar[tuple[Ways, ...]] = Channel.ways
 
-    model: str = _key("model")
-    exponent: Annotated[Distribution, _number("exponent")] | None = _key("exponent")
-    reference_distance_m: Annotated[Distribution, _number("reference_distance_m")] | None = _key(
-        "reference_distance_m"
-    )
-    environment: Annotated[Environments, _OR_NAME] | None = _key("environment")
-    a: Annotated[Distribution, _number("a")] | None = _key("a")
-    b: Annotated[Distribution, _number("b")] | None = _key("b")
-    los_loss_db: Annotated[Distribution, _number("los_loss_db")] | None = _key("los_loss_db")
-    nlos_loss_db: Annotated[Distribution, _number("nlos_loss_db")] | None = _key("nlos_loss_db")
-    average: str | None = _key("average")
-    blocked_loss_db: Annotated[Distribution, _number("blocked_loss_db")] | None = _key("blocked_loss_db")
-    shadow_margin_m: Annotated[Distribution, _number("shadow_margin_m")] | None = _key("shadow_margin_m")
+    model: str = Channel.model_fields["model"].default
+    average: str | None = None
+    environment: Annotated[Environments, _OR_NAME] | None = None
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield the faults of a channel with the first number and name of each key."""
@@ -224,6 +198,14 @@ class DrawnChannel(Section):
         return ((key, each) for key, each in self if isinstance(each, Distribution | Environments))
 
 
+_NUMBERS: dict[str, Any] = {
+    key: (Annotated[Distribution, Drawn.of(field.annotation)] | None, None)
+    for key, field in Channel.model_fields.items()
+    if key not in DrawnChannel.model_fields
+}
+_WithNumbers = create_model("DrawnChannel", __base__=DrawnChannel, **_NUMBERS)
+
+
 class FixedOrDrawn(Rule):
     """A channel that is the same in all scenes, or one with a table in place of a value."""
 
@@ -233,4 +215,4 @@ class FixedOrDrawn(Rule):
         is_drawn = any(
             isinstance(each, Mapping | Distribution | Environments | DrawnChannel) for each in values
         )
-        return (DrawnChannel if is_drawn else Channel).model_validate(value)
+        return (_WithNumbers if is_drawn else Channel).model_validate(value)

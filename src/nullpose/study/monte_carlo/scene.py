@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import Annotated, ClassVar
 
-from pydantic import Field
+from pydantic import Field, SerializeAsAny
 
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, USUAL
@@ -78,7 +78,7 @@ class SceneBase(Section):
     airframe: NamedAirframe | None = optional("A table headed [scene.airframe], or the name of a preset.")
     antenna: Antenna | None = optional("A table headed [scene.antenna].")
     array: Array | None = optional("A table headed [scene.array].")
-    channel: Annotated[Channel | DrawnChannel, FixedOrDrawn()] | None = optional(
+    channel: Annotated[Channel | SerializeAsAny[DrawnChannel], FixedOrDrawn()] | None = optional(
         "A table headed [scene.channel], values of which may be drawn."
     )
     receiver: Receiver | None = optional("A table headed [scene.receiver].")
