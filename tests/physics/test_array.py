@@ -6,13 +6,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from array_beams import beam_sinr
 from hypothesis import given, strategies as st
 from scipy.linalg import eigh
 
 from nullpose.physics import sinr
 from nullpose.physics.array import (
     array_channels,
-    beam_sinr,
     digital_sinr,
     digital_weights,
     element_positions,

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from array_beams import beam_sinr
 
 import nullpose
 from nullpose.physics import (
     ErrorCase,
     Pose,
-    beam_sinr,
     digital_sinr,
     element_positions,
     evaluate,

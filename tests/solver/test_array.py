@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from array_beams import beam_sinr
 from scipy.optimize import differential_evolution
 from sizes import and_slow
 
 import nullpose
 from nullpose.errors import SolveError, UsageError
-from nullpose.physics.array import beam_sinr, digital_sinr, element_positions
+from nullpose.physics.array import digital_sinr, element_positions
 from nullpose.problem.build import build_family
 from nullpose.scenario import Array, Scenario
 from nullpose.solver import Result, Status, solve

@@ -5,7 +5,6 @@ Every number that nullpose reports is evaluated here from the reported pose.
 
 from nullpose.physics.array import (
     array_channels,
-    beam_sinr,
     digital_sinr,
     digital_weights,
     element_positions,
@@ -76,7 +75,6 @@ __all__ = [
     "array_channels",
     "attitude_from_axis",
     "attitude_of_axis",
-    "beam_sinr",
     "destination_snr",
     "digital_sinr",
     "digital_weights",

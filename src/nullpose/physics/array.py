@@ -214,36 +214,14 @@ def digital_weights(
     return np.asarray(weights / np.where(length > 0.0, length, 1.0))
 
 
-def beam_sinr(
-    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, weights: ArrayLike
-) -> FloatArray:
-    """Evaluate every node's SINR with given weights.
-
-    ``Gamma_k = |w_k^H h_k|^2 / (sigma^2 |w_k|^2 + sum_j |w_k^H h_j|^2)``
-
-    Source: Van Trees, section 6.2.
-
-    Args:
-        scenario: nodes, jammers and receiver.
-        position_m: the array's centre, shape ``(..., 3)``, metres.
-        elements_wavelengths: shape ``(..., K, 3)``.
-        weights: shape ``(..., n_nodes, K)``, of any length but zero.
-
-    Returns:
-        Array of shape ``(..., n_nodes)``, power ratios.
-    """
-    nodes, jammers = _both_channels(scenario, position_m, elements_wavelengths)
-    conjugate = np.conj(np.asarray(weights, dtype=complex))
-    signal_w = np.abs(np.sum(conjugate * nodes, axis=-1)) ** 2
-    jamming_w = np.sum(np.abs(conjugate @ np.swapaxes(jammers, -1, -2)) ** 2, axis=-1)
-    noise_w = scenario.receiver.noise_power_w * np.sum(np.abs(conjugate) ** 2, axis=-1)
-    return np.asarray(signal_w / (jamming_w + noise_w))
-
-
-def _both_channels(
+def _principal(
     scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, case: ErrorCase | None = None
-) -> tuple[ComplexArray, ComplexArray]:
-    """Evaluate the channels of the nodes and of the jammers."""
+) -> tuple[ComplexArray, ComplexArray, FloatArray, ComplexArray]:
+    """Evaluate the nodes' channels, the principal directions of the jamming, its power and their parts there.
+
+    Shapes ``(..., n_nodes, K)``; ``(..., K, d)``, one direction a column; ``(..., d)``, watts;
+    ``(..., n_nodes, d)``.
+    """
     case = ErrorCase.none(scenario) if case is None else case
     elements = np.asarray(elements_wavelengths, dtype=float) @ np.swapaxes(case.rotation_world, -1, -2)
     channels = array_channels(
@@ -256,18 +234,6 @@ def _both_channels(
         case.rotation_world[..., 2],
         scenario.source_channels,
     )
-    nodes = len(scenario.nodes)
-    return channels[..., :nodes, :], channels[..., nodes:, :]
-
-
-def _principal(
-    scenario: Scenario, position_m: ArrayLike, elements_wavelengths: ArrayLike, case: ErrorCase | None = None
-) -> tuple[ComplexArray, ComplexArray, FloatArray, ComplexArray]:
-    """Evaluate the nodes' channels, the principal directions of the jamming, its power and their parts there.
-
-    Shapes ``(..., n_nodes, K)``; ``(..., K, d)``, one direction a column; ``(..., d)``, watts;
-    ``(..., n_nodes, d)``.
-    """
-    nodes, jammers = _both_channels(scenario, position_m, elements_wavelengths, case)
+    nodes, jammers = np.split(channels, [len(scenario.nodes)], axis=-2)
     directions, strengths, _ = np.linalg.svd(np.swapaxes(jammers, -1, -2), full_matrices=False)
     return nodes, directions, strengths**2, nodes @ np.conj(directions)

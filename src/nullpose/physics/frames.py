@@ -145,14 +145,9 @@ def _frame_pose(position_m: FloatArray, roll_rad: float, pitch_rad: float, yaw_r
         position_m=(x, y, z),
         roll_rad=roll_rad,
         pitch_rad=pitch_rad + 0.0,
-        yaw_rad=_wrapped(yaw_rad),
+        yaw_rad=math.remainder(yaw_rad, math.tau),
         quaternion_wxyz=_quaternion_wxyz(roll_rad, pitch_rad, yaw_rad),
     )
-
-
-def _wrapped(angle_rad: float) -> float:
-    """Wrap an angle to (-pi, pi], untouched if it is in there."""
-    return angle_rad if -math.pi < angle_rad <= math.pi else math.pi - (math.pi - angle_rad) % math.tau
 
 
 def _quaternion_wxyz(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
