@@ -8,7 +8,8 @@ from collections.abc import Iterator, Sequence
 from claims.claim import Claim
 from claims.claims import CLAIMS
 from claims.study import JammingStudy
-from nullpose.paper.reproduce import Reproduction, figure2_lines
+from nullpose.paper.reproduce import Reproduction
+from nullpose.report.answer import certainty_lines
 from nullpose.report.document import Row
 
 _BEYOND = (
@@ -43,7 +44,7 @@ def claims_page(reproduction: Reproduction, claims: tuple[Claim, ...]) -> str:
         {"claim": each.claim, "verdict": f"**{each.verdict}**", "where": _where(each)} for each in claims
     ]
     searched = "Maximum gain, as printed: best found by search, no upper bound."
-    lines = [*figure2_lines(reproduction.table), searched, _BEYOND]
+    lines = [*(f"{line}." for line in certainty_lines(reproduction.table)), searched, _BEYOND]
     blocks = [_HEAD, "\n".join(f"- {line}" for line in lines), _table(verdicts)]
     blocks += [block for claim in claims for block in _section(claim)]
     return "\n\n".join(filter(None, blocks)) + "\n"

@@ -219,23 +219,16 @@ def error_sizes(text: str | None) -> ErrorSizes:
     Raises:
         UsageError: an unknown name, or no number.
     """
-    from nullpose.errors import UsageError
+    from nullpose.errors import require_usage
     from nullpose.solver.sensitivity import ErrorSizes
 
-    names = {field.name: field.name for field in fields(ErrorSizes)}
-    sizes: dict[str, float] = {}
+    names, sizes = [field.name for field in fields(ErrorSizes)], dict[str, float]()
+    allowed = f"{', '.join(names)}, each once with a number, as in attitude_deg=2,jammers_m=200"
     for part in [] if text is None else text.split(","):
-        name, _, number = part.partition("=")
-        try:
-            size = (names | {"eavesdroppers_m": "jammers_m"})[name.strip()]
-            if size in sizes:
-                raise ValueError(part)
-            sizes[size] = float(number)
-        except (KeyError, ValueError):
-            raise UsageError(
-                f"--off: given {part.strip()!r}; allowed: {', '.join(names)}, each once with a number, as in "
-                "attitude_deg=2,jammers_m=200"
-            ) from None
+        name, _, number = part.strip().replace("eavesdroppers_m", "jammers_m").partition("=")
+        is_one = name in names and name not in sizes
+        require_usage(is_one, f"--off: given {part.strip()!r}; allowed: {allowed}")
+        sizes |= zip([name], numbers_of(f"--off {name}", number, allowed, 1), strict=True)
     return ErrorSizes(**sizes)
 
 

@@ -18,12 +18,12 @@ from nullpose.paper.printed import (
     search_as_printed,
 )
 from nullpose.problem.schemes import Scheme
-from nullpose.report.answer import counted, labelled_certainty
-from nullpose.report.document import View, document, grouped
+from nullpose.report.answer import certainty_lines, counted
+from nullpose.report.document import View, document
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES, Curve, draw_curve, house_style, write_figure
 from nullpose.report.figures.sweep import draw_caption, draw_curves
-from nullpose.report.numbers import MINUS, capitalised
+from nullpose.report.numbers import MINUS
 from nullpose.study import ResultTable, sweep
 
 if TYPE_CHECKING:
@@ -35,11 +35,6 @@ _LABELS = ((0.3, 1.38), (3e2, 0.53), (3e2, -0.97), (3e2, -2.02))
 """P_M/P and smallest SINR [dB] of the left end of each case's label, beside its own curve alone."""
 _POWERS = "jamming-to-transmission power ratio  $P_M/P$"
 _PRINTED = Curve("eq. 3.5 as printed", "#9a6060", (0, (1.2, 1.8)), "v", 1.6, 2.0)
-
-
-def figure2_lines(table: ResultTable) -> list[str]:
-    """Write how certain the curves of Figure 2 are, of a sweep over the jammer's power."""
-    return [f"{capitalised(line)}." for line in grouped(labelled_certainty(table))]
 
 
 def draw_figure2(table: ResultTable) -> Figure:
@@ -54,7 +49,7 @@ def draw_figure2(table: ResultTable) -> Figure:
         axes.set_xlim(0.8 * table.values[0], 1.25 * table.values[-1])  # no marker is cut in half
         for scheme, place in zip(Scheme, _LABELS, strict=True):
             axes.text(*place, CURVES[scheme].label, color=CURVES[scheme].colour, fontweight="bold")
-        draw_caption(figure, figure2_lines(table))
+        draw_caption(figure, [f"{line}." for line in certainty_lines(table)])
     return figure
 
 
@@ -154,4 +149,4 @@ def reproduce(
 
 def reproduction_view(reproduction: Reproduction) -> View:
     """Write how certain the curves of Figure 2 are."""
-    return document("\n".join(f"Figure 2: {line}" for line in figure2_lines(reproduction.table)))
+    return document("\n".join(f"Figure 2: {line}." for line in certainty_lines(reproduction.table)))

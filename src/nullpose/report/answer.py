@@ -168,28 +168,27 @@ def _sentence(status: Status, rows: Sequence[ResultRow]) -> str:
 
 def certainty_lines(table: ResultTable) -> list[str]:
     """Write how certain the curves of a sweep are, a sentence for each kind of certainty that occurs."""
-    return [capitalised(line) for line in grouped(labelled_certainty(table))]
-
-
-def labelled_certainty(table: ResultTable) -> list[tuple[str, str]]:
-    """Pair the label of each curve of a sweep with how certain it is, curves of one status together."""
     weakest = {name: max((row.status for row in table.of(name)), key=_ORDER.index) for name in table.names}
     sentences = {
         status: _sentence(status, [row for row in table.rows if weakest[row.name] is status])
         for status in weakest.values()
     }
-    return [
+    labelled = (
         (table.of(name)[0].label, sentences[weakest[name]])
         for name in sorted(weakest, key=lambda name: _ORDER.index(weakest[name]))
-    ]
+    )
+    return list(map(capitalised, grouped(labelled)))
 
 
 def rigour_lines(rigours: Iterable[tuple[str, Rigour]]) -> list[str]:
     """Write how sure bounds are, a sentence for each rigour that occurs; labels may repeat."""
     labelled = list(rigours)
     counts, among = Counter(labelled), Counter(label for label, _ in labelled)
-    sentences = []
-    for (label, rigour), count in counts.items():
-        share = "" if count == among[label] else f"at {count} of {among[label]} points "
-        sentences.append((label, "" if rigour is Rigour.NONE else f"{share}{rigour.message}."))
-    return grouped(sentences)
+    shares = {
+        each: "" if count == among[each[0]] else f"at {count} of {among[each[0]]} points "
+        for each, count in counts.items()
+    }
+    return grouped(
+        (label, "" if rigour is Rigour.NONE else f"{shares[label, rigour]}{rigour.message}.")
+        for label, rigour in shares
+    )

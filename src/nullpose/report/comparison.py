@@ -174,8 +174,10 @@ def _values(
 
 
 def _texts(numbers: FloatArray, digits: int) -> list[str | None]:
-    texts = [f"{x:z.{digits}f}" if math.isfinite(x) else "nothing" for x in numbers.tolist()]
-    return [None if math.isnan(number) else text for number, text in zip(numbers, texts, strict=True)]
+    return [
+        f"{number:z.{digits}f}" if math.isfinite(number) else None if math.isnan(number) else "nothing"
+        for number in numbers.tolist()
+    ]
 
 
 def numbers_of(comparison: ResultTable) -> FloatArray:
@@ -183,13 +185,16 @@ def numbers_of(comparison: ResultTable) -> FloatArray:
 
     Its value and the bound on it; what the pose shown and the robust pose guarantee, and the bound on that.
     """
-    columns = []
-    for row in comparison.rows:
-        kept, in_unit = row.guaranteed, row.objective.quantity.in_unit
-        numbers = [row.objective.value, row.objective.upper_bound]
-        numbers += [None] * 3 if kept is None else [kept.nominal_pose, kept.robust_pose, kept.upper_bound]
-        columns.append([math.nan if number is None else in_unit(number) for number in numbers])
-    return np.transpose(columns)
+    in_unit = comparison.rows[0].objective.quantity.in_unit
+    guaranteed = [row.guaranteed for row in comparison.rows]
+    columns: list[list[float | None]] = [
+        [row.objective.value for row in comparison.rows],
+        [row.objective.upper_bound for row in comparison.rows],
+        [kept.nominal_pose if kept else None for kept in guaranteed],
+        [kept.robust_pose if kept else None for kept in guaranteed],
+        [kept.upper_bound if kept else None for kept in guaranteed],
+    ]
+    return np.array([[math.nan if x is None else in_unit(x) for x in column] for column in columns])
 
 
 def _null_cells(row: ResultRow) -> dict[str, str]:

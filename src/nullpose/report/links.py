@@ -80,13 +80,13 @@ def links_table(result: Result, more: Mapping[str, Sequence[str | None]]) -> Vie
 
 def nulls_table(scenario: Scenario, pose: Pose) -> View | None:
     """Set how far the null is off each eavesdropper or jammer, and how strong the link with it is."""
-    noun, heading = scenario.interferer, "jamming to noise (dB)" if scenario.sources else "SNR (dB)"
+    noun, transmits = scenario.interferer, scenario.objective_record.transmits
+    heading = "SNR (dB)" if transmits and not scenario.sources else "jamming to noise (dB)"
     names, points = scenario.of_interferers("names"), scenario.of_interferers("positions_m")
     orientation = pose.orientation(scenario.antenna_record)
-    if scenario.objective_record.transmits:
+    if transmits:
         ratios = eavesdropper_snr(scenario, pose.position_m, orientation)
     else:
-        heading = "jamming to noise (dB)"
         received_w = received_from_sources_w(scenario, pose.position_m, orientation)
         ratios = received_w[len(scenario.nodes) :] / scenario.receiver.noise_power_w
     is_even = scenario.antenna_record.is_even

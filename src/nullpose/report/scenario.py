@@ -218,6 +218,11 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
     receiver, airframe, array = scenario.receiver, scenario.airframe, scenario.array
     attitude_deg, position_m = receiver.attitude_error_deg, receiver.position_error_m
     sender, distance_m = scenario.transmitter, (scenario.channel or Channel()).gain_distance_m
+    left = [scenario.channel_of(point).row[BLOCKED] for point in scenario.points]
+    blocked = {
+        "loss of a blocked link (dB)": _between(np.round(-to_db(left), 6).tolist()),
+        "margin of shadows (m)": f"{scenario.prisms.margin_m:g}" if scenario.prisms else None,
+    }
     return {
         "maximised": f"the {Quantity.of(scenario).smallest_over}",
         "array": None if array is None else array_words(array),
@@ -229,14 +234,8 @@ def _vehicle_rows(scenario: Scenario) -> dict[str, str | None]:
         "noise": _power_words(receiver.noise_power_w),
         f"path gain at {distance_m:g} m (dB)": f"{to_db(receiver.reference_gain):.2f}",
         "channel": channel_words(scenario),
-        "loss of a blocked link (dB)": _blocked_words(scenario),
-        "margin of shadows (m)": None if scenario.prisms is None else f"{scenario.prisms.margin_m:g}",
+        **({} if scenario.prisms is None else blocked),
     }
-
-
-def _blocked_words(scenario: Scenario) -> str | None:
-    left = np.array([scenario.channel_of(point).row[BLOCKED] for point in scenario.points])
-    return None if scenario.prisms is None else _between(np.round(-to_db(left), 6).tolist())
 
 
 def _power_words(power_w: float) -> str:

@@ -22,14 +22,13 @@ def sensitivity_view(result: Result) -> View | None:
     if (found := result.sensitivity) is None:
         return None
     quantity, sizes = found.quantity, found.sizes
+    jammers = f"each {result.scenario.interferer} by up to {sizes.jammers_m:g} m"
     kinds = {
         "attitude": f"attitude by up to {sizes.attitude_deg:g} deg",
         "position": f"position by up to {sizes.position_m:g} m",
-        "jammers": f"each {result.scenario.interferer} by up to {sizes.jammers_m:g} m",
+        **({"jammers": jammers} if result.scenario.interferers else {}),
         "all": "all together",
     }
-    if not result.scenario.interferers:
-        del kinds["jammers"]
     nominal = quantity.in_unit(found.nominal)
     values = [quantity.in_unit(getattr(found, kind)) for kind in kinds]
     columns = {

@@ -206,7 +206,7 @@ class PointArrays:
     @property
     def interferer(self) -> str:
         """What an interferer of the objective is, in a word: ``"jammer"`` or ``"eavesdropper"``."""
-        return self.objective_record.interferers.removesuffix("s")
+        return {"jammers": "jammer", "eavesdroppers": "eavesdropper"}[self.objective_record.interferers]
 
     @property
     def interferers(self) -> tuple[Jammer | Eavesdropper, ...]:

@@ -30,7 +30,6 @@ _PLACES = np.array(
 """Where a name may stand: from its point, over its half size, with a gap in points, and what that costs."""
 _SAMPLES, _CROSSED, _BESIDE = 60, 0.05, 0.15  # points on a line; costs of one below a name, of a mark beside
 _MARK_PT, _BESIDE_PT, _TINY_PT = 3.0, 9.0, 18.0  # half of a mark; how far one is beside a name; a small zone
-_TRIES, _POINT = 6, 10.0  # tries; what the name of a point is worth over that of an area
 
 
 def write_name(
@@ -72,8 +71,7 @@ def write_name(
 def place_names(axes: Axes) -> None:
     """Move each name to where it is in the frame, over no mark and no letters, and nearest its own point.
 
-    Names of the worst nodes are placed first, those of areas last. In the next try those are first that found
-    no place. In the end these are not drawn.
+    Names of the worst nodes are placed first, those of areas last. One that finds no place is not drawn.
     """
     names = [
         text
@@ -90,30 +88,22 @@ def place_names(axes: Axes) -> None:
     points = axes.transData.transform([name.xy for name in names])
     marks, lines, corners = _in_the_way(axes, names, point_px)
     middles, halves = corners.mean(axis=1), 0.5 * np.ptp(corners, axis=1)
-    weights = [1.0 if name.get_fontstyle() == "italic" else _POINT for name in names]
-    order, least = list(range(len(names))), np.inf
-    for _ in range(_TRIES):
-        middles[: len(names)] = np.nan
-        for index in order:
-            point, half = points[index], halves[index]
-            places = point + _PLACES[:, :2] * (half + point_px * _PLACES[:, 2:3])
-            low, high = axes.bbox.min + half + point_px, axes.bbox.max - half - point_px
-            places = np.clip(places, low, high)[:, None]
-            rivals = [point, *marks, *(points if weights[index] < _POINT else ())]
-            beyond = np.maximum(np.abs(places - rivals) - half, 0.0)
-            is_wrong = np.argmin(np.linalg.norm(beyond, axis=-1), axis=1) > 0  # nearer to another
-            is_wrong |= np.any(np.all(np.abs(places - middles) < halves + half, axis=-1), axis=1)
-            crossed = np.all(np.abs(places - lines) < half, axis=-1).sum(axis=1)
-            beside = np.all(np.abs(places - marks) < half + _BESIDE_PT * point_px, axis=-1).sum(axis=1)
-            costs = _PLACES[:, 3] + _CROSSED * crossed + _BESIDE * beside + np.where(is_wrong, np.inf, 0.0)
-            best = int(np.argmin(costs))
-            middles[index] = places[best, 0] if costs[best] < np.inf else np.nan
-        is_lost = np.isnan(middles[: len(names), 0])
-        if np.dot(weights, is_lost) < least:
-            least = float(np.dot(weights, is_lost))
-            for name, point, middle, lost in zip(names, points, middles, is_lost, strict=False):
-                name.set(position=(middle - point) / point_px, visible=not lost)
-        order.sort(key=lambda index: (-weights[index], not is_lost[index]))
+    middles[: len(names)] = np.nan
+    for index, (name, point) in enumerate(zip(names, points, strict=True)):
+        half = halves[index]
+        places = point + _PLACES[:, :2] * (half + point_px * _PLACES[:, 2:3])
+        low, high = axes.bbox.min + half + point_px, axes.bbox.max - half - point_px
+        places = np.clip(places, low, high)[:, None]
+        rivals = [point, *marks, *(points if name.get_fontstyle() == "italic" else ())]
+        beyond = np.maximum(np.abs(places - rivals) - half, 0.0)
+        is_wrong = np.argmin(np.linalg.norm(beyond, axis=-1), axis=1) > 0  # nearer to another
+        is_wrong |= np.any(np.all(np.abs(places - middles) < halves + half, axis=-1), axis=1)
+        crossed = np.all(np.abs(places - lines) < half, axis=-1).sum(axis=1)
+        beside = np.all(np.abs(places - marks) < half + _BESIDE_PT * point_px, axis=-1).sum(axis=1)
+        costs = _PLACES[:, 3] + _CROSSED * crossed + _BESIDE * beside + np.where(is_wrong, np.inf, 0.0)
+        best = int(np.argmin(costs))
+        middles[index] = places[best, 0] if costs[best] < np.inf else np.nan
+        name.set(position=(middles[index] - point) / point_px, visible=bool(costs[best] < np.inf))
 
 
 def _in_the_way(
