@@ -18,7 +18,7 @@ from twins import write
 
 import nullpose
 from nullpose.report.figures.style import house_style
-from nullpose.report.figures.vehicle import MOUNT_CURVES
+from nullpose.report.figures.sweep import MOUNT_CURVES
 from nullpose.study.monte_carlo import StudySpec, draw_scene
 
 FOLDER = Path(__file__).parent

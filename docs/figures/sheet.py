@@ -29,8 +29,7 @@ from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.plan import draw_value_map
 from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.style import WIDTHS_MM, write_figure
-from nullpose.report.figures.sweep import draw_sweep
-from nullpose.report.figures.vehicle import draw_least_tilt
+from nullpose.report.figures.sweep import draw_least_tilt, draw_sweep
 from nullpose.report.study.cases import report_cases
 from nullpose.report.study.figures import figures_of
 from nullpose.report.study.summary import summarise

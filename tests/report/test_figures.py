@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 
 from nullpose import Scenario, solve
 from nullpose.report.figures.style import CURVES
-from nullpose.report.figures.sweep import draw_sweep
-from nullpose.report.figures.vehicle import draw_least_tilt
+from nullpose.report.figures.sweep import draw_least_tilt, draw_sweep
 from nullpose.solver import Scheme
 from nullpose.study import ResultTable, sweep
 from nullpose.study.least_tilt import LeastTilt, MountTilt

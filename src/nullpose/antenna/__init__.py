@@ -7,8 +7,14 @@ from __future__ import annotations
 
 from nullpose.antenna.dipoles import DIPOLE, HALF_WAVE, SHORT_DIPOLE, short_dipole
 from nullpose.antenna.from_file import PATTERN, PROFILE
-from nullpose.antenna.ground import GROUND_ANTENNAS, GroundAntennas, unit_axis
-from nullpose.antenna.kind import AntennaKind, AnyAntenna, QuadraticAntenna
+from nullpose.antenna.kind import (
+    GROUND_ANTENNAS,
+    AntennaKind,
+    AnyAntenna,
+    GroundAntennas,
+    QuadraticAntenna,
+    unit_axis,
+)
 from nullpose.antenna.pattern import PatternAntenna
 
 __all__ = [

@@ -20,7 +20,7 @@ from nullpose.certificate.certificate import COLUMNS, Certificate, Leaves, Tree
 from nullpose.errors import CertificateError, ScenarioError, require
 from nullpose.files import parse_json, read_bytes, replacing
 from nullpose.scenario import Scenario
-from nullpose.scenario.wording import printable
+from nullpose.scenario.faults import printable
 
 FORMAT = "nullpose-certificate"
 VERSION = 2

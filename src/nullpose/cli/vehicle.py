@@ -75,7 +75,7 @@ def vehicle(
         )
     if figure:
         from nullpose.report.figures.style import write_figure
-        from nullpose.report.figures.vehicle import draw_least_tilt
+        from nullpose.report.figures.sweep import draw_least_tilt
 
         with compiling_announced(proof.time_limit), Ticker("values by axis angle") as ticker:
             values = values_by_angle(found, on_progress=ticker, **proof.keywords())

@@ -18,7 +18,7 @@ from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
 from nullpose.scenario.area_roles import STAY_OUT
 from nullpose.scenario.areas import Area, areas_of, notes_on, polygons_of
 from nullpose.scenario.arrays import Floats
-from nullpose.scenario.faults import refusal, require
+from nullpose.scenario.faults import described, refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu, wrapped
 from nullpose.scenario.no_fly import NoFlyZone
@@ -26,7 +26,6 @@ from nullpose.scenario.origin import Origin
 from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.shapes import DISC_SIDES, corners_of, disc
 from nullpose.scenario.units import EARTHLY_RANGES
-from nullpose.scenario.wording import described
 
 REACH_M = 6e4
 """How far east, west, north and south of the origin zones of files count; in degrees this square lies within

@@ -13,9 +13,8 @@ import shapely
 from nullpose.errors import Fault
 from nullpose.scenario.altitude_limits import FOOT_M
 from nullpose.scenario.buildings import HIGHEST_M, Building
-from nullpose.scenario.faults import call_each, raise_all, require
+from nullpose.scenario.faults import call_each, described, raise_all, require
 from nullpose.scenario.geo_file import Feature
-from nullpose.scenario.wording import described
 
 GONE = {
     *("underground", "undergr", "demolished", "razed", "removed", "destroyed", "dismantled", "proposed"),

@@ -12,7 +12,7 @@ from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, Custom
 from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.channel import Channel, CustomChannel
-from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of
+from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of, unknown
 from nullpose.scenario.ground_points import GroundPoint, Node, Terminal
 from nullpose.scenario.motion import flight_faults, motion_faults
 from nullpose.scenario.origin import POINT_LISTS
@@ -21,7 +21,6 @@ from nullpose.scenario.plausibility import too_small
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import table_of
 from nullpose.scenario.units import HALF_DB, MOST_OVER_FED_DB
-from nullpose.scenario.wording import unknown
 
 if TYPE_CHECKING:
     from nullpose.scenario.airspace import Airspace

@@ -24,11 +24,10 @@ from shapely.geometry.base import BaseGeometry
 
 from nullpose.errors import install_command
 from nullpose.files import PlainTable, read_bytes
-from nullpose.scenario.faults import EXCHANGED, call_each, raise_all, refusal, require
+from nullpose.scenario.faults import EXCHANGED, call_each, described, raise_all, refusal, require
 from nullpose.scenario.geo_json import members_of, require_wgs84, value_of
 from nullpose.scenario.kml import kml_of_kmz, placemarks_of, root_of
 from nullpose.scenario.toml_file import decoded
-from nullpose.scenario.wording import described
 
 _HEAD = 100  # bytes before the first record of .shp and of .shx
 

@@ -6,8 +6,7 @@ import re
 from typing import Any
 
 from nullpose.files import PlainTable, parse_json
-from nullpose.scenario.faults import refusal, require
-from nullpose.scenario.wording import described
+from nullpose.scenario.faults import described, refusal, require
 
 _GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
 _WGS84 = re.compile(r"(?:.*[:/])?(?:CRS84h?|4326|4979|4258)")

@@ -18,7 +18,7 @@ from nullpose.scenario.antenna import with_harmonics
 from nullpose.scenario.area_files import FENCES, REACH_M, Filled, with_fence, with_zones
 from nullpose.scenario.building_files import buildings_of
 from nullpose.scenario.buildings import Building
-from nullpose.scenario.faults import raise_all, refusal, require
+from nullpose.scenario.faults import described, raise_all, refusal, require
 from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
 from nullpose.scenario.geo_json import HOME
 from nullpose.scenario.ground_points import ALIKE
@@ -28,7 +28,6 @@ from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_content, file_text, inside
 from nullpose.scenario.track import MOTION
 from nullpose.scenario.track_files import TRACK_ENDINGS, track_of
-from nullpose.scenario.wording import described
 
 _NODES_KEY, _FENCE_KEY, _ZONES_KEY = "nodes_from", "geofence_from", "no_fly_from"
 _BUILDINGS_KEY, _TRACK_KEY = "buildings_from", "track_from"

@@ -18,14 +18,13 @@ from shapely import Point
 from nullpose.errors import Fault
 from nullpose.files import PlainTable
 from nullpose.scenario.areas import account, counted, name_of, unique
-from nullpose.scenario.faults import call_each, raise_all, refusal, require
+from nullpose.scenario.faults import call_each, printable, raise_all, refusal, require, unknown
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.ground_points import PLACE, Node
 from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.shapes import parts_of
 from nullpose.scenario.units import ALTITUDE_KEYS, GEODETIC_KEYS
 from nullpose.scenario.ways import Ways
-from nullpose.scenario.wording import printable, unknown
 
 LOCAL = ("x_m", "y_m", "z_m")
 """The columns of a place in metres."""

@@ -12,12 +12,20 @@ from typing import Any
 
 from nullpose.errors import ScenarioError, checked
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import call_each, path_of, raise_all, refusal, require
+from nullpose.scenario.faults import (
+    call_each,
+    described,
+    nearest,
+    path_of,
+    plain,
+    raise_all,
+    refusal,
+    require,
+)
 from nullpose.scenario.origin import POINT_LISTS
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.section import Section, table_of
 from nullpose.scenario.units import EARTHLY
-from nullpose.scenario.wording import described, nearest, plain
 
 _ASSIGNMENT = re.compile(r"""((?:"[^"]*"|'[^']*'|[^="'])+)=(.*)""", re.DOTALL)
 _STEP = re.compile(r"""(?:^|\.)(?:"([^"]*)"|'([^']*)'|([^."'\[\]]+))|\[(\d+)\]""")

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from nullpose.scenario.faults import rejection
+from nullpose.scenario.faults import plain, rejection
 from nullpose.scenario.rules import Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
@@ -21,7 +21,6 @@ from nullpose.scenario.units import (
     ratio_from_db,
 )
 from nullpose.scenario.ways import Ways, exactly_one
-from nullpose.scenario.wording import plain
 
 _NOISE = (("noise_w",), ("noise_dbm",), ("bandwidth_hz", "noise_figure_db"))
 NOISE = Ways(_NOISE, fewest=0)

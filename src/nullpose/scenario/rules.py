@@ -11,8 +11,7 @@ from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, Type
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from nullpose.scenario.faults import rejection, require_value
-from nullpose.scenario.wording import described, plain, suggestion
+from nullpose.scenario.faults import described, plain, rejection, require_value, suggestion
 
 MOST_MEMBERS = 10_000
 """The most members of a list, such as nodes or the corners of a polygon."""

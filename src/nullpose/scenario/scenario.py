@@ -23,7 +23,7 @@ from nullpose.scenario.arrays import Floats, PointArrays, rows_of_points
 from nullpose.scenario.buildings import MOST_BUILDINGS, Building
 from nullpose.scenario.channel import SHADOW_MARGIN_M, NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
-from nullpose.scenario.faults import Place
+from nullpose.scenario.faults import Place, described
 from nullpose.scenario.ground_points import Destination, Eavesdropper, Jammer, Node, Source
 from nullpose.scenario.motion import Time, started, still_at, time_of
 from nullpose.scenario.origin import Origin, located
@@ -33,7 +33,6 @@ from nullpose.scenario.section import Section, optional
 from nullpose.scenario.toml_file import toml_text
 from nullpose.scenario.units import Label, Seconds, Title, ratio_from_db
 from nullpose.scenario.ways import Ways
-from nullpose.scenario.wording import described
 
 
 class _Objective(Choice):

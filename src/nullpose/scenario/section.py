@@ -22,10 +22,18 @@ from pydantic.functional_validators import ModelWrapValidatorHandler
 
 from nullpose.errors import WrongTypeError
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import Place, collected, rejection, reworded, scenario_error
+from nullpose.scenario.faults import (
+    Place,
+    collected,
+    described,
+    nearest,
+    rejection,
+    reworded,
+    scenario_error,
+    unknown,
+)
 from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.ways import Ways
-from nullpose.scenario.wording import described, nearest, unknown
 
 _MOST_UNKNOWN = 20  # keys of a table that are judged one by one
 

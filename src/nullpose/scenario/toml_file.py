@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from nullpose.files import MOST_BYTES, PlainTable, read_bytes
-from nullpose.scenario.faults import refusal, require
-from nullpose.scenario.wording import described, nearest
+from nullpose.scenario.faults import described, nearest, refusal, require
 
 _TOML_PLACE = re.compile(r"\s*\(at (?:(line \d+, column \d+)|end of document)\)$")
 _KEY_TUPLE = re.compile(r"\('([^)]*?)',?\)")

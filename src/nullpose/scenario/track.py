@@ -7,11 +7,10 @@ from itertools import pairwise
 from typing import Annotated
 
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import ONLY_LOCAL, Place
+from nullpose.scenario.faults import ONLY_LOCAL, Place, plain
 from nullpose.scenario.rules import MOST_MEMBERS, Limits, ListOf
 from nullpose.scenario.units import PLACE_KEYS, Seconds, Speed
 from nullpose.scenario.ways import at_most_one
-from nullpose.scenario.wording import plain
 
 MOTION = at_most_one("velocity_m_s", "track", "track_from")
 """The ways to state how a point moves."""

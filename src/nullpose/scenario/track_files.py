@@ -10,7 +10,7 @@ from typing import NamedTuple
 import shapely
 
 from nullpose.files import PlainTable
-from nullpose.scenario.faults import refusal, require
+from nullpose.scenario.faults import described, refusal, require
 from nullpose.scenario.geo_file import features_of
 from nullpose.scenario.kml import root_of
 from nullpose.scenario.node_files import LOCAL, cells_of_row, number_of, table_of_csv
@@ -18,7 +18,6 @@ from nullpose.scenario.shapes import parts_of
 from nullpose.scenario.toml_file import decoded
 from nullpose.scenario.track import place_of_start
 from nullpose.scenario.units import ALTITUDE_KEYS, GEODETIC_KEYS, PLACE_KEYS
-from nullpose.scenario.wording import described
 
 TRACK_ENDINGS = (".csv", ".geojson", ".json", ".gpx")
 """How the names of files of tracks end."""

@@ -6,9 +6,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BeforeValidator, WithJsonSchema
 
-from nullpose.scenario.faults import EXCHANGED, rejection, require_value
+from nullpose.scenario.faults import EXCHANGED, described, rejection, require_value
 from nullpose.scenario.rules import Limits, ListOf, ascending
-from nullpose.scenario.wording import described
 
 GEODETIC_KEYS = ("lat_deg", "lon_deg", "alt_m")
 """The keys that state a place on the Earth: all three, or none."""

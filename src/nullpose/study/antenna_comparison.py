@@ -12,9 +12,8 @@ from nullpose.scenario.origin import POINT_LISTS
 from nullpose.solver import Result, solve
 from nullpose.solver.options import SolveKeywords, SolveOptions
 from nullpose.solver.result import provenance
-from nullpose.study.case import Case
+from nullpose.study.case import Case, OnProgress, report_steps
 from nullpose.study.evaluation import evaluated
-from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import ResultRow, ResultTable
 
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import product
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, TypeAlias, TypeVar
 
 from pydantic import BeforeValidator, Field
 
 from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
-from nullpose.scenario.faults import Place, key_faults, require_value
+from nullpose.scenario.faults import Place, described, key_faults, require_value
 from nullpose.scenario.rules import ByName, Choice, Count, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
 from nullpose.scenario.ways import Ways, at_most_one
-from nullpose.scenario.wording import described
 from nullpose.study.evaluation import FixedPose
 
 OMNIDIRECTIONAL = "omnidirectional"  # the case that other vehicles are compared with
@@ -233,3 +232,16 @@ def degrees_text(angle_rad: float) -> str:
         '30'
     """
     return f"{round(math.degrees(angle_rad), 6):g}"
+
+
+OnProgress: TypeAlias = Callable[[int, int], None] | None
+"""Called with how many steps are done and how many there are; None where nobody waits."""
+Step = TypeVar("Step")
+
+
+def report_steps(steps: Sequence[Step], on_progress: OnProgress) -> Iterator[Step]:
+    """Yield steps of work, and report each once the next one is asked for."""
+    for done, step in enumerate(steps, start=1):
+        yield step
+        if on_progress is not None:
+            on_progress(done, len(steps))

@@ -22,8 +22,7 @@ from nullpose.physics import Pose
 from nullpose.scenario import Airframe, Scenario
 from nullpose.solver import Result, SolveKeywords, Status, solve
 from nullpose.solver.rigour import Rigour
-from nullpose.study.case import SHARE
-from nullpose.study.progress import OnProgress, report_steps
+from nullpose.study.case import SHARE, OnProgress, report_steps
 from nullpose.study.vehicle_search import AS_NEEDED, LEAST_GAP, Sufficiency, VehicleSearch, required
 
 MOUNTS_DEG = (0.0, 45.0, 90.0)

@@ -14,11 +14,10 @@ import numpy as np
 
 from nullpose.errors import Fault, ScenarioError, UsageError, checked
 from nullpose.physics import Poses
-from nullpose.scenario.faults import call_each, raise_all, refusal, require
+from nullpose.scenario.faults import call_each, described, raise_all, refusal, require
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.toml_file import FileKind, file_text
 from nullpose.scenario.units import ALTITUDE_KEYS
-from nullpose.scenario.wording import described
 
 _LOCAL, _ANGLES = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
 _NO_ORIGIN = "lat_deg and lon_deg need the [origin] of a scenario; add it, or give x_m, y_m and z_m"

@@ -23,10 +23,9 @@ from nullpose.scenario.faults import raise_all
 from nullpose.solver import Result, SolveKeywords, SolveOptions, Status, solve
 from nullpose.solver.objective import status_of
 from nullpose.solver.result import Stats
-from nullpose.study.case import SHARE, Case
+from nullpose.study.case import SHARE, Case, OnProgress, report_steps
 from nullpose.study.evaluation import evaluated
 from nullpose.study.least_tilt import tilt_search, uninterrupted
-from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import ResultRow, ResultTable
 
 _FREER = {

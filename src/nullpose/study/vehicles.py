@@ -16,9 +16,16 @@ from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.solver import TIME_LIMIT_S, Result, SolveKeywords, SolveOptions, solve
 from nullpose.solver.result import provenance
 from nullpose.solver.robust import guarantee
-from nullpose.study.case import AIRFRAME_CASES, FILE_VEHICLE, OMNIDIRECTIONAL, TILTS_DEG, Case
+from nullpose.study.case import (
+    AIRFRAME_CASES,
+    FILE_VEHICLE,
+    OMNIDIRECTIONAL,
+    TILTS_DEG,
+    Case,
+    OnProgress,
+    report_steps,
+)
 from nullpose.study.least_tilt import TiltSearch
-from nullpose.study.progress import OnProgress, report_steps
 from nullpose.study.table import Guaranteed, ResultRow, ResultTable
 from nullpose.study.vehicle_search import Sufficiency, judged
 

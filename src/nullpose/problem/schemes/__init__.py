@@ -63,7 +63,7 @@ def as_scheme(name: str) -> Scheme:
     try:
         return Scheme(name)
     except ValueError:
-        from nullpose.scenario.wording import suggestion  # here, for it loads numpy
+        from nullpose.scenario.faults import suggestion  # here, for it loads numpy
 
         raise UsageError(
             f"scheme: given {name!r}; allowed: {', '.join(Scheme)}{suggestion(name, list(Scheme))}"

@@ -17,11 +17,10 @@ from nullpose.files import PlainTable
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Channel
 from nullpose.scenario.channel import EnvironmentName
-from nullpose.scenario.faults import Place, collected
+from nullpose.scenario.faults import Place, collected, plain
 from nullpose.scenario.rules import MOST_MEMBERS, ByName, Limits, ListOf, Rule
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.ways import Ways, exactly_one
-from nullpose.scenario.wording import plain
 
 _Number = Annotated[float, Limits("a number", -1e30, 1e30, "in the unit that the key ends in")]
 _Two = tuple[_Number, _Number]

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from nullpose.physics.types import FloatArray
-from nullpose.scenario.faults import Place, key_faults
+from nullpose.scenario.faults import Place, key_faults, plain
 from nullpose.scenario.ground_points import GroundAntennaKind, GroundPoint
 from nullpose.scenario.rules import Choice, Count, Limits, ListOf, ascending
 from nullpose.scenario.section import Section, optional
@@ -32,7 +32,6 @@ from nullpose.scenario.units import (
     Weight,
 )
 from nullpose.scenario.ways import Ways, at_most_one, exactly_one
-from nullpose.scenario.wording import plain
 from nullpose.study.monte_carlo.distribution import Distribution, Drawn
 
 MOST_POINTS = 10_000  # of one kind in a scene

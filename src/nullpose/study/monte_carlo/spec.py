@@ -17,12 +17,20 @@ from nullpose.errors import UsageError
 from nullpose.files import PlainTable
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario.crosscheck import shared_names
-from nullpose.scenario.faults import Place, collected, path_of, rejection, require_value
+from nullpose.scenario.faults import (
+    Place,
+    collected,
+    described,
+    path_of,
+    plain,
+    rejection,
+    require_value,
+    unknown,
+)
 from nullpose.scenario.origin import DRAWN_LISTS
 from nullpose.scenario.rules import Choice, Count, Limits, Rule, list_of_tables
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Title
-from nullpose.scenario.wording import described, plain, unknown
 from nullpose.study.case import Case, Gap, NodeLimit, Seconds
 from nullpose.study.monte_carlo.blocks import Blocks
 from nullpose.study.monte_carlo.distribution import DrawnChannel
