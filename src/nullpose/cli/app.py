@@ -18,7 +18,7 @@ from nullpose.cli.printing import replace_lacking_letters, say
 from nullpose.cli.reproduce import reproduce
 from nullpose.cli.solve import solve
 from nullpose.cli.studio import studio
-from nullpose.cli.study import report, study
+from nullpose.cli.study import study
 from nullpose.cli.sweep import sweep
 from nullpose.cli.vehicle import vehicle
 from nullpose.cli.verify import verify
@@ -63,7 +63,6 @@ def nullpose(
 for _verb in (solve, compare, vehicle, sweep, evaluate, verify, reproduce, studio, check, schema):
     app.command()(_verb)
 app.command("map")(best_map)
-study.command()(report)
 app.add_typer(study)
 app.add_typer(antenna)
 

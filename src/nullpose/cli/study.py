@@ -141,6 +141,7 @@ def words_of(status: StudyStatus) -> str:
     return "\n".join(lines)
 
 
+@study.command()
 def report(
     folder: StudyFolder,
     requirement_db: Annotated[

@@ -21,7 +21,7 @@ from nullpose.problem.schemes import Scheme
 from nullpose.report.answer import certainty_lines, counted
 from nullpose.report.document import View, document
 from nullpose.report.figures.poses import draw_poses
-from nullpose.report.figures.style import CURVES, Curve, draw_curve, house_style, write_figure
+from nullpose.report.figures.style import CURVES, Curve, draw_curve, house_figure, write_figure
 from nullpose.report.figures.sweep import draw_caption, draw_curves
 from nullpose.report.numbers import MINUS
 from nullpose.study import ResultTable, sweep
@@ -39,10 +39,7 @@ _PRINTED = Curve("eq. 3.5 as printed", "#9a6060", (0, (1.2, 1.8)), "v", 1.6, 2.0
 
 def draw_figure2(table: ResultTable) -> Figure:
     """Draw the paper's Figure 2: the four curves of a sweep."""
-    from matplotlib.figure import Figure
-
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.4), layout="constrained")
+    with house_figure((7.0, 4.4)) as figure:
         axes = figure.add_subplot()
         draw_curves(axes, table)
         axes.set(xscale="log", ylim=_SINR_DB, xlabel=_POWERS, ylabel="smallest SINR over the nodes (dB)")
@@ -55,11 +52,8 @@ def draw_figure2(table: ResultTable) -> Figure:
 
 def draw_printed(table: ResultTable, printed: Sequence[PrintedPoint]) -> Figure:
     """Draw maximum gain with its axis normalised, from a sweep, and as eq. 3.5 is printed."""
-    from matplotlib.figure import Figure
-
     rows, look = table.of(Scheme.MAXIMUM_GAIN), CURVES[Scheme.MAXIMUM_GAIN]
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+    with house_figure((7.0, 4.0)) as figure:
         axes = figure.add_subplot()
         values_db = [row.min_sinr_db for row in rows]
         whole = replace(look, label=f"{look.label}, axis normalised")

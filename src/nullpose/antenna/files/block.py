@@ -9,6 +9,7 @@ from typing import NoReturn, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nullpose.antenna.harmonics import FloatArray
 from nullpose.antenna.table import PatternTable
 from nullpose.errors import Fault, ScenarioError
 
@@ -24,7 +25,6 @@ SAME_FIELD = 0.015
 """How far a gain and the square of its field may be apart, of the gain: .065 dB."""
 _TWICE, _WEAK = 1.012, 1e-3  # two rows of a direction differ by .05 dB at most, or by so much of the peak
 
-FloatArray: TypeAlias = NDArray[np.float64]
 Lines: TypeAlias = Sequence[tuple[int, str]]
 """Lines of a file that are not blank, with their numbers."""
 

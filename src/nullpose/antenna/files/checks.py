@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullpose.antenna.files.block import FloatArray, refuse, require
+from nullpose.antenna.files.block import refuse, require
 from nullpose.antenna.harmonics import (
     HIGHEST_DEGREE,
     MOST_MISSED,
+    FloatArray,
     Harmonics,
     fit,
     missed_share,

@@ -11,7 +11,6 @@ from nullpose.antenna.files.block import (
     DBD,
     SAME_FIELD,
     Block,
-    FloatArray,
     Lines,
     from_db,
     numbers,
@@ -19,6 +18,7 @@ from nullpose.antenna.files.block import (
     require,
     rows_of,
 )
+from nullpose.antenna.harmonics import FloatArray
 
 _OHM = 376.730313 / (2.0 * np.pi)  # |E|^2 over this and the power is the gain of a peak field at 1 m
 _HEADING = re.compile(r"([^\[\]]+)\[([^\]]*)\]")

@@ -8,7 +8,8 @@ from itertools import chain
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, FloatArray, Lines, from_db, numbers, power_of, require
+from nullpose.antenna.files.block import Block, Lines, from_db, numbers, power_of, require
+from nullpose.antenna.harmonics import FloatArray
 
 _ANGLES = {"angle_deg": (0.0, 1.0), "elevation_deg": (90.0, -1.0)}  # to that from the axis: offset and sign
 _FIELDS = (("re_theta", "im_theta"), ("re_phi", "im_phi"))

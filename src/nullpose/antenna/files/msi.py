@@ -7,17 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nullpose.antenna.files.block import (
-    DBD,
-    Block,
-    FloatArray,
-    Lines,
-    from_db,
-    numbers,
-    refuse,
-    require,
-    rows_of,
-)
+from nullpose.antenna.files.block import DBD, Block, Lines, from_db, numbers, refuse, require, rows_of
+from nullpose.antenna.harmonics import FloatArray
 
 _CUTS = ("HORIZONTAL", "VERTICAL")
 _KEYS = ("GAIN", "FREQUENCY", *_CUTS)

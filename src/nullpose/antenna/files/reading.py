@@ -12,13 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from nullpose.antenna.files.block import Block, FloatArray, Lines, gridded, refuse, require
+from nullpose.antenna.files.block import Block, Lines, gridded, refuse, require
 from nullpose.antenna.files.checks import require_antenna, require_fit
 from nullpose.antenna.files.cst import read_cst, read_ffs
 from nullpose.antenna.files.csv_table import profile_of, read_csv
 from nullpose.antenna.files.hfss import read_ffd
 from nullpose.antenna.files.msi import read_msi
 from nullpose.antenna.files.nec import read_mininec, read_nec
+from nullpose.antenna.harmonics import FloatArray
 from nullpose.antenna.table import PatternTable, mean_gain
 from nullpose.errors import ScenarioError
 from nullpose.files import read_bytes

@@ -14,7 +14,8 @@ from nullpose.physics import Pose, pose_frames
 from nullpose.report.geometry import azimuth_rad, tilt_rad
 from nullpose.report.links import binding_nodes
 from nullpose.report.words import channel_words
-from nullpose.scenario import Eavesdropper, Jammer, Origin, Scenario
+from nullpose.scenario import GroundPoint, Origin, Scenario
+from nullpose.scenario.radio import Powered, Uncertain
 from nullpose.solver import Result
 from nullpose.solver.robust import RobustDetails
 
@@ -84,16 +85,14 @@ def marked_points(solution: Result) -> Iterator[tuple[ArrayLike, PlainTable]]:
         named = {"kind": "pose-as-stated", "name": "best pose as stated", "guaranteed": nominal.guaranteed}
         yield nominal.pose.position_m, named | _angles(scenario, nominal.pose)
     for node, link in zip(scenario.terminals, solution.links, strict=True):
-        about = {"kind": type(node).__name__.lower(), "name": node.name, "binding": node.name in binding}
-        yield node.position_m, about | dict(link.values)
-    hidden: list[Jammer | Eavesdropper] = [*scenario.jammers, *scenario.eavesdroppers]
-    for point in hidden:
-        kind = {"kind": type(point).__name__.lower(), "name": point.name}
-        power = {"power_w": point.transmit_power_w} if isinstance(point, Jammer) else {}
-        yield point.position_m, kind | power | {"uncertainty_m": point.uncertainty_reach_m}
-    for source in scenario.sources:
-        power = {"power_w": source.transmit_power_w}
-        yield source.position_m, {"kind": "source", "name": source.name} | power
+        about: PlainTable = {"kind": type(node).__name__.lower(), "name": node.name}
+        yield node.position_m, about | {"binding": node.name in binding} | dict(link.values)
+    others: tuple[GroundPoint, ...] = (*scenario.jammers, *scenario.eavesdroppers, *scenario.sources)
+    for point in others:
+        about = {"kind": type(point).__name__.lower(), "name": point.name}
+        about |= {"power_w": point.transmit_power_w} if isinstance(point, Powered) else {}
+        about |= {"uncertainty_m": point.uncertainty_reach_m} if isinstance(point, Uncertain) else {}
+        yield point.position_m, about
 
 
 def _angles(scenario: Scenario, pose: Pose) -> dict[str, object]:

@@ -14,7 +14,7 @@ from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.report.answer import answer_lines
 from nullpose.report.comparison import numbers_of
-from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, Look, house_style, inches
+from nullpose.report.figures.style import CURVES, GREY, INK, VEHICLES, Look, house_figure, inches
 from nullpose.report.figures.sweep import draw_caption
 from nullpose.report.numbers import bound_text, capitalised, number
 from nullpose.study import ResultTable
@@ -36,10 +36,9 @@ _BESIDE = 0.08  # of the width drawn, free at both ends
 def draw_comparison(comparison: ResultTable, width: str | None = None) -> Figure:
     """Draw cases or vehicles compared: dots and answer, in print (a key of ``WIDTHS_MM``) dots alone."""
     lines = answer_lines(comparison) if OMNIDIRECTIONAL in comparison.names else []
-    with house_style(width):
-        high = 1.6 + _ROW_INCH * len(comparison.rows)
-        high = high + _SENTENCE_INCH * len(lines) if width is None else _PRINTED * high
-        figure = Figure(figsize=(inches((7.0, high), width, 0.0)[0], high), layout="constrained")
+    high = 1.6 + _ROW_INCH * len(comparison.rows)
+    high = high + _SENTENCE_INCH * len(lines) if width is None else _PRINTED * high
+    with house_figure((inches((7.0, high), width, 0.0)[0], high), width) as figure:
         axes = figure.add_subplot()
         draw_dots(axes, comparison)
         figure.legend(

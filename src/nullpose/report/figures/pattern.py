@@ -15,7 +15,7 @@ from matplotlib.projections.polar import PolarAxes
 from nullpose.antenna.harmonics import directions
 from nullpose.antenna.table import PatternTable
 from nullpose.physics.types import FloatArray
-from nullpose.report.figures.style import GREY, INK, NODE, Look, house_style
+from nullpose.report.figures.style import GREY, INK, NODE, Look, house_figure
 
 _RANGE_DB, _TOP_STEP_DB, _RING_DB = 40.0, 5.0, 10.0
 _COLOURS = colormaps["viridis"]
@@ -37,8 +37,7 @@ def draw_pattern(table: PatternTable) -> Figure:
         title = f"Polar angle theta: phi {phi[near]:g} right, {phi[far]:g} left"
         whole = np.concatenate([gain_dbi[:, near], gain_dbi[-2:0:-1, far]])
         cuts.append((title, -1, np.concatenate([theta, 360.0 - theta[-2:0:-1]]), whole))
-    with house_style():
-        figure = Figure(figsize=(8.4, 8.6), layout="constrained")
+    with house_figure((8.4, 8.6)) as figure:
         figure.suptitle(
             f"{table.source}: {table.quantity} in dBi", fontsize=11.0, parse_math=False, wrap=True
         )

@@ -18,7 +18,7 @@ from nullpose.physics import Pose
 from nullpose.physics.types import FloatArray
 from nullpose.report.figures.names import place_names, write_name
 from nullpose.report.figures.plan_scene import PlanScene, set_outline_m
-from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, INK, MARKS, NULL, Look, house_style, inches
+from nullpose.report.figures.style import DRONE, FORBIDDEN, GREY, INK, MARKS, NULL, Look, house_figure, inches
 from nullpose.report.geometry import outline_m, shadow_outlines_m
 from nullpose.report.numbers import MINUS, capitalised
 from nullpose.scenario import Scenario, Terminal
@@ -152,8 +152,7 @@ def draw_value_map(result: Result, field: Field, width: str | None = None) -> Fi
     """
     wide = inches((6.0, 0.0), width, 0.0)[0]
     high = min((wide - _BESIDE_INCH) * float(np.divide(*field.values.shape)) + _BELOW_INCH, _TALLEST_INCH)
-    with house_style(width):
-        figure = Figure(figsize=(wide, high), layout="constrained")
+    with house_figure((wide, high), width) as figure:
         axes = figure.add_subplot()
         draw_field(axes, result, field)
         if width is None:

@@ -19,7 +19,7 @@ from nullpose.physics import Pose
 from nullpose.report.figures.names import place_names
 from nullpose.report.figures.plan import draw_plan
 from nullpose.report.figures.plan_scene import PlanScene
-from nullpose.report.figures.style import GREY, INK, Look, house_style, inches, is_column
+from nullpose.report.figures.style import GREY, INK, Look, house_figure, inches, is_column
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.report.numbers import MINUS, capitalised, with_unit
 from nullpose.report.sensitivity import sensitivity_caption
@@ -59,8 +59,7 @@ def draw_panels(
     count, is_narrow = len(scene.poses) + (beside is not None), is_column(width)
     usual = _ALONE_INCH if count == 1 else (_EACH_INCH[0] * count, _EACH_INCH[1])
     share = (_COLUMN_SHARES if is_narrow else _PAGE_SHARES)[count > 1]
-    with house_style(width), rc_context({"text.parse_math": False}):
-        figure = Figure(figsize=inches(usual, width, share), layout="constrained")
+    with house_figure(inches(usual, width, share), width) as figure, rc_context({"text.parse_math": False}):
         panels = figure.subplots(1, count, squeeze=False)[0]
         plans = panels[: len(scene.poses)]
         for axes, pose, title in zip(plans, scene.poses, titles, strict=True):

@@ -164,6 +164,15 @@ def house_style(width: str | None = None) -> Iterator[None]:
         yield
 
 
+@contextmanager
+def house_figure(size_inch: tuple[float, float], width: str | None = None) -> Iterator[Figure]:
+    """Begin a figure of a size in the shared look, which holds inside."""
+    from matplotlib.figure import Figure
+
+    with house_style(width):
+        yield Figure(figsize=size_inch, layout="constrained")
+
+
 def line_style(look: Curve) -> Look:
     """Translate a look into Matplotlib's arguments of a line with markers."""
     line = {"color": look.colour, "linestyle": look.line, "linewidth": look.width, "label": look.label}

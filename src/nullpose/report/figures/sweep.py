@@ -21,7 +21,7 @@ from nullpose.report.figures.style import (
     Look,
     curve_of,
     draw_curve,
-    house_style,
+    house_figure,
     inches,
     is_column,
 )
@@ -52,9 +52,8 @@ def draw_least_tilt(
         width: a key of ``WIDTHS_MM``; None for screens.
     """
     angles_deg, shares = values[0], values[1] / found.omnidirectional.objective.value
-    with house_style(width):
-        share, grid = (1.6, (2, 1)) if is_column(width) else (0.45, (1, 2))
-        figure = Figure(figsize=inches((9.0, 4.0), width, share), layout="constrained")
+    share, grid = (1.6, (2, 1)) if is_column(width) else (0.45, (1, 2))
+    with house_figure(inches((9.0, 4.0), width, share), width) as figure:
         first, second = figure.subplots(*grid)
         _draw_shares(first, found, angles_deg, shares)
         _draw_losses(second, angles_deg, shares)
@@ -195,9 +194,8 @@ def draw_sweep(
             if table.rows[0].tilt
             else "Each band ends at the upper bound, a small triangle."
         )
-    with house_style(width):
-        share, columns = (0.8, 2) if is_column(width) else (0.5, 4)
-        figure = Figure(figsize=inches((7.0, 4.6), width, share), layout="constrained")
+    share, columns = (0.8, 2) if is_column(width) else (0.5, 4)
+    with house_figure(inches((7.0, 4.6), width, share), width) as figure:
         draw_sweep_axes(figure.add_subplot(), table, log=log, bounds=bounds)
         figure.legend(loc="outside upper center", ncols=columns, handlelength=3.2)
         draw_caption(figure, lines, width)

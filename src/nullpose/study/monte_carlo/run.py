@@ -176,7 +176,7 @@ def _solved(
     """Yield the parts as they are solved; a few are with the workers at a time, earlier scenes first."""
     queue, pending = iter(to_do), dict[Future[bytes], Scenes]()
     while True:
-        for scenes in islice(queue, max(0, crew.in_flight - len(pending))):
+        for scenes in islice(queue, max(0, crew.ahead * max(1, crew.count) - len(pending))):
             pending[crew.executor.submit(solve_chunk, *study, *scenes)] = scenes
         if not pending:
             return

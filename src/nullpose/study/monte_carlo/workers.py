@@ -109,14 +109,9 @@ class Workers:
         client: Client | None = None,
     ) -> None:
         self.executor, self.count = executor, count
-        self._place, self._on_look, self._ahead = place, on_look, ahead
+        self._place, self._on_look, self.ahead = place, on_look, ahead
         self._client, self._looked_s = client, -LOOK_S
         self.look()
-
-    @property
-    def in_flight(self) -> int:
-        """Number of parts that are submitted at a time."""
-        return self._ahead * max(1, self.count)
 
     def look(self) -> None:
         """Look whether the workers are there.
