@@ -6,6 +6,17 @@ from nullpose.objectives import Quantity
 from nullpose.report.document import View, cell, document, head, rows, table
 from nullpose.study.least_tilt import LeastTilt, MountTilt
 
+_AN_ANTENNA = "An antenna mounted at {0.mount_deg:.4g} degrees needs"
+_NO_TILT = f"{_AN_ANTENNA} no tilt: a level vehicle suffices."
+_NEEDS = {  # whether a tilt is known that is too little, and one that suffices
+    (True, True): _AN_ANTENNA
+    + " more than {0.fails_deg:.1f} degrees of tilt; {0.suffices_deg:.1f} degrees suffice.",
+    (True, False): _AN_ANTENNA + " more than {0.fails_deg:.1f} degrees of tilt.",
+    (False, True): _AN_ANTENNA + " at most {0.suffices_deg:.1f} degrees of tilt.",
+    (False, False): "Of an antenna mounted at {0.mount_deg:.4g} degrees neither is known: what suffices, nor "
+    "what is too little.",
+}
+
 
 def vehicle_view(found: LeastTilt) -> View:
     """Set a row for each mount, and what it takes in words."""
@@ -63,23 +74,9 @@ def answer(found: LeastTilt) -> str:
 
 
 def _sentence(mount: MountTilt) -> str:
-    return f"{_sides(mount)} The rest is open: {mount.reason}." if mount.reason else _sides(mount)
-
-
-def _sides(mount: MountTilt) -> str:
-    at = f"mounted at {mount.mount_deg:.4g} degrees"
-    least = (
-        ""
-        if mount.fails_deg is None
-        else f"An antenna {at} needs more than {mount.fails_deg:.1f} degrees of tilt"
-    )
-    if mount.suffices_deg is None:
-        neither = f"Of an antenna {at} neither is known: what suffices, nor what is too little"
-        return f"{least or neither}."
-    if mount.suffices_deg == 0.0:
-        return f"An antenna {at} needs no tilt: a level vehicle suffices."
-    most = f"{mount.suffices_deg:.1f} degrees"
-    return f"{least}; {most} suffice." if least else f"An antenna {at} needs at most {most} of tilt."
+    is_known = mount.fails_deg is not None, mount.suffices_deg is not None
+    words = (_NO_TILT if mount.suffices_deg == 0.0 else _NEEDS[is_known]).format(mount)
+    return f"{words} The rest is open: {mount.reason}." if mount.reason else words
 
 
 def _value(quantity: Quantity, value: float | None) -> str | None:

@@ -88,6 +88,11 @@ def _channels(kinds: str) -> cached_property[PointChannels | None]:
     return cached_property(stack)
 
 
+def _names(kinds: str) -> cached_property[tuple[str, ...]]:
+    """Make the attribute of a scenario with the names of its points of some kinds."""
+    return cached_property(lambda table: tuple(point.name for point in _points_of(table, kinds)))
+
+
 def _points_of(table: object, kinds: str) -> list[GroundPoint]:
     return [point for kind in kinds.split() for point in getattr(table, kind)]
 
@@ -248,25 +253,14 @@ class PointArrays:
         """Whether any link's channel is a function in Python."""
         return any(self.custom_law(point) is not None for point in self.points)
 
-    @property
-    def node_names(self) -> tuple[str, ...]:
-        """Names of the nodes, in order."""
-        return tuple(node.name for node in self.nodes)
-
-    @property
-    def terminal_names(self) -> tuple[str, ...]:
-        """Names of the terminals, in order."""
-        return tuple(terminal.name for terminal in self.terminals)
-
-    @property
-    def jammer_names(self) -> tuple[str, ...]:
-        """Names of the jammers, in order."""
-        return tuple(jammer.name for jammer in self.jammers)
-
-    @property
-    def eavesdropper_names(self) -> tuple[str, ...]:
-        """Names of the eavesdroppers, in order."""
-        return tuple(eavesdropper.name for eavesdropper in self.eavesdroppers)
+    node_names = _names("nodes")
+    """Names of the nodes, in order."""
+    terminal_names = _names("terminals")
+    """Names of the terminals, in order."""
+    jammer_names = _names("jammers")
+    """Names of the jammers, in order."""
+    eavesdropper_names = _names("eavesdroppers")
+    """Names of the eavesdroppers, in order."""
 
     @cached_property
     def eavesdropper_noise_w(self) -> Floats:
