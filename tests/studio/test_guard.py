@@ -9,7 +9,7 @@ import viser
 from websockets.datastructures import Headers
 
 from nullpose.studio.guard import PREFERS_DARK, Guard, framed, look_html
-from nullpose.studio.server import LOOPBACK
+from nullpose.studio.opening import LOOPBACK
 
 
 @pytest.mark.parametrize(("query", "dark"), [("dark=1&more=1", True), ("dark=yes", False), ("", False)])

@@ -23,8 +23,8 @@ from nullpose.studio.case import OPTIMUM, PoseCase
 from nullpose.studio.field_map import field_map
 from nullpose.studio.guard import look_html
 from nullpose.studio.look import DARK, LIGHT, Look
+from nullpose.studio.opening import LOOPBACK, open_server, require_viser, unannounced
 from nullpose.studio.readout import card_html
-from nullpose.studio.server import LOOPBACK, open_server, require_viser, unannounced
 from nullpose.studio.state import State
 
 if TYPE_CHECKING:
@@ -156,8 +156,6 @@ def show(found: Scenario | Result, *, height: int = 600, dark: bool = False) -> 
 
 def _page(result: Result, *, dark: bool) -> str:
     """Write the scene of a result as HTML."""
-    from nullpose.studio.exports import scene_html
-
     require_usage(
         not hasattr(result.details, "weights"),
         "show: given the result of an array; allowed: of one antenna. Try plot.plan(result)",

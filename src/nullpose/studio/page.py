@@ -17,10 +17,10 @@ from viser import ClientHandle, SceneClickEvent, UploadedFile
 from nullpose.errors import NullposeError, ScenarioError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
-from nullpose.studio import exports
 from nullpose.studio.camera import NARROW_PX, aim, canvas_px, ray
 from nullpose.studio.case import case_named, cases_of, new_scenario
 from nullpose.studio.edits import Entry, with_typed, without
+from nullpose.studio.exports import figure_png, pose_json, scene_html
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.panel import NO_CASE, Panel, by_hand
 from nullpose.studio.picking import clicked, dragged_to_m, reading
@@ -185,10 +185,10 @@ class Page:
             "save": lambda: self._export(
                 "scenario.toml", lambda state: toml_like(state.text, state.scenario).encode()
             ),
-            "pose": lambda: self._export("pose.json", exports.pose_json),
-            "figure": lambda: self._export("figure.png", exports.figure_png),
+            "pose": lambda: self._export("pose.json", pose_json),
+            "figure": lambda: self._export("figure.png", figure_png),
             "html": lambda: self._export(
-                "scene.html", lambda state: exports.scene_html(state, self._look, client.camera)
+                "scene.html", lambda state: scene_html(state, self._look, client.camera)
             ),
         }
         for name, action in controls.items():

@@ -9,7 +9,7 @@ import pytest
 import nullpose
 from nullpose.errors import UsageError
 from nullpose.studio.case import new_scenario
-from nullpose.studio.server import LOOPBACK, open_server, require_viser
+from nullpose.studio.opening import LOOPBACK, open_server, require_viser
 
 
 @pytest.mark.parametrize("act", [require_viser, lambda: nullpose.show(new_scenario())])
