@@ -7,18 +7,9 @@ import pytest
 from tests.certificate.plain import boxes_at, excess_over, random_family, value_at
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.channels import (
-    _KINDS,
-    _by_distance,
-    _by_elevation,
-    amplitude,
-    excess,
-    excess_at,
-    most_excess,
-)
+from nullpose.certificate.channels import amplitude, excess, excess_at, most_excess
 from nullpose.certificate.forms import COLUMN, ROW
 from nullpose.certificate.pose_value import exact
-from nullpose.certificate.taylor import Taylor
 from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel
 from nullpose.channel.free_space import constant_channel
@@ -147,7 +138,7 @@ def test_points_have_channels_of_their_own() -> None:
             alone = excess(family.ratios, boxes.chosen([j]), np.array([j]), is_above)
             assert alone is not None
             many, one = together.over.value[j], alone.over.value[0]
-            assert (many.low, many.high) == (one.low, one.high)
+            np.testing.assert_allclose([many.low, many.high], [one.low, one.high], rtol=1e-14)
 
 
 def test_the_value_with_channels_is_a_lower_bound() -> None:
@@ -174,33 +165,3 @@ def test_gains_fall_with_the_distance(alpha: float) -> None:
     city = over_one_point(elevation_channel(*ENVIRONMENTS["urban"], average="power"))
     assert np.all(most_excess(city.ratios, none, least).high == 1.0)
     assert np.all(most_excess(city.ratios._replace(channels=city.ratios.channels[:0]), none, least) == 1.0)
-
-
-def test_a_new_kind_of_channel_is_one_formula(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sight by elevation with an exponent of the distance: gain and amplitude are those of both together."""
-    law, city = power_law(2.6, 2.0), elevation_channel(*ENVIRONMENTS["urban"], average="power")
-    both = max(_KINDS) + 1
-
-    def formula(rows: np.ndarray, distance: Taylor, angle: Taylor) -> Taylor:
-        exponent = np.repeat(np.array(law.row)[:, None], rows.shape[1], axis=1)
-        return _by_elevation(rows, distance, angle) + _by_distance(exponent, distance, angle)
-
-    monkeypatch.setitem(_KINDS, both, formula)
-    rng, family = np.random.default_rng(14), over_one_point(city)
-    rows = family.ratios.channels.copy()
-    rows[:, 0] = both
-    family = family.changed(channels=rows)
-    boxes, first = boxes_about(rng, family.ratios.points_m[0]), np.zeros(BOXES, dtype=np.int64)
-    steps, places = samples_of(rng, boxes)
-    alone = (excess_over(over_one_point(each), places)[..., 0] for each in (law, city))
-    g = np.prod(list(alone), axis=0)
-    size = np.linalg.norm(steps, axis=2)
-    for is_above, sign in ((True, 1.0), (False, -1.0)):
-        gain, (at, _, sizes) = (f(family.ratios, boxes, first, is_above) for f in (excess, amplitude))
-        assert gain is not None
-        end = gain.over.value.high if is_above else gain.over.value.low
-        assert np.all(sign * g <= sign * end[:, None] + SLACK * g)
-        value = at.high if is_above else at.low
-        rest = sizes.high[1][:, None] * size
-        assert np.all(sign * np.sqrt(g) <= sign * value[:, None] + rest + SLACK * np.sqrt(g))
-        assert np.count_nonzero(sizes.high[1] > 0.0) > BOXES // 8

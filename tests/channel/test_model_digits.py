@@ -12,7 +12,7 @@ from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import exact
 from nullpose.channel import LinkChannel, PointChannels, excess_gain
 from nullpose.channel.elevation import DB_AVERAGE, elevation_channel
-from nullpose.channel.model import BY_ELEVATION
+from nullpose.channel.model import BLOCKED, BY_ELEVATION
 from nullpose.channel.power_law import power_law
 from nullpose.scenario.channel import Channel
 from nullpose.solver.kernels.compiler.interpreted import python_of
@@ -68,16 +68,17 @@ def gain_and_slack(row: tuple[float, ...], to_drone_m: np.ndarray) -> tuple[Deci
     grows with it.
     """
     x, y, z = (Decimal(float(e)) for e in to_drone_m)
-    _, c, k, n, average = (Decimal(number) for number in row[:5])
+    _, exponent, unit, c, k, n, average = (Decimal(number) for number in row[:BLOCKED])
     level = (x * x + y * y).sqrt()
+    law = ((level * level + z * z).sqrt() / unit) ** exponent
     if row[0] != BY_ELEVATION:
-        return ((level * level + z * z).sqrt() / k) ** c, 0.0
+        return law, 0.0
     up = arctan(z / level) if level else 2 * arctan(Decimal(1)).copy_sign(z)
     e = (c - k * up).exp()
     p = 1 / (1 + e)
     gain = n ** (1 - p) if average == Decimal(DB_AVERAGE) else n + (1 - n) * p
     steep = -n.ln() if average == Decimal(DB_AVERAGE) else (1 - n) / gain
-    return gain, float(steep * p * (1 - p)) * 4.0 * UNIT * float(1 + abs(c) + abs(k * up))
+    return law * gain, float(steep * p * (1 - p)) * 4.0 * UNIT * float(1 + abs(c) + abs(k * up))
 
 
 @pytest.fixture(scope="module")

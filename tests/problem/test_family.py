@@ -22,7 +22,7 @@ def family(random_problem: Callable) -> Family:
         turn=np.tile(np.eye(3), (len(plain.ratios.points_m), 1, 1)),
         ground_axes=np.tile([0.6, 0.0, 0.8], (len(plain.ratios.points_m), 1)),
         ground_leaks=np.full(len(plain.ratios.points_m), 0.1),
-        channels=np.tile([1.0, -0.5, 1.0, 0.0, 0.0, 0.1], (len(plain.ratios.points_m), 1)),
+        channels=np.tile([1.0, -0.5, 1.0, 0.0, 0.0, 1.0, 0.0, 0.1], (len(plain.ratios.points_m), 1)),
         shadows_of_point=np.array([*[0] * len(plain.ratios.points_m), 1]),
         shadow_start=np.array([0, 1]),
         shadow_sides=np.array([[1.0, 0.0, 0.0, 3.0, 3.5]]),

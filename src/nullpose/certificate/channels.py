@@ -1,14 +1,15 @@
 """Channels in interval arithmetic: the logarithm of the excess gain, as formulas of distance and elevation.
 
 From it follow the gain of a link over boxes, by the position, and its amplitude, by distance and elevation.
-A new kind of channel is one more formula.
+A gain has two factors, each stated once.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from fractions import Fraction
-from functools import partial
+from functools import partial, reduce
+from operator import add
 
 import numpy as np
 
@@ -27,7 +28,7 @@ from nullpose.certificate.taylor import (
     root,
 )
 from nullpose.channel.elevation import DB_AVERAGE
-from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, KNOTS
+from nullpose.channel.model import BLOCKED, BY_ELEVATION, EXPONENT, KNOTS, ONSET, REFERENCE_M
 from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
 
@@ -35,35 +36,29 @@ _ROUND = 2e-13  # of ln g of a profile: more than its knots are rounded
 
 
 def _by_distance(rows: FloatArray, distance: Taylor, angle: Taylor) -> Taylor:
-    """Return the logarithm of a power law, ``(d / d0)^e``."""
-    e, unit = map(Interval, rows[1:3])
+    """Return the logarithm of the factor by distance, ``(d / d0)^e``."""
+    e, unit = map(Interval, rows[[EXPONENT, REFERENCE_M]])
     return (distance * (1.0 / unit)).of(logarithm) * e
 
 
 def _by_elevation(rows: FloatArray, distance: Taylor, angle: Taylor) -> Taylor:
-    """Return the logarithm of a gain by the chance of sight P: ``n + (1 - n) P``, or ``n^(1 - P)`` in dB."""
-    _, c, k, n, average = rows[:5]
+    """Return the logarithm of the factor by the chance P of sight: ``n + (1 - n) P``, or ``n^(1 - P)``."""
+    c, k, n, average = rows[ONSET:BLOCKED]
     sight = (angle * k - c).of(_logistic)
     in_power = (sight * (1.0 - Interval(n)) + n).of(logarithm)
     gain = chosen(average == DB_AVERAGE, (1.0 - sight) * log(Interval(n)), in_power)
     return gain + angle.of(partial(_profiles, rows)) if len(rows) > KNOTS else gain
 
 
-_KINDS: dict[int, Callable[[FloatArray, Taylor, Taylor], Taylor]] = {
-    BY_DISTANCE: _by_distance,
-    BY_ELEVATION: _by_elevation,
-}
-
-
 def _log_gain(rows: FloatArray, distance: Taylor, angle: Taylor) -> Taylor:
-    """Return the logarithm of the excess gains of channels, (width, b), by the formula of each one's kind."""
-    gain = distance.alike(np.zeros(rows.shape[1]))
-    for kind, formula in _KINDS.items():
-        if np.any(mask := rows[0] == kind):
-            # numbers of a row of the same kind for all others
+    """Return the logarithm of the excess gains of channels, (width, b): the sum over the factors of each."""
+    none, factors = distance.alike(np.zeros(rows.shape[1])), []
+    for mask, formula in ((rows[EXPONENT] != 0.0, _by_distance), (rows[0] == BY_ELEVATION, _by_elevation)):
+        if np.any(mask):
+            # numbers of a row that has the factor for all others
             alike = np.where(mask, rows, rows[:, [np.argmax(mask)]])
-            gain = chosen(mask, formula(alike, distance, angle), gain)
-    return gain
+            factors.append(chosen(mask, formula(alike, distance, angle), none))
+    return reduce(add, factors) if factors else none
 
 
 def _logistic(x: Interval) -> Rule:
@@ -114,10 +109,10 @@ def most_excess(ratios: Ratios, point: IntArray, square: FloatArray) -> Interval
     """
     if not len(ratios.channels):
         return 1.0
-    kind, e, unit = ratios.channels[point].T[:3]
-    is_law = kind == BY_DISTANCE
-    ratio = Interval(square) / Interval(np.where(is_law, unit, 1.0)).squared()
-    return where(is_law, exp(log(ratio) * (0.5 * e)), 1.0 + _ROUND * (ratios.channels.shape[1] > KNOTS))
+    e, unit = (ratios.channels[point, place] for place in (EXPONENT, REFERENCE_M))
+    has_law, slack = e != 0.0, _ROUND * (ratios.channels.shape[1] > KNOTS)
+    ratio = Interval(square) / Interval(np.where(has_law, unit, 1.0)).squared()
+    return where(has_law, exp(log(ratio) * (0.5 * e) + slack), 1.0 + slack)
 
 
 def _sight(points_m: FloatArray, boxes: Boxes, rows: FloatArray) -> tuple[Taylor, Taylor, Interval]:
@@ -127,7 +122,7 @@ def _sight(points_m: FloatArray, boxes: Boxes, rows: FloatArray) -> tuple[Taylor
     """
     q = coordinates(Interval(boxes.centre.T), boxes.hull) - points_m.T
     distance, none = q.squared().total().of(root), Interval(np.zeros(len(boxes)))
-    if not np.any(mask := np.isin(rows[0], [*_KINDS]) & (rows[0] != BY_DISTANCE)):
+    if not np.any(mask := rows[0] == BY_ELEVATION):
         return distance, q.alike(none), none
     angle, tangent = elevation(q)
     return distance, chosen(mask, angle, q.alike(none)), where(mask, tangent, none)

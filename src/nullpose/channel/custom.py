@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.channel.convex import FloatArray
-from nullpose.channel.model import CUSTOM, LinkChannel
+from nullpose.channel.model import CUSTOM, LinkChannel, channel_row
 from nullpose.errors import UsageError, require_usage
 
 _PAIRS = 4000  # of links at which the bounds are tried
@@ -94,7 +94,7 @@ class Custom:
 
     def link(self) -> LinkChannel:
         """Make the channel of a link."""
-        return LinkChannel(1.0, (CUSTOM, 0.0, 0.0, 0.0, 0.0, 1.0), self.excess)
+        return LinkChannel(1.0, channel_row(CUSTOM), self.excess)
 
     def excess(
         self, row: Sequence[float], distance_m: ArrayLike, elevation_rad: ArrayLike, azimuth_rad: ArrayLike

@@ -14,7 +14,17 @@ from numpy.typing import ArrayLike
 
 from nullpose.channel.convex import FloatArray
 from nullpose.channel.free_space import constant_channel
-from nullpose.channel.model import BLOCKED, BY_ELEVATION, ChannelModel, LinkChannel
+from nullpose.channel.model import (
+    AVERAGE,
+    BY_ELEVATION,
+    HIDDEN,
+    ONSET,
+    RATE,
+    ChannelModel,
+    LinkChannel,
+    channel_row,
+)
+from nullpose.channel.power_law import distance_excess
 from nullpose.channel.profile import knots_of, log_gain
 
 
@@ -43,10 +53,10 @@ def sight_probability(row: FloatArray, elevation_rad: FloatArray) -> FloatArray:
     """Evaluate the probability P of line of sight.
 
     Args:
-        row: the kind, ``ln a + a b``, b per radian.
+        row: with ``ln a + a b``, and b per radian.
         elevation_rad: of the drone, at the ground point.
     """
-    exponent = row[1] - row[2] * elevation_rad
+    exponent = row[ONSET] - row[RATE] * elevation_rad
     small = np.exp(-np.abs(exponent))  # neither this nor its quotient overflows
     return np.asarray(np.where(exponent > 0.0, small, 1.0) / (1.0 + small))
 
@@ -56,18 +66,19 @@ def elevation_excess(
 ) -> FloatArray:
     """Evaluate the mean gain over that with line of sight: ``n + (1 - n) P``, or ``n^(1 - P)``.
 
-    So written nothing cancels, however small n and P are. The profile of the ground antenna multiplies it.
+    So written nothing cancels, however small n and P are. The power law and the profile of the ground antenna
+    multiply it.
 
     Args:
-        row: the kind, two numbers of the probability, n, and which average; n is the gain without line of
-            sight over that with it. Then ``BLOCKED``, and a profile or none.
-        distance_m: of no effect.
+        row: of the channel; n is the gain without line of sight over that with it.
+        distance_m: d, for the power law.
         elevation_rad: of the drone, at the ground point.
         azimuth_rad: of no effect.
     """
-    p, n = sight_probability(row, elevation_rad), row[3]
-    gain = np.where(row[4] == DB_AVERAGE, n ** (1.0 - p), n + (1.0 - n) * p)
-    return np.asarray(gain * np.exp(log_gain(row, elevation_rad)))
+    p, n = sight_probability(row, elevation_rad), row[HIDDEN]
+    gain = np.where(row[AVERAGE] == DB_AVERAGE, n ** (1.0 - p), n + (1.0 - n) * p)
+    law = distance_excess(row, distance_m, elevation_rad, azimuth_rad)
+    return np.asarray(law * gain * np.exp(log_gain(row, elevation_rad)))
 
 
 def elevation_channel(
@@ -94,8 +105,8 @@ def elevation_channel(
     if average == "guaranteed":
         return constant_channel(seen if is_interferer else hidden)
     kept = DB_AVERAGE if average == "db" else POWER_AVERAGE
-    row = (BY_ELEVATION, math.log(a) + a * b, math.degrees(b), hidden / seen, kept, 1.0)
-    return LinkChannel(seen, row, elevation_excess)
+    sight = math.log(a) + a * b, math.degrees(b), hidden / seen, kept
+    return LinkChannel(seen, channel_row(BY_ELEVATION, sight=sight), elevation_excess)
 
 
 def with_profile(channel: LinkChannel, elevation_deg: ArrayLike, gain_dbi: ArrayLike) -> LinkChannel:
@@ -109,13 +120,12 @@ def with_profile(channel: LinkChannel, elevation_deg: ArrayLike, gain_dbi: Array
         gain_dbi: (n,) the gains there.
     """
     knots = knots_of(elevation_deg, gain_dbi)
-    sight = channel.row if channel.row[0] == BY_ELEVATION else (BY_ELEVATION, 0.0, 0.0, 1.0, POWER_AVERAGE)
-    row = (*sight[:BLOCKED], channel.row[BLOCKED], float(len(knots)), *knots.ravel().tolist())
+    row = (BY_ELEVATION, *channel.row[1:], float(len(knots)), *knots.ravel().tolist())
     return LinkChannel(channel.strength, row, elevation_excess)
 
 
 ELEVATION = ChannelModel(
     "line of sight with a probability that grows with the elevation angle",
     elevation_channel,
-    ("a", "b", "los_loss_db", "nlos_loss_db", "average"),
+    dict.fromkeys(("a", "b", "los_loss_db", "nlos_loss_db")) | {"average": "power"},
 )

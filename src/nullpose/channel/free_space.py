@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nullpose.channel.convex import FloatArray
-from nullpose.channel.model import CONSTANT, ChannelModel, LinkChannel
+from nullpose.channel.model import CONSTANT, ChannelModel, LinkChannel, channel_row
 
 
 def constant_channel(strength: float) -> LinkChannel:
@@ -12,7 +12,7 @@ def constant_channel(strength: float) -> LinkChannel:
     Args:
         strength: the power over that of free space, a ratio.
     """
-    return LinkChannel(strength, (CONSTANT, 0.0, 0.0, 0.0, 0.0, 1.0), _no_excess)
+    return LinkChannel(strength, channel_row(CONSTANT), _no_excess)
 
 
 def _no_excess(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import zip_longest
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -12,22 +13,28 @@ from numpy.typing import NDArray
 from nullpose.channel.buildings import Prisms, is_blocked
 from nullpose.channel.convex import FloatArray
 
-WIDTH = 6
-"""Numbers in the row of a link's channel: its kind, up to four of its own, and ``BLOCKED``.
+WIDTH = 8
+"""Numbers in the row of a link's channel: its kind, and what stands at the places below.
 
 Where any ground antenna has a profile, rows go on with it (:mod:`nullpose.channel.profile`).
 """
-BLOCKED = 5
-"""The number that multiplies the gain where a building blocks the line of sight; 1 without buildings."""
+EXPONENT, REFERENCE_M, ONSET, RATE, HIDDEN, AVERAGE, BLOCKED = range(1, WIDTH)
+"""Where in a row each number stands.
 
-KNOTS = 6
+The excess gain of any kind has the factor ``(d / d0)^e`` where e is not 0: e and d0 [m]. One by elevation
+has ``ln a + a b`` and b per radian of the probability of line of sight, the gain without line of sight over
+that with it, and which average. The last multiplies the gain where a building blocks the line of sight; it
+is 1 without buildings.
+"""
+
+KNOTS = WIDTH
 """Where in a row the number of the profile's knots stands, or 0; the knots follow.
 
 A knot is three numbers: its elevation [rad], ``ln g`` over that of the peak, and the slope of this [1/rad].
 """
 
 CONSTANT, BY_DISTANCE, BY_ELEVATION, CUSTOM = 0, 1, 2, 3
-"""Kinds: an excess gain of 1, one of the distance alone, one of the elevation alone, and any function."""
+"""Kinds: an excess gain of 1, one of the distance alone, one of the elevation, and any function."""
 
 
 class LinkChannel(NamedTuple):
@@ -50,18 +57,32 @@ class LinkChannel(NamedTuple):
         return self._replace(row=(*self.row[:BLOCKED], blocked))
 
 
+def channel_row(
+    kind: int, law: tuple[float, ...] = (0.0, 1.0), sight: tuple[float, ...] = (0.0, 0.0, 1.0, 0.0)
+) -> tuple[float, ...]:
+    """Return the row of a channel without buildings.
+
+    Args:
+        kind: which kind.
+        law: the exponent and the reference distance of its factor by distance; 1 everywhere, if left out.
+        sight: the four numbers of a gain by elevation; likewise.
+    """
+    return (kind, *law, *sight, 1.0)
+
+
 class ChannelModel(NamedTuple):
     """A channel model, as ``model`` in the table ``[channel]`` names it.
 
     Args:
         summary: what it is, for the schema of scenario files.
         make: from the values of ``keys``, by name, and whether the link is an interferer's, to its channel.
-        keys: of the table ``[channel]`` that have a meaning for it, beside ``model``.
+        keys: of the table ``[channel]`` that have a meaning for it, beside ``model``: each with its value
+            where it is left out, None where it may not be.
     """
 
     summary: str
     make: Callable[..., LinkChannel]
-    keys: tuple[str, ...] = ()
+    keys: Mapping[str, float | str | None] = MappingProxyType({})
 
 
 class PointChannels(NamedTuple):

@@ -6,7 +6,7 @@ import numpy as np
 
 from nullpose.channel.convex import FloatArray
 from nullpose.channel.free_space import constant_channel
-from nullpose.channel.model import BY_DISTANCE, ChannelModel, LinkChannel
+from nullpose.channel.model import BY_DISTANCE, EXPONENT, REFERENCE_M, ChannelModel, LinkChannel, channel_row
 
 
 def distance_excess(
@@ -15,12 +15,12 @@ def distance_excess(
     """Evaluate ``(d / d0)^(2 - alpha)``: a gain of ``(d / d0)^-alpha`` over that of free space.
 
     Args:
-        row: the kind, ``2 - alpha`` and d0 [m].
+        row: with ``2 - alpha`` and d0 [m].
         distance_m: d.
         elevation_rad: of no effect.
         azimuth_rad: likewise.
     """
-    return np.asarray((distance_m / row[2]) ** row[1])
+    return np.asarray((distance_m / row[REFERENCE_M]) ** row[EXPONENT])
 
 
 def power_law(exponent: float, reference_distance_m: float, is_interferer: bool = False) -> LinkChannel:
@@ -38,10 +38,12 @@ def power_law(exponent: float, reference_distance_m: float, is_interferer: bool 
     """
     if exponent == 2.0:
         return constant_channel(reference_distance_m**2)
-    row = (BY_DISTANCE, 2.0 - exponent, reference_distance_m, 0.0, 0.0, 1.0)
+    row = channel_row(BY_DISTANCE, (2.0 - exponent, reference_distance_m))
     return LinkChannel(reference_distance_m**2, row, distance_excess)
 
 
 POWER_LAW = ChannelModel(
-    "a gain that falls with a power of the distance", power_law, ("exponent", "reference_distance_m")
+    "a gain that falls with a power of the distance",
+    power_law,
+    {"exponent": None, "reference_distance_m": 1.0},
 )

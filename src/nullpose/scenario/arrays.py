@@ -14,6 +14,7 @@ from nullpose.channel import Custom, LinkChannel, PointChannels
 from nullpose.channel.buildings import Prisms
 from nullpose.channel.elevation import with_profile
 from nullpose.channel.model import CONSTANT
+from nullpose.channel.power_law import power_law
 from nullpose.errors import UsageError, require_usage
 from nullpose.scenario.channel import BLOCKED_DB, Channel, CustomChannel
 from nullpose.scenario.units import power_w, ratio_from_db
@@ -293,8 +294,8 @@ class PointArrays:
         """Work out the power that points receive from each source on the ground [W], (..., m, n_senders).
 
         ``g1 P_a G_a G_k / |s_k - q_a|^2``, with the path gain g1 at 1 m between isotropic antennas, times the
-        channel's gain over free space at that distance, 1 unless it is a power law. Antennas count alike in
-        all directions, with their largest gains G.
+        channel's gain over free space at that distance by its exponent. Antennas count alike in all
+        directions, with their largest gains G.
 
         Args:
             receivers: the points.
@@ -306,15 +307,11 @@ class PointArrays:
         for source in self.sources:
             distance_m = np.linalg.norm(places_m - source.position_m, axis=-1)
             peaks = [ratio_from_db(point.peak_dbi + source.peak_dbi) for point in receivers]
-            gain, channel = np.array(peaks) / distance_m**2, source.channel or self.channel
-            if (
-                channel is not None
-                and channel.model == "power-law"
-                and not isinstance(channel, CustomChannel)
-            ):
-                law, none = channel.make(False), np.zeros(1)
-                gain = gain * law.strength * law.excess(np.array(law.row), distance_m, none, none)
-            received_w.append(self.receiver.reference_gain * source.transmit_power_w * gain)
+            channel, none = source.channel or self.channel or Channel(), np.zeros(1)
+            law = power_law(channel.exponent or 2.0, channel.gain_distance_m)
+            gain = law.strength * law.excess(np.array(law.row), distance_m, none, none)
+            power_w = self.receiver.reference_gain * source.transmit_power_w * gain
+            received_w.append(power_w * np.array(peaks) / distance_m**2)
         return np.stack(received_w, axis=-1)
 
     @cached_property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field, SkipValidation
 
@@ -19,7 +19,6 @@ from nullpose.scenario.ways import Ways
 EnvironmentName = Annotated[str, Choice("an environment", tuple(ENVIRONMENTS))]
 """The type of a key that names a built-up area."""
 _NUMBERS = ("a", "b", "los_loss_db", "nlos_loss_db")
-_DEFAULTS: dict[str, Any] = {"reference_distance_m": 1.0, "average": "power"}
 
 
 BLOCKED_DB = 20.0
@@ -120,8 +119,8 @@ class Channel(Section):
         for key in sorted(present - {"model", "blocked_loss_db", "shadow_margin_m", *_keys_of(self.model)}):
             others = " or ".join(f'model = "{name}"' for name in CHANNELS if key in _keys_of(name))
             yield (key,), f"has no meaning with {named}; remove it, or write {others}"
-        for key in CHANNELS[self.model].keys:
-            if key not in present | _DEFAULTS.keys() | {*_NUMBERS}:
+        for key, default in CHANNELS[self.model].keys.items():
+            if default is None and key not in present | {*_NUMBERS}:
                 yield (
                     (key,),
                     f"missing, but {named} needs it; add it: {type(self).model_fields[key].description}",
@@ -145,7 +144,12 @@ class Channel(Section):
     @property
     def gain_distance_m(self) -> float:
         """The distance at which the reference gain holds [m]."""
-        return self.reference_distance_m or _DEFAULTS["reference_distance_m"]
+        return self.reference_distance_m or 1.0
+
+    @property
+    def states_law(self) -> bool:
+        """Whether it states an exponent or a reference distance: it means nothing closer than this."""
+        return bool(self.exponent or self.reference_distance_m)
 
     def describe(self, *, among_buildings: bool) -> str:
         """Put into words what it is, as in ``elevation, environment urban, average power``.
@@ -167,8 +171,8 @@ class Channel(Section):
             is_interferer: whether it is that of a jammer or an eavesdropper.
         """
         named = {} if self.environment is None else ENVIRONMENTS[self.environment]._asdict()
-        values = _DEFAULTS | named | {key: value for key, value in self if value is not None}
         model = CHANNELS[self.model]
+        values = {**model.keys, **named} | {key: value for key, value in self if value is not None}
         return model.make(**{key: values[key] for key in model.keys}, is_interferer=is_interferer)
 
     def in_sight(self, is_interferer: bool, blocked_loss_db: float) -> LinkChannel:
@@ -190,7 +194,7 @@ class Channel(Section):
 
 def _keys_of(model: str) -> tuple[str, ...]:
     """List the keys that have a meaning for a model: its own, and one that stands for some of them."""
-    keys = CHANNELS[model].keys
+    keys = (*CHANNELS[model].keys,)
     return ("environment", *keys) if "a" in keys else keys
 
 

@@ -174,7 +174,7 @@ def _channel_faults(
                 (*place, "channel", "average"),
                 f'missing, but model = "elevation" needs it: {words}; add it',
             )
-    for place in [place for place, channel in channels.items() if channel.model == "power-law"]:
+    for place in [place for place, channel in channels.items() if channel.states_law]:
         d0_m = channels[place].gain_distance_m
         key = (*place, "channel", "reference_distance_m")
         if keep_out_m is not None and d0_m > keep_out_m:

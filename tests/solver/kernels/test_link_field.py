@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nullpose.channel import LinkChannel
-from nullpose.channel.power_law import power_law
+from nullpose.channel.power_law import distance_excess, power_law
 from nullpose.objectives import Ratios
 from nullpose.solver.kernels.bounds import link_field
 from nullpose.solver.kernels.compiler.interpreted import python_of
@@ -28,13 +28,14 @@ POINT = np.array([[17.0, 15.0, 4.0]])
 SAMPLES = 4_000
 
 
-def roots(channel: LinkChannel | None, positions_m: np.ndarray) -> np.ndarray:
-    """Return the amplitude at positions, (..., 3), from the model."""
+def roots(channel: LinkChannel | None, positions_m: np.ndarray, law_alone: bool = False) -> np.ndarray:
+    """Return the amplitude at positions, (..., 3), from the model; or its factor by distance alone."""
     x, y, z = np.moveaxis(positions_m - POINT[0], -1, 0)
     level = np.hypot(x, y)
     if channel is None:
         return np.ones(level.shape)
-    return np.sqrt(channel.excess(channel.row, np.hypot(level, z), np.arctan2(z, level), 0.0))
+    excess = distance_excess if law_alone else channel.excess
+    return np.sqrt(excess(channel.row, np.hypot(level, z), np.arctan2(z, level), 0.0))
 
 
 @pytest.mark.parametrize("boxes", [40, pytest.param(250, marks=pytest.mark.slow)])
@@ -42,7 +43,10 @@ def roots(channel: LinkChannel | None, positions_m: np.ndarray) -> np.ndarray:
 def test_an_amplitude_encloses_samples(
     is_above: bool, boxes: int, channel: LinkChannel | None, ratios_over: Callable[..., Ratios]
 ) -> None:
-    """Its value is that at the centre, or a valid end; slopes and second differences are within bounds."""
+    """Its value is that at the centre, or with a valid end of the factor by elevation all over the box.
+
+    Slopes and second differences are within bounds.
+    """
     rng, ratios = np.random.default_rng(11), ratios_over(POINT, 0.0, channel=channel)
     ends = 0
     for _ in range(boxes):
@@ -51,26 +55,26 @@ def test_an_amplitude_encloses_samples(
         half = reach * 10.0 ** rng.uniform(-4.0, -1.0, size=3)
         field = amplitude(ratios, 0, is_above, centre, half)
         samples = centre + rng.uniform(-1.0, 1.0, (SAMPLES, 3)) * half
-        h, at_centre = roots(channel, samples), float(roots(channel, centre))
-        if field.slope == 0.0 and field.bend == 0.0 and channel is not None:
-            ends += 1
-            sign = 1.0 if is_above else -1.0
-            assert np.all(sign * h <= sign * field.value * (1.0 + sign * 1e-12))
-            continue
+        off = abs(field.value - roots(channel, centre)) > 1e-14 * field.value
+        is_end = channel is not None and (off or field.slope == 0.0)
+        ends, sign = ends + is_end, 1.0 if is_above else -1.0
+        share = field.value / float(roots(channel, centre, is_end))
+        h = share * roots(channel, samples, is_end)
+        assert np.all(sign * roots(channel, samples) <= sign * h * (1.0 + sign * 1e-12))
         assert np.max(h) <= field.most * (1.0 + 1e-12)
-        assert field.value == pytest.approx(at_centre, rel=1e-12)
         assert math.hypot(*field.gradient) <= field.slope * (1.0 + 1e-9)
         # by the mean value theorem between neighbours, and by Taylor's from the centre
         step = samples - centre
         size = np.linalg.norm(step, axis=1)
         slack = 1e-12 * field.most
-        assert np.all(np.abs(h - at_centre) <= field.slope * size + slack)
-        taylor = h - at_centre - step @ np.array(field.gradient)
+        assert np.all(np.abs(h - field.value) <= field.slope * size + slack)
+        taylor = h - field.value - step @ np.array(field.gradient)
         assert np.all(np.abs(taylor) <= 0.5 * field.bend * size**2 + slack)
         others = rng.permutation(samples)
-        slopes = np.abs(h - roots(channel, others)) - field.slope * np.linalg.norm(samples - others, axis=1)
+        at_others, between = (share * roots(channel, p, is_end) for p in (others, 0.5 * (samples + others)))
+        slopes = np.abs(h - at_others) - field.slope * np.linalg.norm(samples - others, axis=1)
         assert np.all(slopes <= slack)
-        bends = h + roots(channel, others) - 2.0 * roots(channel, 0.5 * (samples + others))
+        bends = h + at_others - 2.0 * between
         assert np.all(np.abs(bends) <= 0.25 * field.bend * np.sum((samples - others) ** 2, axis=1) + slack)
     assert ends < boxes
 

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from nullpose.channel.model import BY_DISTANCE
+from nullpose.channel.model import EXPONENT, REFERENCE_M
 from nullpose.solver.kernels.bounds.excess import EXCESS, fill_excess, quotient
 from nullpose.solver.kernels.bounds.link_field import product, square, total
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
@@ -211,9 +211,8 @@ def link_jet(family, j, is_above, axis_field, centre, half, jet):
     if family.channels.shape[0] > 0:
         channel, to_point = family.channels[j], minus(row(family.points_m, j), centre)
         fill_excess(channel, to_point, is_above, family.points_m[j], centre, half, rows)
-        excess = rows
-        if channel[0] == BY_DISTANCE:
-            more, scale = -0.5 * channel[1], channel[2] ** -channel[1]
+        excess, e = rows, channel[EXPONENT]
+        more, scale = -0.5 * e, channel[REFERENCE_M] ** -e
     offset, matrix = scratch(3), scratch(3, 3)
     turned_field(axis_field, family.turn, j, offset, matrix)
     r, u, c = scratch(3), scratch(3), scratch(4)

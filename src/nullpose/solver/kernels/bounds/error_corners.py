@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from nullpose.channel.model import BY_DISTANCE
+from nullpose.channel.model import EXPONENT
 from nullpose.objectives import FloatArray
 from nullpose.solver.kernels.bounds.constants import VECTOR_BEND, VECTOR_SLOPE
 from nullpose.solver.kernels.bounds.error_cells import SLACK, ahead, axis_at, farthest
@@ -52,10 +52,10 @@ def link_reach(channels, j, q, near, far, is_dipole):
     slope, bend = (VECTOR_SLOPE, VECTOR_BEND) if is_dipole else (1.0, 2.0)
     reach = Reach(1.0 / near, slope / near**2, bend / near**3)
     if channels.shape[0] > 0:
-        if channels[j, 0] == BY_DISTANCE:
-            return times_amplitude(distance_amplitude(channels[j], q, near * near, far * far), reach)
+        if channels[j, EXPONENT] != 0.0:
+            reach = times_amplitude(distance_amplitude(channels[j], q, near * near, far * far), reach)
         if near == far:
-            return Reach(reach.length * math.sqrt(excess_in_sight(channels[j], q)), reach.slope, reach.bend)
+            reach = Reach(math.sqrt(excess_in_sight(channels[j], q)) / near, reach.slope, reach.bend)
     return reach
 
 

@@ -1,4 +1,4 @@
-"""The excess gain of a channel by elevation over a box: what multiplies a link whose axis the position gives.
+"""An excess gain's factor by elevation over a box, which multiplies a link whose axis the position gives.
 
 Value and relative slopes at the centre, and bounds on it and on its relative first and second derivatives
 over the box, by interval arithmetic; or the end of its range alone, where that leaves out less.
@@ -12,7 +12,7 @@ from nullpose.channel.model import BY_ELEVATION
 from nullpose.solver.kernels.bounds.link_field import elevation_range, product, relative_range, square, total
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
-from nullpose.solver.kernels.linear_algebra.channel import excess_jet
+from nullpose.solver.kernels.linear_algebra.channel import elevation_jet
 from nullpose.solver.kernels.linear_algebra.symmetric import entry
 from nullpose.solver.kernels.linear_algebra.vectors import square_range
 
@@ -58,7 +58,7 @@ def fill_angle_range(r, point, centre, half, slopes, bends):
 
 @rare_kernel
 def fill_excess(row, r, is_above, point, centre, half, excess):
-    """Fill the excess gain over a box, (EXCESS, 3): at the centre, and its bounds.
+    """Fill the factor by elevation of an excess gain over a box, (EXCESS, 3): at the centre, and its bounds.
 
     Args:
         row: of the channel.
@@ -77,7 +77,7 @@ def fill_excess(row, r, is_above, point, centre, half, excess):
     low, high = elevation_range(r, point, centre, half)
     gain, first, _, second = relative_range(row, low, high)
     fill_angle_range(r, point, centre, half, steep, bent)
-    at_centre, left_out = excess_jet(row, r, slopes, bends), 0.0
+    at_centre, left_out = elevation_jet(row, r, slopes, bends), 0.0
     for e in range(6):
         i, k = entry(e)
         angle_i, angle_k = (steep[i, 0], steep[i, 1]), (steep[k, 0], steep[k, 1])

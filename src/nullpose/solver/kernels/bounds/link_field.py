@@ -12,11 +12,12 @@ import math
 from typing import NamedTuple
 
 from nullpose.channel.elevation import DB_AVERAGE
-from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION, KNOTS
+from nullpose.channel.model import AVERAGE, BY_ELEVATION, EXPONENT, KNOTS, RATE
 from nullpose.solver.kernels.bounds.constants import DIRECTION_BEND
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.linear_algebra.channel import (
     elevation_gain,
+    gain_by_distance,
     gain_by_elevation,
     knot_below,
     parabola,
@@ -118,11 +119,23 @@ def amplitude(family, j, is_above, centre, half):
     if family.channels.shape[0] > 0:
         row, r = family.channels[j], minus(row_of(family.points_m, j), centre)
         least, most = square_range(family.points_m[j], centre, half, 3)
-        if row[0] == BY_DISTANCE:
-            return distance_amplitude(row, r, least, most)
         if row[0] == BY_ELEVATION:
-            return elevation_amplitude(row, r, least, is_above, family.points_m[j], centre, half)
+            seen = elevation_amplitude(row, r, least, is_above, family.points_m[j], centre, half)
+            if row[EXPONENT] == 0.0:
+                return seen
+            return amplitude_product(distance_amplitude(row, r, least, most), seen)
+        if row[EXPONENT] != 0.0:
+            return distance_amplitude(row, r, least, most)
     return Amplitude(1.0, (0.0, 0.0, 0.0), 1.0, 0.0, 0.0)
+
+
+@rare_kernel
+def amplitude_product(a, b):
+    """Return the product of two amplitudes."""
+    most = times_amplitude(a, Reach(b.most, b.slope, b.bend))
+    (x, y, z), (u, v, w) = a.gradient, b.gradient
+    gradient = a.value * u + b.value * x, a.value * v + b.value * y, a.value * w + b.value * z
+    return Amplitude(a.value * b.value, gradient, most.length, most.slope, most.bend)
 
 
 @rare_kernel
@@ -130,22 +143,21 @@ def excess_end(family, j, is_above, centre, half):
     """Return the largest excess gain of point j in a box, or the least, as ``is_above`` says."""
     if family.channels.shape[0] > 0:
         row, points = family.channels[j], family.points_m
-        if row[0] == BY_DISTANCE:
-            least, most = square_range(points[j], centre, half, 3)
-            unit, power = row[2] * row[2], 0.5 * row[1]
-            return ((least if is_above == (power < 0.0) else most) / unit) ** power
+        least, most = square_range(points[j], centre, half, 3)
+        gain = gain_by_distance(row, least if is_above == (row[EXPONENT] < 0.0) else most)
         if row[0] == BY_ELEVATION:
             low, high = elevation_range(minus(row_of(points, j), centre), points[j], centre, half)
-            return relative_range(row, low, high)[0][1 if is_above else 0]
+            gain *= relative_range(row, low, high)[0][1 if is_above else 0]
+        return gain
     return 1.0
 
 
 @rare_kernel
 def distance_amplitude(row, r, least, most):
-    """Return the amplitude ``(d / d0)^c`` over squared distances from least to most."""
-    c, unit, square = 0.5 * row[1], row[2] * row[2], dot(r, r)
-    value, near = (square / unit) ** (0.5 * c), (least / unit) ** (0.5 * c)
-    top = near if c < 0.0 else (most / unit) ** (0.5 * c)
+    """Return an amplitude's factor ``(d / d0)^c`` over squared distances from least to most."""
+    c, square = 0.5 * row[EXPONENT], dot(r, r)
+    value, near = math.sqrt(gain_by_distance(row, square)), math.sqrt(gain_by_distance(row, least))
+    top = near if c < 0.0 else math.sqrt(gain_by_distance(row, most))
     by = -c * value / square
     slope = abs(c) * near / math.sqrt(least)  # falls with the distance: c is less than 1
     return Amplitude(
@@ -213,10 +225,10 @@ def relative_range(row, low, high):
     gain = elevation_gain(row, p_low), elevation_gain(row, p_high)
     ends = p_low * (1.0 - p_low), p_high * (1.0 - p_high)
     spread = min(ends[0], ends[1]), (0.25 if p_low < 0.5 < p_high else max(ends[0], ends[1]))
-    first = steepness(row, gain[1]) * row[2] * spread[0], steepness(row, gain[0]) * row[2] * spread[1]
-    bent = row[2] * (1.0 - 2.0 * p_high), row[2] * (1.0 - 2.0 * p_low)
+    first = steepness(row, gain[1]) * row[RATE] * spread[0], steepness(row, gain[0]) * row[RATE] * spread[1]
+    bent = row[RATE] * (1.0 - 2.0 * p_high), row[RATE] * (1.0 - 2.0 * p_low)
     # h' / h = g' / (2 g) and h'' / h = g'' / (2 g) - (g' / (2 g))^2
-    root, in_db = (0.5 * first[0], 0.5 * first[1]), row[4] == DB_AVERAGE
+    root, in_db = (0.5 * first[0], 0.5 * first[1]), row[AVERAGE] == DB_AVERAGE
     bend_of_root = product(root, total(bent, root if in_db else (-root[1], -root[0])))
     bend = product(first, total(bent, first) if in_db else bent)
     if row.shape[0] > KNOTS and row[KNOTS] > 0.0:
@@ -231,7 +243,7 @@ def relative_range(row, low, high):
 
 @rare_kernel
 def elevation_amplitude(row, r, least, is_above, point, centre, half):
-    """Return the amplitude of a channel by elevation, over squared distances of ``least`` or more."""
+    """Return an amplitude's factor by elevation, over squared distances of ``least`` or more."""
     low, high = elevation_range(r, point, centre, half)
     (bottom, top), by, of_root, _ = relative_range(row, low, high)
     first, second = 0.5 * max(abs(by[0]), abs(by[1])), max(abs(of_root[0]), abs(of_root[1]))

@@ -1,7 +1,7 @@
 """The excess gain of a point's channel at a position, and its derivatives (:mod:`nullpose.channel`).
 
-``g = (d / d0)^e`` by distance; ``n + (1 - n) P`` or ``n^(1 - P)`` by elevation, with the probability
-``P = 1 / (1 + exp(c - k theta))`` of line of sight, times the ground antenna's profile. Derivatives
+It is ``(d / d0)^e`` where e is not 0, times, by elevation, ``n + (1 - n) P`` or ``n^(1 - P)``, with the
+probability ``P = 1 / (1 + exp(c - k theta))`` of line of sight, and the ground antenna's profile. Derivatives
 are relative, ``g' / g``. Where no point has a channel, there are no rows.
 """
 
@@ -10,7 +10,17 @@ from __future__ import annotations
 import math
 
 from nullpose.channel.elevation import DB_AVERAGE
-from nullpose.channel.model import BLOCKED, BY_DISTANCE, BY_ELEVATION, KNOTS
+from nullpose.channel.model import (
+    AVERAGE,
+    BLOCKED,
+    BY_ELEVATION,
+    EXPONENT,
+    HIDDEN,
+    KNOTS,
+    ONSET,
+    RATE,
+    REFERENCE_M,
+)
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.vectors import dot, minus, row as row_of
@@ -21,7 +31,7 @@ _ZENITH = 1e-12  # of the distance: directly above a point the elevation has no 
 @inner_kernel
 def sight_probability(row, elevation_rad):
     """Return the probability of line of sight."""
-    exponent = row[1] - row[2] * elevation_rad
+    exponent = row[ONSET] - row[RATE] * elevation_rad
     small = math.exp(-abs(exponent))
     return (small if exponent > 0.0 else 1.0) / (1.0 + small)
 
@@ -29,15 +39,15 @@ def sight_probability(row, elevation_rad):
 @inner_kernel
 def elevation_gain(row, probability):
     """Return the excess gain at a probability of line of sight."""
-    if row[4] == DB_AVERAGE:
-        return row[3] ** (1.0 - probability)
-    return row[3] + (1.0 - row[3]) * probability
+    if row[AVERAGE] == DB_AVERAGE:
+        return row[HIDDEN] ** (1.0 - probability)
+    return row[HIDDEN] + (1.0 - row[HIDDEN]) * probability
 
 
 @inner_kernel
 def steepness(row, gain):
     """Return ``g' / g`` over ``k P (1 - P)``."""
-    return -math.log(row[3]) if row[4] == DB_AVERAGE else (1.0 - row[3]) / gain
+    return -math.log(row[HIDDEN]) if row[AVERAGE] == DB_AVERAGE else (1.0 - row[HIDDEN]) / gain
 
 
 @inner_kernel
@@ -62,16 +72,24 @@ def parabola(row, at, angle):
 
 @inner_kernel
 def gain_by_elevation(row, angle):
-    """Return the excess gain g of a channel by elevation, ``g' / g`` and ``g'' / g``."""
+    """Return the factor g of the excess gain by elevation, ``g' / g`` and ``g'' / g``."""
     p = sight_probability(row, angle)
     gain = elevation_gain(row, p)
-    first = steepness(row, gain) * row[2] * p * (1.0 - p)
-    second = first * row[2] * (1.0 - 2.0 * p) + (first * first if row[4] == DB_AVERAGE else 0.0)
+    first = steepness(row, gain) * row[RATE] * p * (1.0 - p)
+    second = first * row[RATE] * (1.0 - 2.0 * p) + (first * first if row[AVERAGE] == DB_AVERAGE else 0.0)
     if row.shape[0] > KNOTS and row[KNOTS] > 0.0:
         log, slope, bend = parabola(row, knot_below(row, angle), angle)
         second += slope * (2.0 * first + slope) + bend
         gain, first = gain * math.exp(log), first + slope
     return gain, first, second
+
+
+@inner_kernel
+def gain_by_distance(row, square):
+    """Return the factor of the excess gain by distance, from that squared."""
+    if row[EXPONENT] == 0.0:
+        return 1.0
+    return (square / (row[REFERENCE_M] * row[REFERENCE_M])) ** (0.5 * row[EXPONENT])
 
 
 @rare_kernel
@@ -107,11 +125,10 @@ def excess_at(family, j, p):
 @rare_kernel
 def excess_in_sight(row, r):
     """Return the excess gain of a channel, r being the vector to the point, without buildings."""
-    if row[0] == BY_DISTANCE:
-        return (dot(r, r) / (row[2] * row[2])) ** (0.5 * row[1])
+    gain = gain_by_distance(row, dot(r, r))
     if row[0] == BY_ELEVATION:
-        return gain_by_elevation(row, math.atan2(-r[2], math.hypot(r[0], r[1])))[0]
-    return 1.0
+        gain *= gain_by_elevation(row, math.atan2(-r[2], math.hypot(r[0], r[1])))[0]
+    return gain
 
 
 @inner_kernel
@@ -138,34 +155,42 @@ def fill_elevation(r, slopes, bends):
 @rare_kernel
 def excess_jet(row, r, slopes, bends):
     """Return the excess gain of a channel; fill its relative derivatives by the position, (3,) and (3, 3)."""
-    slopes[:], bends[:, :] = 0.0, 0.0
-    s, e = dot(r, r), row[1]
-    if row[0] == BY_DISTANCE:
-        for i in range(3):
-            slopes[i] = -e * r[i] / s
-            for k in range(3):
-                bends[i, k] = e * (e - 2.0) * r[i] * r[k] / (s * s)
-            bends[i, i] += e / s
-        return (s / (row[2] * row[2])) ** (0.5 * e)
-    if row[0] == BY_ELEVATION:
-        angle = scratch(3)
-        fill_elevation(r, angle, bends)
-        gain, first, second = gain_by_elevation(row, math.atan2(-r[2], math.hypot(r[0], r[1])))
-        for i in range(3):
-            slopes[i] = first * angle[i]
-            for k in range(3):
-                bends[i, k] = first * bends[i, k] + second * angle[i] * angle[k]
+    gain = elevation_jet(row, r, slopes, bends)
+    if row[EXPONENT] == 0.0:
         return gain
-    return 1.0
+    s, e = dot(r, r), row[EXPONENT]
+    rate = e / s
+    for i in range(3):
+        for k in range(3):
+            bends[i, k] += rate * ((e - 2.0) * r[i] * r[k] / s - r[i] * slopes[k] - slopes[i] * r[k])
+        bends[i, i] += rate
+    for i in range(3):
+        slopes[i] -= rate * r[i]
+    return gain * gain_by_distance(row, s)
+
+
+@rare_kernel
+def elevation_jet(row, r, slopes, bends):
+    """Do what ``excess_jet`` does for the factor by elevation alone."""
+    slopes[:], bends[:, :] = 0.0, 0.0
+    if row[0] != BY_ELEVATION:
+        return 1.0
+    angle = scratch(3)
+    fill_elevation(r, angle, bends)
+    gain, first, second = gain_by_elevation(row, math.atan2(-r[2], math.hypot(r[0], r[1])))
+    for i in range(3):
+        slopes[i] = first * angle[i]
+        for k in range(3):
+            bends[i, k] = first * bends[i, k] + second * angle[i] * angle[k]
+    return gain
 
 
 @small_kernel
 def reach_of(channels, j, square):
     """Return the largest distance at which the gain of point j is one over ``square``, in any direction."""
-    if channels.shape[0] > 0:
-        row = channels[j]
-        if row[0] == BY_DISTANCE:
-            return (square * row[2] ** -row[1]) ** (1.0 / (2.0 - row[1]))
+    if channels.shape[0] > 0 and channels[j, EXPONENT] != 0.0:
+        e = channels[j, EXPONENT]
+        return (square * channels[j, REFERENCE_M] ** -e) ** (1.0 / (2.0 - e))
     return math.sqrt(square)
 
 
@@ -173,10 +198,6 @@ def reach_of(channels, j, square):
 def most_excess(channels, j, square):
     """Return the excess that bounds ``excess / d^2`` of point j beyond a distance whose square is given.
 
-    By any power law the gain falls with the distance; by elevation the excess is at most 1.
+    By any power law the gain falls with the distance; the factor by elevation is at most 1.
     """
-    if channels.shape[0] > 0:
-        row = channels[j]
-        if row[0] == BY_DISTANCE:
-            return (square / (row[2] * row[2])) ** (0.5 * row[1])
-    return 1.0
+    return gain_by_distance(channels[j], square) if channels.shape[0] > 0 else 1.0

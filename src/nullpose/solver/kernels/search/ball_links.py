@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nullpose.channel.model import BY_DISTANCE, BY_ELEVATION
+from nullpose.channel.model import BY_ELEVATION, EXPONENT, RATE, REFERENCE_M
 from nullpose.solver.kernels.compiler.jit import inner_kernel, kernel
 from nullpose.solver.kernels.compiler.scratch import scratch
 from nullpose.solver.kernels.linear_algebra.channel import elevation_gain, sight_probability, steepness
@@ -83,7 +83,7 @@ def line_over(row, slope, low, high):
         gain, sine = elevation_gain(row, p), math.sin(first + i * step)
         most = max(most, gain - slope * sine * sine)
         spread = 0.25 if before < 0.5 < p else max(before * (1.0 - before), p * (1.0 - p))
-        bend = max(bend, steepness(row, gain) * gain * row[2] ** 2 * spread * (2.0 * p - 1.0))
+        bend = max(bend, steepness(row, gain) * gain * row[RATE] ** 2 * spread * (2.0 * p - 1.0))
         before = p
     most += 0.125 * step * step * (bend + 2.0 * slope * max(0.0, math.cos(2.0 * first)))
     return most + ROUNDING * (1.0 + slope)
@@ -91,7 +91,7 @@ def line_over(row, slope, low, high):
 
 @inner_kernel
 def mean_form(row, y, leak, low, high, slope, weight):
-    """Return a form that over ``|q|^3`` is not below the root of a link by elevation, lemma 3 (4)."""
+    """Return a form that is not below ``|q|^3`` times the root of a link by elevation, lemma 3 (4)."""
     line, inverse = line_over(row, slope, low, high), 0.5 / weight
     length = 0.5 * weight * leak + inverse * (line + slope)
     return Form(y, _UP, 0.0, 0.5 * weight * (1.0 - leak), -inverse * slope, length)
@@ -108,25 +108,28 @@ def part_by_elevation(row, y, axis, leak, q, radius, part, nearest, tolerance, b
     rise = elevation_gain(row, sight_probability(row, last)) - elevation_gain(
         row, sight_probability(row, first)
     )
-    root, bound, at, peak = math.sqrt(best), math.inf, place, place
+    e, scale = row[EXPONENT], row[REFERENCE_M] ** -row[EXPONENT]
+    root, bound, at, peak = math.sqrt(best / scale), math.inf, place, place
     for trial in range(_LINES):
         if trial % 2 == 0:
             angle = math.asin(min(1.0, -peak[2] / norm(peak)))
             p = sight_probability(row, angle)
             gain = elevation_gain(row, p)
             across = max(_SMALL, link_and_slopes(y, peak, axis, leak)[0] * dot(peak, peak))
-            slope = steepness(row, gain) * gain * row[2] * p * (1.0 - p) / max(_SMALL, math.sin(2.0 * angle))
+            slope = (
+                steepness(row, gain) * gain * row[RATE] * p * (1.0 - p) / max(_SMALL, math.sin(2.0 * angle))
+            )
         else:
             slope = rise / max(_SMALL, high - low)
         form = mean_form(row, y, leak, low, high, slope, math.sqrt(gain / across))
         upper, peak = bound_of_part(
-            form, 1.5, _FEW_TRIALS, q, radius, near, far, nearest, 0.5 * tolerance, root, peak
+            form, 1.5 - 0.25 * e, _FEW_TRIALS, q, radius, near, far, nearest, 0.5 * tolerance, root, peak
         )
         if upper < bound:
             bound, at = upper, peak
         if bound <= root * (1.0 + 0.5 * tolerance):
             break
-    return bound * bound, at
+    return scale * bound * bound, at
 
 
 @kernel
@@ -142,13 +145,12 @@ def strongest_by_parts(sets, channels, j, y, q, leak, tolerance):
         return math.inf, math.inf, ORIGIN
     power, scale, is_tilted, both = 2.0, 1.0, False, Form(y, axis, 1.0, 0.0, 0.0, 0.0)
     if channels.shape[0] > 0:
-        kind = channels[j, 0]
-        if kind == BY_DISTANCE:
-            power, scale = 2.0 - 0.5 * channels[j, 1], channels[j, 2] ** -channels[j, 1]
-        elif kind == BY_ELEVATION:
+        e = channels[j, EXPONENT]
+        power, scale = 2.0 - 0.5 * e, channels[j, REFERENCE_M] ** -e
+        if channels[j, 0] == BY_ELEVATION:
             is_tilted = not has_dipole(axis) and q[2] + radius <= 0.0
             sine = min(1.0, max(0.0, (radius - q[2]) / clear))
-            scale = elevation_gain(channels[j], sight_probability(channels[j], math.asin(sine)))
+            scale *= elevation_gain(channels[j], sight_probability(channels[j], math.asin(sine)))
             if is_tilted:
                 both = Form(y, _UP, 0.0, 0.0, -1.0, 1.0)
     nearest, place = clear * clear, along(q, -radius / distance, q)
