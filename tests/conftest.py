@@ -161,6 +161,7 @@ CHANNELS: dict[str, LinkChannel | None] = {
     "urban in dB": elevation_channel(*ENVIRONMENTS["urban"], average="db"),
     "high-rise": elevation_channel(*ENVIRONMENTS["high-rise"], average="power"),
     "whip": with_profile(constant_channel(1.0), *zip(*whip_rows(), strict=True)),
+    "whip by a law": with_profile(power_law(2.6, 2.0), *zip(*whip_rows(10.0), strict=True)),
     "whip in suburbs": with_profile(
         elevation_channel(*ENVIRONMENTS["suburban"], average="power"), *zip(*whip_rows(1.0), strict=True)
     ),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from tests.reference.whip import whip_rows
 
+from nullpose.channel import Custom
 from nullpose.errors import ScenarioError, UsageError
 from nullpose.physics import Pose, objective_value
 from nullpose.report.links import gain_columns
@@ -90,7 +91,7 @@ def test_a_whip_survives_its_dictionary_and_its_file(tmp_path: Path) -> None:
         (whip(gain_dbi=3.0), "gain_dbi", "it would add to them"),
         (whip(null_depth_db=20.0), "null_depth_db", 'antenna = "dipole"'),
         (whip(antenna="isotropic"), "antenna_profile", 'antenna = "profile"'),
-        (whip(channel={"model": "power-law", "exponent": 3.0}), "antenna", 'model = "power-law"'),
+        (whip(channel=Custom(gain=lambda d, up, around: d**-2.0)), "antenna", "a function in Python"),
         ({"antenna": "dipole", "gain_dbi": 8.5}, "gain_dbi", 'antenna = "profile"'),
     ],
 )

@@ -110,7 +110,7 @@ def elevation_channel(
 
 
 def with_profile(channel: LinkChannel, elevation_deg: ArrayLike, gain_dbi: ArrayLike) -> LinkChannel:
-    """Return a channel in free space or by elevation, times the profile of the antenna on the ground.
+    """Return a channel times the profile of the antenna on the ground.
 
     Its largest gain, of which the excess is what is left elsewhere, is the antenna's own.
 

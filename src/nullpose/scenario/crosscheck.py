@@ -11,7 +11,7 @@ from nullpose.antenna import SHORT_DIPOLE
 from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, Custom
 from nullpose.scenario.buildings import Building, buried_points
-from nullpose.scenario.channel import Channel, CustomChannel
+from nullpose.scenario.channel import CustomChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of, unknown
 from nullpose.scenario.ground_points import GroundPoint, Node, Terminal
 from nullpose.scenario.motion import flight_faults, motion_faults
@@ -106,19 +106,18 @@ def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> 
         "a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that of "
         f'antenna.kind = "{antenna.name}" is not; write "circular" or "isotropic"'
     )
+    in_python = (
+        'antenna = "profile" does not go with a channel that is a function in Python; multiply that by the '
+        'gain, or write antenna = "isotropic" with gain_dbi'
+    )
     faults: list[tuple[bool, Place, str]] = [
         (has_array and is_tilted, ("array",), apart),
         (has_array and antenna != SHORT_DIPOLE, ("antenna",), other),
     ]
     for place, point in points.items():
-        channel = point.channel or scenario.channel or Channel()
-        is_by_sight = channel.model in ("free-space", "elevation") and not isinstance(channel, CustomChannel)
-        law = (
-            f'antenna = "profile" goes with free space and with line of sight by elevation or buildings, and '
-            f'here model = "{channel.model}"; write another channel, or antenna = "isotropic" with gain_dbi'
-        )
+        is_custom = isinstance(point.channel or scenario.channel, CustomChannel)
         faults += [
-            (point.antenna == "profile" and not is_by_sight, (*place, "antenna"), law),
+            (point.antenna == "profile" and is_custom, (*place, "antenna"), in_python),
             (has_array and point.antenna not in (None, "isotropic"), (*place, "antenna"), deaf),
             (point.antenna == "dipole" and not antenna.has_polarisation, (*place, "antenna"), unlike),
         ]
