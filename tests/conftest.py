@@ -159,6 +159,12 @@ CHANNELS: dict[str, LinkChannel | None] = {
     "power law 6": power_law(6.0, 1.0),
     "suburban": elevation_channel(*ENVIRONMENTS["suburban"], average="power"),
     "urban in dB": elevation_channel(*ENVIRONMENTS["urban"], average="db"),
+    "urban of exponent 2.8": elevation_channel(
+        *ENVIRONMENTS["urban"], average="power", exponent=2.8, reference_distance_m=2.0
+    ),
+    "suburban of exponent 1.7 in dB": elevation_channel(
+        *ENVIRONMENTS["suburban"], average="db", exponent=1.7
+    ),
     "high-rise": elevation_channel(*ENVIRONMENTS["high-rise"], average="power"),
     "whip": with_profile(constant_channel(1.0), *zip(*whip_rows(), strict=True)),
     "whip by a law": with_profile(power_law(2.6, 2.0), *zip(*whip_rows(10.0), strict=True)),

@@ -144,6 +144,7 @@ KINDS: dict[str, list[tuple[str, float, dict[str, Any]]]] = {
         ("optimum", 0.2, _scene(channel=_SUBURB) | _HEARD | _within(**_SQUARE)),
         ("optimum", 0.8, _scene(0.1, channel=_LAW, nodes=_OWN) | _QUIET | _within(**_SQUARE)),
         ("vertical", 1.5, _scene(channel=_CITY) | _within(**_SQUARE)),
+        ("optimum", 0.5, _scene(channel=_SUBURB | {"exponent": 2.7}) | _QUIET | _within(**_SQUARE)),
         ("zero-interference", 0.1, _scene(channel=_LAW | {"exponent": 2.5}) | _within(**_SQUARE)),
     ],
     "sums and means": [

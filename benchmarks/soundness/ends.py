@@ -12,13 +12,14 @@ from nullpose.scenario import Scenario
 Table = dict[str, Any]
 
 _LOSSES_DB = (0.0, 0.5, 20.0, 60.0, 100.0, 120.0, 150.0, 165.0, 200.0)
+_EXPONENTS = (1.6, 2.0 - 1e-9, 2.0 + 1e-9, 6.0)
 _HAIRS_DEG = (1e-9, 1e-6, 1e-4, 1e-3)
 
 
 def channel_ends(rng: np.random.Generator) -> Table:
     """Return a channel with losses up to 200 dB and the steepest and flattest curves, or the end of a law."""
     if rng.uniform() < 0.25:
-        exponent = float(rng.choice([1.6, 2.0 - 1e-9, 2.0 + 1e-9, 6.0]))
+        exponent = float(rng.choice(_EXPONENTS))
         return {
             "model": "power-law",
             "exponent": exponent,
@@ -32,7 +33,11 @@ def channel_ends(rng: np.random.Generator) -> Table:
         "b": float(rng.choice([1e-3, 5.0, 10.0 ** rng.uniform(-3.0, 0.7), 1.0])),
         "los_loss_db": seen,
         "nlos_loss_db": max(seen, float(rng.choice(_LOSSES_DB))),
-    }
+    } | (
+        {}
+        if rng.uniform() < 0.7
+        else {"exponent": float(rng.choice(_EXPONENTS)), "reference_distance_m": 0.9}
+    )
 
 
 def quiet(rng: np.random.Generator, table: Table) -> Table:

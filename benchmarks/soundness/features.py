@@ -314,11 +314,20 @@ def _channel(rng: np.random.Generator) -> Table:
         }
     average = str(rng.choice(["power", "power", "db", "guaranteed"]))
     if kind == 1:
-        return {"model": "elevation", "environment": str(rng.choice(list(ENVIRONMENTS))), "average": average}
+        town = {"model": "elevation", "environment": str(rng.choice(list(ENVIRONMENTS))), "average": average}
+        return town | _own_exponent(rng)
     loss = float(rng.uniform(0.0, 5.0))
     losses = {"los_loss_db": loss, "nlos_loss_db": loss + float(rng.uniform(0.0, 30.0))}
     curve = {"a": float(rng.uniform(1.0, 40.0)), "b": float(10.0 ** rng.uniform(-1.5, 0.0))}
-    return {"model": "elevation", "average": average} | curve | losses
+    return {"model": "elevation", "average": average} | curve | losses | _own_exponent(rng)
+
+
+def _own_exponent(rng: np.random.Generator) -> Table:
+    """An exponent beside line of sight by elevation, in every other scene."""
+    if rng.uniform() < 0.5:
+        return {}
+    exponent = float(rng.uniform(1.6, 6.0))
+    return {"exponent": exponent, "reference_distance_m": float(rng.choice([0.5, 0.9]))}
 
 
 def _channels(rng: np.random.Generator) -> Table:
@@ -383,6 +392,7 @@ def _ground_profile(rng: np.random.Generator) -> Table:
     if rng.uniform() < 0.4:
         channel = {"model": "elevation", "environment": str(rng.choice(list(ENVIRONMENTS)))}
         table["channel"] = channel | {"average": str(rng.choice(["power", "db", "guaranteed"]))}
+        table["channel"] |= _own_exponent(rng)
     for point in [*table["nodes"], *table["jammers"], *table.get("eavesdroppers", [])]:
         if rng.uniform() < 0.7:
             inner = np.unique(np.round(rng.uniform(-80.0, 80.0, int(rng.integers(0, 30))), 1))

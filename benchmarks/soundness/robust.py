@@ -35,8 +35,9 @@ CHANNELS: list[tuple[dict[str, object], dict[str, object], float]] = [
     ({"model": "power-law", "exponent": 2.5}, {}, 7.0),
     (_URBAN, {}, 6.0),
     (_URBAN | {"environment": "suburban", "average": "db"}, {"channel": "free-space"}, 6.0),
+    (_URBAN | {"exponent": 2.6}, {}, 14.0),
 ]
-"""The channel of every fifth scene, that of its jammers if it is another, and the reference gain [dB]."""
+"""The channel of every sixth scene, that of its jammers if it is another, and the reference gain [dB]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

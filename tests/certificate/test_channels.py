@@ -119,7 +119,7 @@ def test_points_have_channels_of_their_own() -> None:
         power_law(3.0, 1.0).row,
         elevation_channel(*ENVIRONMENTS["urban"], average="db").row,
         constant_channel(1.0).row,
-        elevation_channel(*ENVIRONMENTS["suburban"], average="power").row,
+        elevation_channel(*ENVIRONMENTS["suburban"], average="power", exponent=2.6).row,
     ]
     family = random_family(rng, 2, 2).changed(channels=np.array(rows))
     places = np.array([[3.0, 4.0, 9.0], [50.0, 20.0, -7.0], [*family.ratios.points_m[1, :2], 12.0]])
@@ -153,15 +153,18 @@ def test_the_value_with_channels_is_a_lower_bound() -> None:
 
 @pytest.mark.parametrize("alpha", [1.6, 1.9, 2.5, 6.0])
 def test_gains_fall_with_the_distance(alpha: float) -> None:
-    """What bounds a gain beyond a distance bounds it there and farther, and by elevation it is 1."""
+    """What bounds a gain beyond a distance bounds it there and farther; sight adds at most a factor of 1."""
     rng, none = np.random.default_rng(5), np.zeros(1000, dtype=np.int64)
-    family = over_one_point(power_law(alpha, 2.0))
     least = 10.0 ** rng.uniform(0.0, 4.0, len(none))
-    bound = most_excess(family.ratios, none, least)
-    for farther in (1.0, 1.0 + 1e-6, 7.0):
-        square = least * farther
-        gain = (np.sqrt(square) / 2.0) ** (2.0 - alpha) / square
-        assert np.all(gain <= bound.high / least * (1.0 + 1e-14))
+    in_city = elevation_channel(
+        *ENVIRONMENTS["urban"], average="power", exponent=alpha, reference_distance_m=2.0
+    )
+    for channel in (power_law(alpha, 2.0), in_city):
+        bound = most_excess(over_one_point(channel).ratios, none, least)
+        for farther in (1.0, 1.0 + 1e-6, 7.0):
+            square = least * farther
+            gain = (np.sqrt(square) / 2.0) ** (2.0 - alpha) / square
+            assert np.all(gain <= bound.high / least * (1.0 + 1e-14))
     city = over_one_point(elevation_channel(*ENVIRONMENTS["urban"], average="power"))
     assert np.all(most_excess(city.ratios, none, least).high == 1.0)
     assert np.all(most_excess(city.ratios._replace(channels=city.ratios.channels[:0]), none, least) == 1.0)

@@ -16,7 +16,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SCHEMES = ["optimum", "zero-interference", "maximum-gain", "vertical"]
 
 
-def city(environment: str, average: str) -> dict[str, str]:
+def city(environment: str, average: str) -> dict[str, Any]:
     """Return the table of a channel by elevation."""
     return {"model": "elevation", "environment": environment, "average": average}
 
@@ -27,6 +27,8 @@ CHANNELS: dict[str, dict[str, Any]] = {
     "power law 6": {"model": "power-law", "exponent": 6.0},
     "suburban": city("suburban", "power"),
     "urban in dB": city("urban", "db"),
+    "urban of exponent 2.6": city("urban", "power") | {"exponent": 2.6},
+    "suburban of exponent 1.7 in dB": city("suburban", "db") | {"exponent": 1.7},
 }
 
 
@@ -72,7 +74,7 @@ FEATURES: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", ["power law 3", "suburban"])
+@pytest.mark.parametrize("name", ["power law 3", "suburban", "urban of exponent 2.6"])
 @pytest.mark.parametrize("feature", FEATURES)
 def test_channels_go_with_other_features(feature: str, name: str, paper: Callable) -> None:
     """Leaky antennas, bands of axes, zones and a fence."""
@@ -120,6 +122,8 @@ def sound(paper: Callable) -> dict[str, Certificate]:
         ("suburban", "average", "guaranteed"),
         ("urban in dB", "average", "power"),
         ("urban in dB", "environment", "dense-urban"),
+        ("urban of exponent 2.6", "exponent", 2.59),
+        ("suburban of exponent 1.7 in dB", "exponent", 1.6),
     ],
 )
 def test_a_certificate_is_of_its_own_channel(

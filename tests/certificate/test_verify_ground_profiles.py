@@ -16,6 +16,7 @@ SUBURBS = {"model": "elevation", "environment": "suburban", "average": "power"}
 EVERYTHING: dict[str, dict[str, Any]] = {
     "free space": {},
     "suburbs": {"channel": SUBURBS},
+    "suburbs of exponent 2.6": {"channel": SUBURBS | {"exponent": 2.6}},
     "power law": {"channel": {"model": "power-law", "exponent": 1.8}},
     "belt": {"airframe": {"tilt_max_deg": 20.0, "mount_deg": 45.0}},
     "leak": {"antenna": {"null_depth_db": 25.0}},

@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, strategies as st
 
-from nullpose.channel import ENVIRONMENTS, PointChannels, excess_gain
+from nullpose.channel import ENVIRONMENTS, LinkChannel, PointChannels, excess_gain
 from nullpose.channel.elevation import elevation_channel, sight_probability
+from nullpose.channel.power_law import power_law
 
 FREE_SPACE_2_GHZ_DB = 20.0 * math.log10(4.0 * math.pi * 2e9 / 299_792_458.0)
 
@@ -106,3 +108,56 @@ def test_the_curve_follows_the_recommendation(environment: str, most: float) -> 
             away_m = (up_m - LOW_M) / math.tan(math.radians(elevation_deg))
             fitted = probability(environment, up_m - LOW_M, away_m)
             assert abs(fitted - recommended(BUILDINGS[environment], up_m, away_m)) < most
+
+
+EXPONENTS = st.floats(1.6, 6.0)
+LINKS_M = st.tuples(*[st.floats(-1e4, 1e4)] * 3).map(np.array).filter(lambda r: np.linalg.norm(r) > 1.0)
+CURVES = st.tuples(st.floats(0.1, 90.0), st.floats(1e-3, 5.0))
+AVERAGES = st.sampled_from(["power", "db", "guaranteed"])
+
+
+def gain_of(channel: LinkChannel, to_point_m: np.ndarray) -> float:
+    """Return the gain of a link over the reference gain."""
+    excess = excess_gain(PointChannels.of([channel]), to_point_m[None])
+    return float(excess[0] / np.sum(to_point_m**2))
+
+
+@given(LINKS_M, st.sampled_from([*ENVIRONMENTS.values()]), AVERAGES, EXPONENTS, EXPONENTS)
+def test_a_larger_exponent_leaves_less(
+    link_m: np.ndarray, town: tuple[float, ...], average: str, one: float, other: float
+) -> None:
+    """Of every link longer than the reference distance; its share there is that of free space."""
+    low, high, free = (
+        elevation_channel(*town, average=average, exponent=exponent)
+        for exponent in (*sorted((one, other)), 2.0)
+    )
+    assert gain_of(high, link_m) <= gain_of(low, link_m) * (1.0 + 1e-12)
+    unit_m = link_m / np.linalg.norm(link_m)
+    assert gain_of(high, unit_m) == pytest.approx(gain_of(free, unit_m), rel=1e-12)
+
+
+@given(LINKS_M, CURVES, AVERAGES, st.floats(0.0, 30.0), EXPONENTS, st.floats(0.1, 10.0))
+def test_losses_that_are_equal_leave_the_power_law(
+    link_m: np.ndarray,
+    curve: tuple[float, float],
+    average: str,
+    loss_db: float,
+    exponent: float,
+    unit_m: float,
+) -> None:
+    """With line of sight and without, a link loses the same then: as much less than by the law alone."""
+    town = elevation_channel(*curve, loss_db, loss_db, average, exponent, unit_m)
+    law = gain_of(power_law(exponent, unit_m), link_m)
+    assert gain_of(town, link_m) == pytest.approx(10.0 ** (-0.1 * loss_db) * law, rel=1e-12)
+
+
+@given(LINKS_M, st.sampled_from([*ENVIRONMENTS.values()]), AVERAGES, EXPONENTS, st.floats(0.1, 10.0))
+def test_distance_and_elevation_are_factors(
+    link_m: np.ndarray, town: tuple[float, ...], average: str, exponent: float, unit_m: float
+) -> None:
+    """The gain is that by elevation in free space times that of the law; 2 is free space."""
+    plain = gain_of(elevation_channel(*town, average=average), link_m)
+    law = gain_of(power_law(exponent, unit_m), link_m) * np.sum(link_m**2)
+    both = elevation_channel(*town, average=average, exponent=exponent, reference_distance_m=unit_m)
+    assert gain_of(both, link_m) == pytest.approx(plain * law, rel=1e-12)
+    assert gain_of(elevation_channel(*town, average=average, exponent=2.0), link_m) == plain

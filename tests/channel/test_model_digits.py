@@ -10,7 +10,7 @@ from tests.certificate.plain import random_family
 
 from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import exact
-from nullpose.channel import LinkChannel, PointChannels, excess_gain
+from nullpose.channel import ENVIRONMENTS, LinkChannel, PointChannels, excess_gain
 from nullpose.channel.elevation import DB_AVERAGE, elevation_channel
 from nullpose.channel.model import BLOCKED, BY_ELEVATION
 from nullpose.channel.power_law import power_law
@@ -43,6 +43,8 @@ def channels() -> Iterator[LinkChannel]:
             yield elevation_channel(a, b, seen, hidden, average)
     for exponent, unit in product((*allowed("exponent"), 2.0001, 2.7), allowed("reference_distance_m")):
         yield power_law(exponent, unit)
+        for environment, average in product(ENVIRONMENTS.values(), ("power", "db")):
+            yield elevation_channel(*environment, average, exponent, unit)
 
 
 def places() -> np.ndarray:

@@ -64,6 +64,17 @@ def test_the_examples(monkeypatch: pytest.MonkeyPatch) -> None:
         assert printed.getvalue() == text
 
 
+def test_an_exponent_beside_sight_by_elevation() -> None:
+    """What the poses for either alone lose with both."""
+    urban = nullpose.load(ROOT / "examples" / "urban.toml")
+    both = nullpose.apply_overrides(urban, ["channel.exponent=2.3"])
+    law = nullpose.apply_overrides(urban, ['channel={model="power-law", exponent=2.3}'])
+    best, *others = (nullpose.solve(scene, gap=1e-4).pose for scene in (both, urban, law))
+    lost = [10.0 * np.log10(nullpose.min_sinr(both, best) / nullpose.min_sinr(both, pose)) for pose in others]
+    assert f"with 2 loses {lost[0]:.1f} dB" in WORDS
+    assert f"power law alone {lost[1]:.1f} dB" in WORDS
+
+
 def test_the_scenario_with_buildings(tmp_path: Path) -> None:
     """The scenario loads with what OpenStreetMap states: heights as text, levels, or nothing."""
     (tmp_path / "town.geojson").write_text(TOWN, encoding="utf-8")

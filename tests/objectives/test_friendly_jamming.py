@@ -88,7 +88,9 @@ def test_links_are_the_nodes(seed: int) -> None:
     listens = rng.integers(2, size=3)
     nodes = [{"position_m": at, "from": f"A{a + 1}"} for at, a in zip(spots(3), listens, strict=True)]
     more = {"eavesdroppers": [{"position_m": at, "noise_w": 2e-3} for at in spots(2)]}
-    more |= {"channel": {"model": "power-law", "exponent": 2.5}}
+    law = {"model": "power-law", "exponent": 2.5}
+    town = {"model": "elevation", "a": 9.0, "b": 0.2, "los_loss_db": 0.0, "nlos_loss_db": 0.0}
+    more |= {"channel": law if seed % 2 else law | town | {"average": "power"}}
     scenario = jammed((0.0, 9.0), 3.0, sources=sources, nodes=nodes, **more)
     pose = Pose(rng.uniform([-60.0, -60.0, 8.0], [60.0, 60.0, 30.0]), *rng.uniform(-1.0, 1.0, 3))
 

@@ -45,6 +45,7 @@ def _scenario(name: str, rng: np.random.Generator) -> Scenario:
     data |= {key: more[key] for key in record.needs if key in more}
     channels = [{"model": "power-law", "exponent": float(rng.uniform(1.6, 4.0))}]
     channels += [{"model": "elevation", "environment": "urban", "average": each} for each in AVERAGES]
+    channels += [channels[1] | channels[0] | {"model": "elevation"}]
     data["channel"] = channels[rng.integers(len(channels))]
     data["nodes"][2]["channel"] = "free-space"
     if record.interferers in data:

@@ -13,6 +13,7 @@ from nullpose.scenario import Scenario, apply_overrides
 SEEDS = st.integers(0, 2**32 - 1)
 URBAN = 'channel={model="elevation", environment="urban", average="%s"}'
 CHANNELS = ['channel={model="power-law", exponent=2.7}', URBAN % "power", URBAN % "db", URBAN % "guaranteed"]
+CHANNELS.append('channel={model="elevation", environment="urban", average="power", exponent=2.7}')
 
 
 def test_free_space_by_another_name(random_scene: Callable, random_poses: Callable) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from nullpose.channel.model import BLOCKED, EXPONENT
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Channel, Scenario, apply_overrides, json_schema, load
 from nullpose.scenario.toml_file import tables_of
@@ -25,9 +26,9 @@ PAPER = load("examples/paper.toml")
         (
             {"exponent": 3.0},
             "exponent",
-            'no meaning with model = "free-space"; remove it, or write model = "po',
+            'write model = "power-law" or model = "elevation"',
         ),
-        ({**URBAN, "exponent": 3.0}, "exponent", "has no meaning with"),
+        ({**URBAN, "exponent": 6.5}, "exponent", "must be a path-loss exponent from 1.6 to 6"),
         (URBAN | {"average": None}, "average", 'missing, but model = "elevation" needs it'),
         (URBAN | {"average": "median"}, "average", "must be an average"),
         (URBAN | {"environment": "rural"}, "environment", 'did you mean "urban"?'),
@@ -79,7 +80,17 @@ def test_the_drone_comes_no_closer_than_the_reference_distance() -> None:
     )
 
 
-@pytest.mark.parametrize("channel", [URBAN, {"model": "elevation", "average": "db", **NUMBERS}])
+def test_sight_by_elevation_has_a_reference_distance_too() -> None:
+    """Where it states an exponent it means nothing below that distance; where it does not, it has none."""
+    near = {"altitude_m": [8.0, 30.0], "keep_out_m": 0.5}
+    assert faults_of(small(channel=URBAN, airspace=near)) == {}
+    found = faults_of(small(channel=URBAN | {"exponent": 2.4}, airspace=near))
+    assert "must be at most airspace.keep_out_m = 0.5" in found["channel.reference_distance_m"]
+
+
+@pytest.mark.parametrize(
+    "channel", [URBAN | {"exponent": 2.6}, {"model": "elevation", "average": "db", **NUMBERS}]
+)
 def test_round_trips(channel: dict[str, object]) -> None:
     """Tables and texts lead back to an equal scenario, and what is not stated stays so."""
     assert "channel" not in PAPER.to_dict()
@@ -127,3 +138,7 @@ def test_no_average_is_asked_for_where_buildings_decide(paper: Callable) -> None
     unasked = Scenario.from_dict(data)
     np.testing.assert_array_equal(unasked.source_channels.rows, asked.source_channels.rows)
     np.testing.assert_array_equal(unasked.source_channels.strengths, asked.source_channels.strengths)
+    by_law = Scenario.from_dict(data | {"channel": data["channel"] | {"exponent": 2.6}}).source_channels
+    np.testing.assert_allclose(by_law.rows[:, EXPONENT], -0.6)
+    np.testing.assert_array_equal(by_law.strengths, unasked.source_channels.strengths)
+    np.testing.assert_array_equal(by_law.rows[:, BLOCKED], unasked.source_channels.rows[:, BLOCKED])

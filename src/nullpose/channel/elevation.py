@@ -1,7 +1,8 @@
 """Line of sight by elevation: its probability grows with the drone's elevation angle at the ground point.
 
 ``P = 1 / (1 + a exp(-b (theta - a)))``, theta in degrees. Source: Al-Hourani, Kandeepan and Lardner, "Optimal
-LAP altitude for maximum coverage", IEEE Wireless Communications Letters 2014. Losses are over free space.
+LAP altitude for maximum coverage", IEEE Wireless Communications Letters 2014. Losses are over free space, or
+over a power law of any other exponent.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.channel.convex import FloatArray
-from nullpose.channel.free_space import constant_channel
 from nullpose.channel.model import (
     AVERAGE,
     BY_ELEVATION,
@@ -24,7 +24,7 @@ from nullpose.channel.model import (
     LinkChannel,
     channel_row,
 )
-from nullpose.channel.power_law import distance_excess
+from nullpose.channel.power_law import distance_excess, power_law
 from nullpose.channel.profile import knots_of, log_gain
 
 
@@ -82,17 +82,26 @@ def elevation_excess(
 
 
 def elevation_channel(
-    a: float, b: float, los_loss_db: float, nlos_loss_db: float, average: str, is_interferer: bool = False
+    a: float,
+    b: float,
+    los_loss_db: float,
+    nlos_loss_db: float,
+    average: str,
+    exponent: float = 2.0,
+    reference_distance_m: float = 1.0,
+    is_interferer: bool = False,
 ) -> LinkChannel:
     """Return the mean channel of a link that has line of sight with the probability P.
 
     Args:
         a: of the probability, in degrees.
         b: of the probability, per degree.
-        los_loss_db: loss over free space with line of sight.
-        nlos_loss_db: loss over free space without.
+        los_loss_db: loss over the power law with line of sight.
+        nlos_loss_db: the same without.
         average: "power", the mean of the gains; "db", the mean of the losses in dB, as published; or
             "guaranteed", where interferers always have line of sight and all others never.
+        exponent: of the power law; 2 is free space.
+        reference_distance_m: of the power law.
         is_interferer: whether the link is that of a jammer or an eavesdropper.
 
     Example:
@@ -102,11 +111,14 @@ def elevation_channel(
         6.1133
     """
     seen, hidden = (10.0 ** (-loss_db / 10.0) for loss_db in (los_loss_db, nlos_loss_db))
+    law = power_law(exponent, reference_distance_m)
     if average == "guaranteed":
-        return constant_channel(seen if is_interferer else hidden)
+        return law._replace(strength=law.strength * (seen if is_interferer else hidden))
     kept = DB_AVERAGE if average == "db" else POWER_AVERAGE
     sight = math.log(a) + a * b, math.degrees(b), hidden / seen, kept
-    return LinkChannel(seen, channel_row(BY_ELEVATION, sight=sight), elevation_excess)
+    return LinkChannel(
+        law.strength * seen, channel_row(BY_ELEVATION, law.row[1:ONSET], sight), elevation_excess
+    )
 
 
 def with_profile(channel: LinkChannel, elevation_deg: ArrayLike, gain_dbi: ArrayLike) -> LinkChannel:
@@ -127,5 +139,6 @@ def with_profile(channel: LinkChannel, elevation_deg: ArrayLike, gain_dbi: Array
 ELEVATION = ChannelModel(
     "line of sight with a probability that grows with the elevation angle",
     elevation_channel,
-    dict.fromkeys(("a", "b", "los_loss_db", "nlos_loss_db")) | {"average": "power"},
+    dict.fromkeys(("a", "b", "los_loss_db", "nlos_loss_db"))
+    | {"average": "power", "exponent": 2.0, "reference_distance_m": 1.0},
 )

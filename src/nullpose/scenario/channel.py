@@ -32,8 +32,8 @@ class Channel(Section):
 
     Args:
         model: a key of ``CHANNELS``: free-space, power-law or elevation.
-        exponent: of a power law.
-        reference_distance_m: where a power law has the receiver's reference gain [m]; 1 if left out.
+        exponent: of the path loss, by a power law or by elevation.
+        reference_distance_m: where it has the receiver's reference gain [m]; 1 if left out.
         environment: a key of ``ENVIRONMENTS``; or else
         a, b, los_loss_db, nlos_loss_db: its numbers [deg, 1/deg, dB, dB].
         average: power, db or guaranteed.
@@ -59,15 +59,15 @@ class Channel(Section):
         ]
         | None
     ) = optional(
-        "Exponent of a power law: the gain is the reference gain times (distance / reference "
-        "distance)^-exponent.",
+        "Exponent of the path loss, of a power law and by elevation: the gain is the reference gain times "
+        "(distance / reference distance)^-exponent, and by elevation less the losses. There, left out: 2.",
         2.4,
     )
     reference_distance_m: (
         Annotated[float, Limits("a distance in m", 1e-3, 1e7, "where the reference gain holds; mostly 1")]
         | None
     ) = optional(
-        "The distance in metres at which a power law has the reference gain of [receiver]; at most the "
+        "The distance in metres at which that power law has the reference gain of [receiver]; at most the "
         "keep-out radius. Left out: 1.",
         1.0,
     )
@@ -86,8 +86,10 @@ class Channel(Section):
     b: (
         Annotated[float, Limits("a number per degree", 1e-3, 5.0, "0.43 is suburban, 0.08 high-rise")] | None
     ) = optional("The same: b, per degree.", 0.16)
-    los_loss_db: LossDecibels | None = optional("Loss over free space with line of sight, in dB.", 1.0)
-    nlos_loss_db: LossDecibels | None = optional("Loss over free space without line of sight, in dB.", 20.0)
+    los_loss_db: LossDecibels | None = optional(
+        "Loss with line of sight over free space, or over the power law, in dB.", 1.0
+    )
+    nlos_loss_db: LossDecibels | None = optional("The same without line of sight, in dB.", 20.0)
     average: Annotated[str, Choice("an average", AVERAGES)] | None = optional(
         'What counts of links with and without line of sight, for elevation: "power", the mean power; "db", '
         'the mean of the losses in dB, as published; or "guaranteed": nodes never have line of sight, and '

@@ -20,7 +20,11 @@ CHANNELS = {
     "power": SIGHT,
     "db": SIGHT | {"environment": "suburban", "average": "db"},
     "guaranteed": SIGHT | {"average": "guaranteed"},
+    "power of exponent 2.6": SIGHT | {"exponent": 2.6},
+    "db of exponent 1.7": SIGHT | {"environment": "suburban", "average": "db", "exponent": 1.7},
 }
+STILL = ("power", "db", "power of exponent 2.6", "db of exponent 1.7")
+"""Channels in which the drone's position is known."""
 
 
 def least_ratios(scene: Scenario, position: np.ndarray, errors: tuple[np.ndarray, ...]) -> np.ndarray:
@@ -38,7 +42,7 @@ def erring_scene(
     """Returns two nodes and two jammers in a channel, the second jammer with one of its own."""
     plain = random_scene(rng, 2, 2, 50.0, altitude_m=(30.0, 40.0))
     extent = float(rng.choice([0.0, 1.0, 4.0]))
-    position_m = 0.0 if channel in ("power", "db") else float(rng.choice([0.0, 0.3]))
+    position_m = 0.0 if channel in STILL else float(rng.choice([0.0, 0.3]))
     scene = erring(plain, attitude_deg=float(rng.choice([0.0, 3.0])), position_m=position_m, extent_m=extent)
     jammers = scene.to_dict()["jammers"]
     jammers[1] |= {"channel": str(rng.choice(["free-space", "high-rise"]))}

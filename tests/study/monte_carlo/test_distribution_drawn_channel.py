@@ -40,6 +40,8 @@ def test_numbers_and_names_are_drawn_as_stated(spec: Spec) -> None:
     """An exponent evenly between its ends, each environment as often as another."""
     exponents = [channel.exponent for channel in _channels(spec, 400, **LAW)]
     assert stats.kstest((np.array(exponents) - 2.0) / 1.5, "uniform").pvalue > 0.01
+    in_towns = [channel.exponent for channel in _channels(spec, 400, **TOWNS, exponent=LAW["exponent"])]
+    assert in_towns == exponents
     names, counts = np.unique(
         [channel.environment for channel in _channels(spec, 400, **TOWNS)], return_counts=True
     )
