@@ -52,6 +52,10 @@ from .solver import (
 )
 from .solver.certificate_from_proof import certificate_of as certificate_of
 from .solver.robust import guarantee as guarantee
+from .solver.trajectory import (
+    Trajectory as Trajectory,
+    solve_trajectory as solve_trajectory,
+)
 from .studio.exports import (
     show as show,
 )

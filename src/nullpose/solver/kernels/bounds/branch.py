@@ -40,7 +40,7 @@ from nullpose.solver.kernels.bounds.node import (
     split_axis,
     split_position,
 )
-from nullpose.solver.kernels.bounds.records import Workspace
+from nullpose.solver.kernels.bounds.records import Goal, Workspace
 from nullpose.solver.kernels.bounds.sight import hidden_nowhere, in_sight
 from nullpose.solver.kernels.bounds.signed_sum import fill_sum, touch
 from nullpose.solver.kernels.compiler.jit import (
@@ -69,6 +69,7 @@ _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split un
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
 _APART_M = 1e-3
+_FAINTEST = 1e-290  # a level that nothing is below
 _POINT_M = 1e-7  # half diagonal of boxes that wait until no other is left: on a border they may have no end
 
 
@@ -333,9 +334,20 @@ def halve(stack, place, top):
     split_across(stack[place], CENTRE + side, HALF + side, stack[place], stack[top])
 
 
+@rare_kernel
+def priced(level, best, price, row):
+    """Return the level that no position of a box needs at its price, and the best at its centre."""
+    offered, spread, offset = 0.0, 0.0, price[6]
+    for i in range(3):
+        offered += price[i] * (row[CENTRE + i] - price[3 + i])
+        spread += abs(price[i]) * row[HALF + i]
+    needed = (offset + level) * math.exp(-offered - spread) - offset
+    return max(needed, _FAINTEST), max((offset + best) * math.exp(-offered) - offset, _FAINTEST)
+
+
 @heap_kernel
 def branch(
-    family, domain, axis_field, level, goal, stack, top, leaves, filled, most, better_p, better_u
+    family, domain, axis_field, level, run_goal, stack, top, leaves, filled, most, better_p, better_u
 ):  # fmt: skip
     """Work off the stack at one level until it is empty or a limit is met.
 
@@ -344,7 +356,7 @@ def branch(
         domain: the positions.
         axis_field: the axes.
         level: the ratio to exclude.
-        goal: what the run is after.
+        run_goal: what the run is after.
         stack: (s, COLUMNS) boxes still to do.
         top: how many there are.
         leaves: (l, COLUMNS) output, excluded boxes.
@@ -358,6 +370,7 @@ def branch(
     """
     workspace, row, axis = workspace_of(family), scratch(COLUMNS), zeroed(3)
     boxes = sought = aside = 0
+    goal = run_goal
     has_shadows = family.shadow_sides.shape[0] > 0
     while top > aside or (top > 0 and not has_shadows):
         if boxes >= most:
@@ -371,6 +384,9 @@ def branch(
         aside = min(aside, top)
         copy_into(stack[top], row)
         row[LEVEL] = level
+        if run_goal.price.shape[0] > 0:
+            row[LEVEL], best = priced(level, run_goal.best, run_goal.price, row)
+            goal = Goal(best, run_goal.multipliers, run_goal.spare, run_goal.price)
         seen, hidden, verdict = -1, 0, EXCLUDED
         while True:  # as it is; then, where some interferers are never hidden together, with each in sight
             found, side, new = examine(family, domain, axis_field, goal, seen, row, workspace, axis)

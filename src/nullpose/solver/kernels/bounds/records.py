@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from nullpose.objectives import FloatArray
 
 WORLD = 0
@@ -35,11 +37,14 @@ class Goal(NamedTuple):
         best: the incumbent's smallest ratio; a box's centre that beats it ends the call.
         multipliers: a row with the multipliers at the incumbent, which are tried on every box.
         spare: by how much of a box's size multipliers must exclude its centre, so that its axes stay whole.
+        price: (7,) a vector c, a place q and a number a where ``log(a + ratio) + c . (p - q)`` is maximised;
+            (0,) otherwise.
     """
 
     best: float
     multipliers: FloatArray
     spare: float
+    price: FloatArray = np.zeros(0)
 
 
 class Workspace(NamedTuple):

@@ -1,0 +1,176 @@
+"""The search for a trajectory, and simpler flights to compare it with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from nullpose.errors import SolveError
+from nullpose.objectives import FloatArray
+from nullpose.solver.trajectory.climb import Climb
+from nullpose.solver.trajectory.course import Course, likely_poses
+from nullpose.solver.trajectory.lattice import INSIDE, Lattice
+from nullpose.solver.trajectory.segments import half_spaces
+
+_STRIDES = 1.5, 2.5  # of the lattice's step
+_BARRIERS = {True: (1e-2, 1e-3), False: (1e-1, 1e-2)}  # by whether the worst instant counts: for all its rows
+_ROUGH, _END = 1e-3, {True: 3e-7, False: 3e-6}
+_FINISHED = 2  # of the rough climbs, the best
+_AT_REST_M_S = 1e-4
+_MARGIN = 1e-3  # of the airspace's height that starts keep from its floor, at most 1 cm
+_MARGIN_M = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """A flight: where the vehicle is, and how it is turned.
+
+    Args:
+        poses: (t, 6) positions and axes.
+        logs: (t,) log ratios there, by the physics.
+        score: what is maximised, nats.
+        prices: (t - 1, 3) multipliers of the speed limit, of one that a climb led to.
+        multipliers: of the ratios at each instant, likewise.
+    """
+
+    poses: FloatArray
+    logs: FloatArray
+    score: float
+    prices: FloatArray | None = None
+    multipliers: list[FloatArray] | None = None
+
+
+def flight_of(course: Course, poses: FloatArray, climb: Climb | None = None) -> Flight:
+    """Evaluate the flight of poses, (t, 6), by the physics."""
+    logs = course.logs(poses)
+    multipliers = () if climb is None else (climb.prices(), climb.multipliers())
+    return Flight(poses, logs, course.aim.score(logs), *multipliers)
+
+
+def climbed(course: Course, positions_m: FloatArray, mu: float) -> Flight:
+    """Return the flight that a climb from positions, (t, 3), leads to."""
+    climb = Climb(course, inside(course, positions_m))
+    return flight_of(course, climb.run(mu, _END[course.aim.is_worst]), climb)
+
+
+def best_flight(course: Course, places_m: FloatArray) -> tuple[Flight, Lattice]:
+    """Search for the best trajectory: paths over a lattice, and climbs from them.
+
+    Args:
+        course: the problem.
+        places_m: (t, 3) the best position at each instant, if the vehicle could be anywhere.
+
+    Raises:
+        SolveError: none was found.
+    """
+    lattice, is_worst = Lattice.around(course, places_m), course.aim.is_worst
+    paths = [lattice.best_path(worst, strides) for worst in (True, False) for strides in _STRIDES]
+    slower = replace(course, speed_max_m_s=INSIDE * course.speed_max_m_s)
+    paths.append(greedy(slower, places_m).poses[:, :3])
+    climbs = [
+        (Climb(course, poses), mu)
+        for poses in (inside(course, path) for path in _distinct(paths))
+        if is_clear(course, poses[:, :3])
+        for mu in _BARRIERS[is_worst]
+    ]
+    rough = [(climb, climb.run(mu, _ROUGH)) for climb, mu in climbs]
+    found = [(course.aim.score(course.logs(poses)), i) for i, (_, poses) in enumerate(rough)]
+    finished = [
+        flight_of(course, rough[i][0].run(_ROUGH, _END[is_worst]), rough[i][0])
+        for _, i in sorted(found, reverse=True)[:_FINISHED]
+    ]
+    best = max(finished, key=lambda each: each.score, default=None)
+    if best is None or not best.score > -np.inf:
+        raise SolveError(
+            "no trajectory was found that keeps to the airspace and the speed; raise "
+            "airframe.speed_max_m_s, or widen the airspace"
+        )
+    return best, lattice
+
+
+def hovering(course: Course, lattice: Lattice) -> Flight | None:
+    """Return the best flight that stays in one place and turns; None where none was found."""
+    if any(each is not None for each in course.ends_m):
+        return None
+    held = replace(course, speed_max_m_s=_AT_REST_M_S)
+    place_m = lattice.best_place(course.aim.is_worst)
+    poses = inside(held, np.tile(place_m, (len(course.times_s), 1)))
+    if not is_clear(course, poses[:, :3]):
+        return None
+    is_worst = course.aim.is_worst
+    poses = Climb(held, poses).run(_BARRIERS[is_worst][0], _END[is_worst])
+    return flight_of(course, _posed(course, np.tile(poses[:, :3].mean(axis=0), (len(poses), 1))))
+
+
+def greedy(course: Course, places_m: FloatArray) -> Flight:
+    """Return the flight towards the best position of each instant, (t, 3), as far as the speed lets it.
+
+    Where something is in the way it waits.
+    """
+    start_m, end_m = course.ends_m
+    flown = [places_m[0] if start_m is None else start_m]
+    left_m = np.append(np.cumsum(course.reach_m[::-1])[::-1], 0.0)
+    for t, reach_m in enumerate(course.reach_m):
+        goal_m = places_m[t + 1]
+        if end_m is not None and np.linalg.norm(flown[-1] - end_m) > left_m[t + 1] - reach_m:
+            goal_m = end_m
+        way_m = goal_m - flown[-1]
+        moved = flown[-1] + min(1.0, reach_m / max(1e-12, float(np.linalg.norm(way_m)))) * way_m
+        pair = np.array([flown[-1], moved])
+        flown.append(moved if is_clear(course, pair, t) else flown[-1])
+    return flight_of(course, _posed(course, np.array(flown)))
+
+
+def seeing_ahead(course: Course, window_s: float, start: Flight) -> Flight:
+    """Return the flight that plans anew at each instant, for what it sees of the time to come.
+
+    Args:
+        course: the problem.
+        window_s: how far ahead motions are known.
+        start: a flight of which the first pose is the start.
+    """
+    poses = inside(course, np.tile(start.poses[0, :3], (len(course.times_s), 1)))
+    for t in range(len(poses) - 1):
+        last = int(np.searchsorted(course.times_s, course.times_s[t] + window_s, side="right"))
+        part = course.part(t, max(last, t + 2), poses[t, :3])
+        ahead = inside(part, np.tile(poses[t, :3], (len(part.times_s), 1)))
+        poses[t + 1] = Climb(part, ahead).run(_BARRIERS[False][1], _ROUGH)[1]
+    return flight_of(course, poses)
+
+
+def is_clear(course: Course, positions_m: FloatArray, first: int = 0) -> bool:
+    """Check that straight segments keep to the airspace and clear of every point.
+
+    Args:
+        course: the problem.
+        positions_m: (n, 3) at n instants.
+        first: index of the first of them.
+    """
+    families = course.families[first : first + len(positions_m)]
+    domain, points_m = families[0].domain, np.stack([each.ratios.points_m for each in families])
+    inside = np.all((positions_m >= domain.low_m - 1e-9) & (positions_m <= domain.high_m + 1e-9))
+    spaces = half_spaces(
+        domain, positions_m[:-1], positions_m[1:], points_m[:-1], points_m[1:], domain.keep_out_m
+    )
+    return bool(inside and np.all(spaces.slacks_m >= -1e-9))
+
+
+def _distinct(paths: list[FloatArray]) -> list[FloatArray]:
+    return [path for i, path in enumerate(paths) if not any(np.array_equal(path, each) for each in paths[:i])]
+
+
+def _posed(course: Course, positions_m: FloatArray) -> FloatArray:
+    axes = [likely_poses(course, t, np.array(place_m[None]))[0][0] for t, place_m in enumerate(positions_m)]
+    return np.hstack([positions_m, axes])
+
+
+def inside(course: Course, positions_m: FloatArray) -> FloatArray:
+    """Return poses strictly inside the faces of the airspace, but for a start or an end that is given."""
+    domain = course.families[0].domain
+    size_m = domain.high_m - domain.low_m
+    margin_m = np.where(size_m > 1e-9, np.minimum(_MARGIN_M, _MARGIN * size_m), 0.0)
+    positions_m = np.clip(positions_m, domain.low_m + margin_m, domain.high_m - margin_m)
+    for t, end_m in ((0, course.ends_m[0]), (-1, course.ends_m[1])):
+        positions_m[t] = positions_m[t] if end_m is None else end_m
+    return _posed(course, positions_m)
