@@ -28,9 +28,17 @@ def test_every_page_is_in_the_overview() -> None:
 
 @pytest.mark.parametrize("page", [page for page, text in PAGES.items() if "```python" in text])
 def test_snippets_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the paper's scene as ``scenario`` each snippet of a page runs, from top to bottom."""
+    """With the paper's scene as ``scenario``, and one in motion, each snippet of a page runs, from top to bottom."""
     scenario = nullpose.load(ROOT / "examples" / "paper.toml")
-    names = {"nullpose": nullpose, "Path": Path, "scenario": scenario, "scenarios": [scenario]}
+    vehicle = ["airframe.preset=omnidirectional", "airframe.speed_max_m_s=5", "time.step_s=10"]
+    moving = nullpose.load(ROOT / "examples" / "moving_jammer.toml", overrides=vehicle)
+    names = {
+        "nullpose": nullpose,
+        "Path": Path,
+        "scenario": scenario,
+        "scenarios": [scenario],
+        "moving": moving,
+    }
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.toml").write_text("nodes = 1\n", encoding="utf-8")
     for snippet in re.findall(r"```python\n(.*?)```", PAGES[page], flags=re.DOTALL):
