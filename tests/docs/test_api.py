@@ -28,7 +28,7 @@ def test_every_page_is_in_the_overview() -> None:
 
 @pytest.mark.parametrize("page", [page for page, text in PAGES.items() if "```python" in text])
 def test_snippets_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the paper's scene as ``scenario``, and one in motion, each snippet of a page runs, from top to bottom."""
+    """With the paper's scene, and one in motion, each snippet of a page runs, from top to bottom."""
     scenario = nullpose.load(ROOT / "examples" / "paper.toml")
     vehicle = ["airframe.preset=omnidirectional", "airframe.speed_max_m_s=5", "time.step_s=10"]
     moving = nullpose.load(ROOT / "examples" / "moving_jammer.toml", overrides=vehicle)
