@@ -20,8 +20,8 @@ from nullpose.solver.trajectory.search import Flight
 _OPTIMUM_GAP = 1e-3  # of the best at one instant, where the gap asked for is not finer
 _SHARE = 0.1  # of the gap asked for, at an instant
 _LEAST_WEIGHT = 1e-2  # of an instant that counts, over the largest
-_PARTS = 32  # of one box, at most
-_MOST_BOXES = 8_000  # at one instant
+_PARTS = 16  # of one box, at most, and room
+_MOST_BOXES = 20_000  # at one instant
 _TRIES = 6  # levels between the best trajectory and the best at each instant
 
 
@@ -101,10 +101,13 @@ class KeyInstants:
         while all(len(each) for each in boxes):
             if limit_clock() > deadline:
                 return False
-            # the instant with the largest boxes is next
-            sizes = [float(np.max(each[:, HALF : HALF + 3])) * len(each) ** (1 / 3) for each in boxes]
+            # the instant with the largest boxes is next, of those that have not too many
+            sizes = [
+                float(np.max(each[:, HALF : HALF + 3])) * len(each) ** (1 / 3) * (len(each) < _MOST_BOXES)
+                for each in boxes
+            ]
             which = int(np.argmax(sizes))
-            if len(boxes[which]) > _MOST_BOXES:
+            if not sizes[which] > 0.0:
                 return False
             boxes[which] = self._sifted(which, log_level, boxes[which])
             self._drop_unreachable(boxes, which)

@@ -361,7 +361,7 @@ def branch(
         top: how many there are.
         leaves: (l, COLUMNS) output, excluded boxes.
         filled: how many leaves there are already.
-        most: boxes to work off at most.
+        most: boxes to work off at most; of a run of one the parts are halves.
         better_p: output, (3,): position of a pose that beats the incumbent, or of the last box at the limit.
         better_u: output, (3,): its axis; zero if there is none, or the position is not allowed.
 
@@ -417,7 +417,7 @@ def branch(
             copy_into(stack[aside], stack[top])
             copy_into(row, stack[aside])
             aside, top = aside + 1, top + 1
-        elif verdict == FORESEEN:
+        elif verdict == FORESEEN and most > 1:
             top = split_foreseen(row, side, workspace, has_horizontal_axes(axis_field), stack, top)
         else:
             top = split_position(row, side, stack, top)
