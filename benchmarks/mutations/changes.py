@@ -139,7 +139,21 @@ _ROOT = ("leaves exchanged", "root shrunk", "root grown")
 _NUMBERS = ("bound lowered", "bound at the value", "bound raised", "claim scaled", "levels lowered")
 _MIXES = ("multipliers scaled", "multipliers exchanged")
 _POSES = ("pose moved, claim redone", "pose turned, claim redone")
-MORE = (*_LEAVES, *_ROOT, *_NUMBERS, *_MIXES, *_POSES, "key added", "key dropped", "no number", "several")
+_MOTION = ("track moved, claim redone", "time changed, claim redone")
+HELD = ("instant changed", "instant dropped", "instant doubled", "instants exchanged", *_MOTION)
+"""Classes of changes to the certificate of a pose that is held in a scene in motion."""
+MORE = (
+    *_LEAVES,
+    *_ROOT,
+    *_NUMBERS,
+    *_MIXES,
+    *_POSES,
+    *HELD,
+    "key added",
+    "key dropped",
+    "no number",
+    "several",
+)
 """Classes of larger changes, many of them such as leave the claim true or nearly."""
 _AFTER_EACH_OTHER = MORE[:-3]
 
@@ -156,6 +170,7 @@ def mutated(sound: Data, kind: str, rng: np.random.Generator) -> Data | None:
         _change_leaves(kind, tree["leaves"], rng)
         _change_root(kind, tree, rng)
         _change_claim(kind, data, rng)
+        _change_motion(kind, data, rng)
         _change_form(kind, data, tree["leaves"], rng)
     else:
         data = spoiled(sound, kind, rng) or sound
@@ -233,6 +248,30 @@ def _change_claim(kind: str, data: Data, rng: np.random.Generator) -> None:
         data["pose"][angle] += _size(rng) * float(rng.normal())
     for tree in data["trees"]:  # so that the change is not found out by a comparison
         tree["leaves"]["level"] = [min(level, data["upper_bound"]) for level in tree["leaves"]["level"]]
+
+
+def _change_motion(kind: str, data: Data, rng: np.random.Generator) -> None:
+    instants, scenario = data.get("instants"), data["scenario"]
+    if kind not in HELD or not instants or scenario.get("time") is None:
+        return
+    one, other = (int(place) for place in rng.integers(len(instants), size=2))
+    points = [*scenario.get("jammers", []), *scenario.get("eavesdroppers", [])]
+    if kind == "instant changed":
+        instants[one] += int(rng.integers(-3, 4))
+    elif kind == "instant dropped":
+        del instants[one]
+    elif kind == "instant doubled":
+        instants.insert(other, instants[one])
+    elif kind == "instants exchanged":
+        instants[one], instants[other] = instants[other], instants[one]
+    elif kind == "track moved, claim redone":
+        track = next(point["track"] for point in points if point.get("track"))
+        track[int(rng.integers(len(track)))][1 + int(rng.integers(3))] += (
+            20.0 * _size(rng) * float(rng.normal())
+        )
+    elif kind == "time changed, claim redone":
+        scenario["time"][str(rng.choice(["duration_s", "step_s"]))] *= 1.0 - _size(rng)
+    data["scenario_sha256"] = scenario_digest(scenario)
 
 
 def _change_form(kind: str, data: Data, leaves: Data, rng: np.random.Generator) -> None:

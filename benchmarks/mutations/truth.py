@@ -8,16 +8,20 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.soundness.search import best_value
+from benchmarks.soundness.search import best_value, ground_of
 from nullpose.channel import PointChannels, excess_gain
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, Reception, maximum_gain_axis, objective_value, zero_interference_axis
+from nullpose.problem.instants import still_scenes
 from nullpose.scenario import Scenario
 from nullpose.scenario.polygon import depth_m
 
 Data = dict[str, Any]
 
-_STARTS = 200  # random walks of a search
+_STARTS, _STARTS_HELD = (
+    200,
+    50,
+)  # random walks of a search; of a pose at several instants, each of which counts
 _ROUNDING = 1e-9
 
 
@@ -109,6 +113,8 @@ class Problem:
 
 def value_at(scenario: Scenario, pose: Pose) -> float:
     """Return what a certificate's value states of a pose: a ratio, the smallest or the mean."""
+    if scenario.time is not None:
+        return min(value_at(scene, pose) for scene in still_scenes(scenario))
     received = Reception(scenario, pose.position_m, pose.orientation(scenario.antenna_record))
     if scenario.objective == "sum-rate":
         return float(np.exp(np.average(np.log1p(received.sinr), weights=weights_of(scenario))))
@@ -131,6 +137,8 @@ def misses(scenario: Scenario, pose: Pose) -> bool:
     """Check whether a node has less than it requires, where a sum or a mean is maximised."""
     if scenario.objective not in ("sum-rate", "proportional-fair"):
         return False
+    if scenario.time is not None:
+        return any(misses(scene, pose) for scene in still_scenes(scenario))
     orientation = pose.orientation(scenario.antenna_record)
     required_db = [-np.inf if node.min_sinr_db is None else node.min_sinr_db for node in scenario.nodes]
     with np.errstate(divide="ignore"):
@@ -140,6 +148,7 @@ def misses(scenario: Scenario, pose: Pose) -> bool:
 
 def allowed_axes(data: Data, scenario: Scenario) -> dict[str, Any]:
     """Return the names and axes, functions of the position, that the scheme allows; None is any axis."""
+    scenario = scenario.still()  # the axes alone do not move
     jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
     null, band = data["null_jammer"], scenario.axis_band
     if null is not None and data["scheme"] != "zero-interference":
@@ -167,7 +176,7 @@ def claim_fault(data: Data, scenario: Scenario) -> str:
     airframe, pose = scenario.airframe, pose_of(data, scenario)
     if scenario.airspace.clearance_m(pose.position_m) < -2e-9:
         return "pose outside"
-    points_m = np.array([point.position_m for point in scenario.points])
+    points_m = np.vstack([ground_of(scene) for scene in still_scenes(scenario)])
     if np.min(np.linalg.norm(points_m - pose.position_m, axis=1)) < scenario.airspace.keep_out_m - 1e-6:
         return "pose kept out"
     if airframe is not None and pose.tilt_rad > airframe.tilt_max_rad + 2e-9:
@@ -221,7 +230,7 @@ class Truth:
             found = best_value(
                 scenario,
                 data["scheme"],
-                starts=_STARTS,
+                starts=_STARTS if scenario.time is None else _STARTS_HELD,
                 seed=len(self._best),
                 near=(pose.position_m, orientation),
                 null_jammer=data["null_jammer"],

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from nullpose.physics import allowed_value
+from nullpose.problem.instants import still_scenes
 from nullpose.scenario import Scenario
 
 FloatArray = NDArray[np.float64]
@@ -82,21 +83,22 @@ def best_value(
     """Return the best that many random walks make of what the scenario asks for.
 
     Half of the walks begin anywhere, half near a given pose: a bound that is too low by little would be
-    exceeded there first. Each walk tries a random change and keeps it if it is better; changes shrink.
+    exceeded there first. In a scene in motion the smallest over all instants counts. Each walk tries a
+    random change and keeps it if it is better; changes shrink.
     """
-    rng = np.random.default_rng(seed)
-    ground = ground_of(scenario)
+    rng, scenes = np.random.default_rng(seed), still_scenes(scenario)
+    ground = np.vstack([ground_of(scene) for scene in scenes])
     far_m = max(_FAR_M, 2.0 * abs(scenario.airspace.lower_m[2]))
     low = np.maximum(scenario.airspace.lower_m, ground.min(axis=0) - far_m)
     high = np.minimum(scenario.airspace.upper_m, ground.max(axis=0) + far_m)
     return max(
-        _walks(scenario, axis, rng, starts, np.array([low, high]), near, far_m * _FIRST_STEP)
-        for axis in axes_of(scenario, scheme, null_jammer)
+        _walks(scenes, axis, rng, starts, np.array([low, high]), near, far_m * _FIRST_STEP)
+        for axis in axes_of(scenes[0], scheme, null_jammer)
     )
 
 
 def _walks(
-    scenario: Scenario,
+    scenes: list[Scenario],
     axis: Callable[[FloatArray, FloatArray], FloatArray],
     rng: np.random.Generator,
     starts: int,
@@ -107,11 +109,12 @@ def _walks(
     def values(p: FloatArray, u: FloatArray) -> FloatArray:
         directions = axis(p, u)
         length = np.linalg.norm(directions, axis=1, keepdims=True)
-        allowed = feasible(scenario, p) & (length[:, 0] > 1e-9)
+        allowed = (length[:, 0] > 1e-9) & np.logical_and.reduce([feasible(scene, p) for scene in scenes])
         out = np.full(len(p), -np.inf)
         if np.any(allowed):
             unit = directions[allowed] / length[allowed]
-            out[allowed] = allowed_value(scenario, p[allowed], _orientations(unit))
+            turned = _orientations(unit)
+            out[allowed] = np.min([allowed_value(scene, p[allowed], turned) for scene in scenes], axis=0)
         return out
 
     p = rng.uniform(bounds_m[0], bounds_m[1], size=(starts, 3))

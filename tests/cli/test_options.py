@@ -109,7 +109,22 @@ def test_one_pose_is_held_for_all_instants(run: Run) -> None:
     assert found["objective"]["value"] == min(found["hover"]["value"])
     assert found["scenario"]["at_s"] == found["hover"]["worst_s"]
     assert found["status"] == "certified"
-    for words in (("--at", 3), ("--verify",), ("--robust",), ("--scheme", "vertical")):
+    for words in (("--at", 3), ("--robust",), ("--scheme", "vertical")):
         done = run("solve", MOVING, "--hover", *words)
         assert done.exit_code == 2
         assert "with --hover" in done.stderr
+    assert "with --fast" in run("solve", MOVING, "--hover", "--fast", "--verify").stderr
+
+
+def test_a_held_pose_has_a_certificate(run: Run, tmp_path: Path) -> None:
+    """It is about the scene in motion, and not about one of its instants."""
+    scene, proof = tmp_path / "scene.toml", tmp_path / "proof.json.gz"
+    text = Path(MOVING).read_text(encoding="utf-8").replace("step_s = 1.0", "step_s = 10.0")
+    scene.write_text(text + "\n[airframe]\ntilt_max_deg = 0.0\n", encoding="utf-8")
+    found = json.loads(run("solve", scene, "--hover", "--certificate", proof, "--json").stdout)
+    assert found["rigour"] == "verified"
+    done = run("verify", proof, "--scenario", scene)
+    assert done.exit_code == 0
+    assert "at all 7 instants" in " ".join(done.stdout.split())
+    assert "nothing differs" in done.stdout
+    assert run("verify", proof, "--scenario", MOVING).exit_code == 1

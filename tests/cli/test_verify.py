@@ -13,7 +13,8 @@ Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
 
 CHECKED = ("proved", "message", "leaves")
-SUBJECT = ("name", "scenario_sha256", "scheme", "null_jammer", "value", "upper_bound", "antenna", "scenario")
+CLAIM = ("scheme", "null_jammer", "value", "upper_bound", "instants")
+SUBJECT = ("name", "scenario_sha256", *CLAIM, "antenna", "scenario")
 
 
 @pytest.fixture

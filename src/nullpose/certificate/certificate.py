@@ -12,6 +12,7 @@ from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.schemes import RECORDS
+from nullpose.problem.schemes.optimum import OPTIMUM
 from nullpose.scenario import Scenario
 
 WORLD = 0  # any axis, in the world frame
@@ -128,14 +129,16 @@ class Certificate:
         scenario: what the claim is about.
         scheme: the case: which axes are allowed.
         null_jammer: zero interference only: the one jammer that was to be nulled, or None for any of them.
-        value: the smallest ratio at the pose: an SINR, a margin where nodes state weights or requirements,
-            or, for the secrecy rate, two to the power of it.
+        value: the smallest ratio at the pose, over all instants of a scene in motion: an SINR, a margin where
+            nodes state weights or requirements, or, for the secrecy rate, two to the power of it.
         upper_bound: no allowed pose has its smallest ratio above it.
         position_m: (3,) the pose's position, metres, ENU.
         roll_rad: its roll.
         pitch_rad: its pitch.
         yaw_rad: its yaw.
         trees: one for each axis field of the scheme.
+        instants: of a scene in motion, in which the pose is held: the instants whose ratios the trees are
+            about, counted from 0 over those of the scenario, in the order of the ratios.
         provenance: what produced it; not part of the claim.
     """
 
@@ -149,6 +152,7 @@ class Certificate:
     pitch_rad: float
     yaw_rad: float
     trees: tuple[Tree, ...]
+    instants: tuple[int, ...] = ()
     provenance: Mapping[str, object] = field(default_factory=dict)
 
 
@@ -163,6 +167,8 @@ def claimed_axes(scenario: Scenario, scheme: str, null_jammer: str | None) -> Ma
         null_jammer: for a scheme that nulls a jammer: which, or None for any.
     """
     if (record := RECORDS.get(scheme)) is None or (null_jammer is not None and not record.nulls_a_jammer):
+        return None
+    if scenario.time is not None and record is not OPTIMUM:  # whose axes alone do not move with the points
         return None
     if (antenna := scenario.antenna_record).is_quadratic:
         return record.fields(scenario, null_jammer)

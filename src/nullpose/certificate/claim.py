@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -43,7 +43,7 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
 
     Args:
         certificate: what it states.
-        family: its scenario's ratios.
+        family: its scenario's ratios, at any instant if there are several.
         fields: the axis fields that its scheme needs a tree for, None if there are none.
     """
     if fields is None:
@@ -51,15 +51,23 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
         return f"scheme {certificate.scheme!r} {with_jammer}has no certificate in this scenario"
     needed, named = sorted(fields), sorted(tree.axis for tree in certificate.trees)
     value, bound = certificate.value, certificate.upper_bound
+    time, listed = certificate.scenario.time, certificate.instants
+    count = 0 if time is None else len(time.instants_s)
+    is_mean = len(family.ratios.pairs) + len(family.ratios.shares) > 0
     faults = {
+        f"it must list instants of its scenario, each once: there are {count}": (
+            bool(listed) != (count > 0) or sorted({*listed} & {*range(count)}) != sorted(listed)
+        ),
+        "a scene in motion has certificates for the smallest ratio of a dipole only": (
+            count > 0 and (is_mean or not certificate.scenario.antenna_record.is_quadratic)
+        ),
         "there are no certificates of robust poses": len(family.ratios.turn) > 0,
         "there are no certificates of scenes with buildings yet": len(family.ratios.shadow_sides) > 0,
         "antennas with a pattern have certificates in free space only": (
             len(family.ratios.channels) > 0 and not certificate.scenario.antenna_record.is_quadratic
         ),
         f"the objective {certificate.scenario.objective} has certificates for a dipole only": (
-            max(len(family.ratios.pairs), len(family.ratios.shares)) > 0
-            and not certificate.scenario.antenna_record.is_quadratic
+            is_mean and not certificate.scenario.antenna_record.is_quadratic
         ),
         "antennas with a pattern have certificates without dipoles on the ground only": (
             len(family.ratios.ground_axes) > 0 and not certificate.scenario.antenna_record.is_quadratic
@@ -71,12 +79,18 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
     return next((words for words, is_so in faults.items() if is_so), "")
 
 
-def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, AxisField]) -> str:
+def pose_fault(
+    certificate: Certificate,
+    scenes: Sequence[Scenario],
+    families: Sequence[Family],
+    fields: Mapping[str, AxisField],
+) -> str:
     """Find a reason why a pose is not allowed or its value not the stated one; an empty string if none.
 
     Args:
         certificate: with pose and value.
-        family: its scenario's ratios.
+        scenes: its scenario at every instant; a still one alone.
+        families: the ratios of each.
         fields: the axis fields of its scheme.
     """
     attitude_rad = (certificate.roll_rad, certificate.pitch_rad, certificate.yaw_rad)
@@ -86,18 +100,20 @@ def pose_fault(certificate: Certificate, family: Family, fields: Mapping[str, Ax
     position = exact(certificate.position_m)
     axis = antenna_axis(attitude_rad, 0.0 if airframe is None else airframe.mount_rad)
     fault = (
-        _place_fault(certificate.scenario, certificate.position_m)
+        next(filter(None, (_place_fault(scene, certificate.position_m) for scene in scenes)), "")
         or _axis_fault(fields, position, axis)
         or _tilt_fault(airframe, attitude_rad)
     )
     if fault:
         return f"pose: {fault}"
-    gains = excess_at(family.ratios, position)
-    ratios = ratios_at(family.ratios, position, axis, *profiles_of(fields), gains=gains)
-    least = exact(family.ratios.requirements) * (1 - Fraction(VALUE_RTOL))
-    for k in np.flatnonzero(ratios[: len(least)] < least):
-        return f"pose: {certificate.scenario.nodes[k].name} misses its min_sinr_db"
-    value = value_of(family.ratios, ratios)
+    values = []
+    for ratios in (family.ratios for family in families):
+        reached = ratios_at(ratios, position, axis, *profiles_of(fields), gains=excess_at(ratios, position))
+        least = exact(ratios.requirements) * (1 - Fraction(VALUE_RTOL))
+        for k in np.flatnonzero(reached[: len(least)] < least):
+            return f"pose: {certificate.scenario.nodes[k].name} misses its min_sinr_db"
+        values.append(value_of(ratios, reached))
+    value = min(values)
     if abs(value - Fraction(certificate.value)) > Fraction(VALUE_RTOL) * value:
         quantity = Quantity.of(certificate.scenario)
         kind = "mean" if quantity.whole else "smallest"

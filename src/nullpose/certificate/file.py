@@ -23,7 +23,7 @@ from nullpose.scenario import Scenario
 from nullpose.scenario.faults import printable
 
 FORMAT = "nullpose-certificate"
-VERSION = 2
+VERSION = 3
 
 _GZIP_MAGIC = b"\x1f\x8b"
 _GZIP = 31  # for zlib: a header and a checksum as gzip writes them
@@ -123,6 +123,7 @@ def certificate_text(certificate: Certificate) -> str:
             }
             for tree in certificate.trees
         ],
+        "instants": list(certificate.instants),
         "provenance": dict(certificate.provenance),
     }
     return _lines(data, 0) + "\n"
@@ -177,6 +178,7 @@ def parse_certificate(text: str) -> Certificate:
             Tree(axis=tree["axis"], root_m=tree["root_m"], leaves=Leaves(**tree["leaves"]))
             for tree in data["trees"]
         ),
+        instants=tuple(data["instants"].tolist()),
         **{key: data[key] for key in ("scheme", "null_jammer", "value", "upper_bound", "provenance")},
         **data["pose"],
     )
@@ -282,6 +284,7 @@ _LAYOUT: dict[str, Reader] = {
     "value": _numbers,
     "upper_bound": _numbers,
     "pose": partial(_read, layout=_POSE),
+    "instants": partial(_numbers, shape=(-1,), kind=int),
     "trees": _list_of(partial(_read, layout=_TREE)),
     "provenance": _table,
 }

@@ -12,6 +12,7 @@ from nullpose.certificate.file import scenario_digest
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.problem.build import build_family
+from nullpose.problem.instants import still_scenes
 from nullpose.problem.schemes import RECORDS
 from nullpose.scenario import Scenario
 
@@ -26,6 +27,7 @@ def subject(certificate: Certificate) -> PlainTable:
         "null_jammer": certificate.null_jammer,
         "value": certificate.value,
         "upper_bound": certificate.upper_bound,
+        "instants": list(certificate.instants),
         "antenna": certificate.scenario.antenna_record.label,
         "scenario": scenario,
     }
@@ -57,8 +59,11 @@ def _problem(scenario: Scenario) -> tuple[object, ...]:
     pattern = (
         None if scenario.antenna_record.is_quadratic else scenario.antenna
     )  # a dipole's is in the family
-    family = build_family(scenario, any_antenna=True, any_channel=True, any_objective=True)
-    return family.digest, scenario.objective, scenario.axis_band, reach, pattern
+    digests = [
+        build_family(scene, any_antenna=True, any_channel=True, any_objective=True).digest
+        for scene in still_scenes(scenario)
+    ]
+    return digests, scenario.objective, scenario.axis_band, reach, pattern
 
 
 def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:
@@ -75,11 +80,17 @@ def _values(value: object, path: str = "") -> Iterator[tuple[str, object]]:
 def sentence(certificate: Certificate, leaves: int) -> str:
     """State the claim of a certificate that was proved by so many leaves."""
     most, least, near = claim_numbers(certificate)
-    gives = Quantity.of(certificate.scenario).gives
     return (
-        f"proved: {claim_words(certificate)} above {most}, and the stated pose {gives} {least} "
+        f"proved: {claim_words(certificate)} above {most}, and the stated pose {gives(certificate)} {least} "
         f"or more, which is within {near} of it; {leaves} final boxes checked"
     )
+
+
+def gives(certificate: Certificate) -> str:
+    """State what a pose does to whom, and when."""
+    time = certificate.scenario.time
+    words = "" if time is None else f" at all {len(time.instants_s)} instants"
+    return Quantity.of(certificate.scenario).gives + words
 
 
 def claim_words(certificate: Certificate) -> str:
@@ -89,7 +100,7 @@ def claim_words(certificate: Certificate) -> str:
     quantity = Quantity.of(scenario)
     required = quantity.whole and any(node.min_sinr_db is not None for node in scenario.nodes)
     among = ", the two meeting every min_sinr_db," if required else ""
-    what = f"{axes}{among} {quantity.gives} {quantity.with_article}"
+    what = f"{axes}{among} {gives(certificate)} {quantity.with_article}"
     return f"in this scenario{_left_out(certificate)} no position{_places(certificate)} {what}"
 
 
@@ -110,7 +121,8 @@ def _places(certificate: Certificate) -> str:
     words = [f"{name} from {ends[0]!r} to {ends[1]!r} m" for name, ends in ranges.items() if ends]
     if inside:
         words.append(f"{inside} with a margin of {airspace.margin_m!r} m" if airspace.margin_m else inside)
-    words.append(f"at least {airspace.keep_out_m!r} m from every point on the ground")
+    always = " at every instant" if certificate.instants else ""
+    words.append(f"at least {airspace.keep_out_m!r} m from every point on the ground{always}")
     return f" {', '.join(words)},"
 
 

@@ -34,6 +34,7 @@ from nullpose.objectives.ratios import IntArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
+from nullpose.problem.instants import join_instants, still_scenes
 
 _CHUNK = 4096
 _CUT_AT_ONCE = 128
@@ -98,8 +99,9 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
 
     The pose must be allowed and have the value that is stated (exact arithmetic); the leaves must cover
     every position and axis that could exceed the bound, and each leaf's test must hold (outward-rounded
-    interval arithmetic). The scenario's units are converted to a family of ratios in double precision
-    before, by the function that the solver uses too: the claim is about those numbers.
+    interval arithmetic). In a scene in motion the value is the smallest over all instants, and the leaves
+    are about some of them: no pose has more at all. The scenario's units are converted to a family of ratios
+    in double precision before, by the function that the solver uses too: the claim is about those numbers.
 
     Args:
         certificate: what to check.
@@ -112,10 +114,16 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
         True
     """
     total = sum(len(tree.leaves) for tree in certificate.trees)
-    family = build_family(certificate.scenario, any_antenna=True, any_channel=True, any_objective=True)
+    scenes = still_scenes(certificate.scenario)
+    families = [
+        build_family(scene, any_antenna=True, any_channel=True, any_objective=True) for scene in scenes
+    ]
     fields = claimed_axes(certificate.scenario, certificate.scheme, certificate.null_jammer)
-    reason = claim_fault(certificate, family, fields) or pose_fault(certificate, family, fields or {})
-    done = 0
+    reason = claim_fault(certificate, families[0], fields)
+    reason = reason or pose_fault(certificate, scenes, families, fields or {})
+    family, done = families[0], 0
+    if certificate.instants and not reason:  # what some instants exclude, all do
+        family = join_instants(families, certificate.instants)
 
     def checked(leaves: int) -> None:
         if on_progress is not None:

@@ -135,11 +135,11 @@ def solve(
             export=exports if is_array else None,
             scheme=scheme is not Scheme.OPTIMUM,
             null_jammer=null_jammer,
-            certificate=certificate,
-            verify=verify,
+            certificate=None if hover else certificate,
+            verify=verify and not hover,
         )
-    elif fast:
-        refuse("with --fast, which proves nothing,", certificate=certificate, verify=verify)
+    if fast:
+        refuse("with --fast", certificate=certificate, verify=verify)
     if is_checked:
         require_certificate(scenario, scheme.value, null_jammer)
     note = ""

@@ -49,7 +49,8 @@ def verify(
     unlike: tuple[str, ...] = ()
     if scenario is not None:
         scene = load(scenario, allow_outside=allow_outside)
-        unlike = differences(certificate, scene.still(certificate.scenario.at_s if scene.time else None))
+        at_s = certificate.scenario.at_s if scene.time else None
+        unlike = differences(certificate, scene if certificate.instants else scene.still(at_s))
     with Ticker("checking leaves") as ticker:
         verdict = verify_certificate(certificate, on_progress=ticker)
     if json_output:
@@ -75,13 +76,12 @@ def verify(
 def _proved_view(certificate: Certificate, leaves: int) -> View:
     from rich.text import Text
 
-    from nullpose.certificate.subject import claim_numbers, claim_words, subject
-    from nullpose.objectives import Quantity
+    from nullpose.certificate.subject import claim_numbers, claim_words, gives, subject
     from nullpose.report.document import document, head, pairs
     from nullpose.report.numbers import capitalised
 
     most, least, near = claim_numbers(certificate)
-    gives = Quantity.of(certificate.scenario).gives
+    claim, what, instants = claim_words(certificate), gives(certificate), certificate.instants
     return document(
         head(certificate.scenario.name),
         Text("PROVED", style="bold green"),
@@ -92,9 +92,10 @@ def _proved_view(certificate: Certificate, leaves: int) -> View:
                 ("pose's value", least),
                 ("gap", near),
                 ("boxes checked", f"{leaves:,}"),
+                *([("instants", f"{len(instants)} in the proof")] if instants else []),
                 ("scheme", certificate.scheme),
                 ("SHA-256", subject(certificate)["scenario_sha256"]),
             ],
         ),
-        capitalised(f"{claim_words(certificate)} above the bound. The stated pose {gives} the pose's value."),
+        capitalised(f"{claim} above the bound. The stated pose {what} the pose's value."),
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from nullpose.objectives import FloatArray, IntArray, Ratios
 from nullpose.problem.family import Family
+from nullpose.scenario import Scenario
 
 _INDICES = {  # of which array of another field each counts the rows
     "numerator_point": "points_m",
@@ -20,6 +21,11 @@ _STARTS = {
     "shadows_of_point": "shadow_start",
     "shadow_start": "shadow_sides",
 }
+
+
+def still_scenes(scenario: Scenario) -> list[Scenario]:
+    """List the still scenes of a scene in motion, one for each of its instants; a still scene alone."""
+    return [scenario] if scenario.time is None else [scenario.at(float(t_s)) for t_s in scenario.instants_s]
 
 
 def join_instants(families: Sequence[Family], chosen: Sequence[int]) -> Family:

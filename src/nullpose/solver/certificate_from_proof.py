@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +19,11 @@ from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
+from nullpose.problem.instants import join_instants, still_scenes
+from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import MOST_LEAVES
+from nullpose.solver.hover import HoverDetails
 from nullpose.solver.proof import MOST_HALVINGS, Proof
 from nullpose.solver.result import Result
 from nullpose.solver.rigour import Rigour, bound_above
@@ -191,7 +194,11 @@ def certificate_of(solution: Result) -> Certificate:
         >>> nullpose.verify(nullpose.certificate_of(result)).proved
         True
     """
-    fields = require_certificate(solution.scenario, solution.scheme, solution.null_jammer)
+    details, scenario, scheme = solution.details, solution.scenario, str(solution.scheme)
+    instants: tuple[int, ...] = ()
+    if isinstance(details, HoverDetails):  # the optimum of a scene in motion
+        scenario, scheme, instants = details.scene, Scheme.OPTIMUM.value, details.instants
+    fields = require_certificate(scenario, scheme, solution.null_jammer)
     require_usage(
         solution.objective.upper_bound is not None,
         "certificate: nothing was proved; leave out --fast (certify=False)",
@@ -203,11 +210,15 @@ def certificate_of(solution: Result) -> Certificate:
             f"certificate: the proof {what}; ask for a wider --gap, or leave out --certificate and --verify"
         )
     pose = solution.pose
-    family = build_family(solution.scenario, any_antenna=True, any_channel=True, any_objective=True)
-    value, bound = _ratios(solution, family, fields)
+    families = [
+        build_family(scene, any_antenna=True, any_channel=True, any_objective=True)
+        for scene in still_scenes(scenario)
+    ]
+    value, bound = _ratios(solution, families, fields)
+    family = join_instants(families, instants) if instants else families[0]
     return Certificate(
-        scenario=solution.scenario,
-        scheme=str(solution.scheme),
+        scenario=scenario,
+        scheme=scheme,
         null_jammer=solution.null_jammer,
         value=value,
         upper_bound=bound,
@@ -219,6 +230,7 @@ def certificate_of(solution: Result) -> Certificate:
             Tree(axis=axis, root_m=proof.root, leaves=leaves_of(proof, field, family))
             for (axis, field), proof in zip(fields.items(), solution.proofs, strict=True)
         ),
+        instants=instants,
         provenance=dict(solution.provenance),
     )
 
@@ -246,15 +258,18 @@ def verified(solution: Result, on_progress: Callable[[int, int], None] | None = 
     )
 
 
-def _ratios(solution: Result, family: Family, fields: Mapping[str, AxisField]) -> tuple[float, float]:
-    """Evaluate the smallest ratio of a result's family at its pose, and the bound on it."""
+def _ratios(
+    solution: Result, families: Sequence[Family], fields: Mapping[str, AxisField]
+) -> tuple[float, float]:
+    """Evaluate the smallest ratio of a result's families at its pose, and the bound on it."""
     if not (objective := solution.objective).quantity.is_rate:
         assert objective.upper_bound is not None
         return objective.value, objective.upper_bound
     pose = solution.pose
     axis = antenna_axis((pose.roll_rad, pose.pitch_rad, pose.yaw_rad), pose.mount_rad)
     place = exact(pose.position_m)
-    ratios = family.ratios
-    values = ratios_at(ratios, place, axis, *profiles_of(fields), gains=excess_at(ratios, place))
-    value = float(value_of(ratios, values))
+    value, profiles = math.inf, profiles_of(fields)
+    for ratios in (family.ratios for family in families):
+        reached = ratios_at(ratios, place, axis, *profiles, gains=excess_at(ratios, place))
+        value = min(value, float(value_of(ratios, reached)))
     return value, float(bound_above(value, max(proof.upper_bound for proof in solution.proofs)))

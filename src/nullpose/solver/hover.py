@@ -13,13 +13,15 @@ from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
-from nullpose.problem.instants import join_instants
+from nullpose.problem.instants import join_instants, still_scenes
 from nullpose.scenario import Scenario
 from nullpose.scenario.motion import time_of
 from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.compiling import limit_clock, precompile
 from nullpose.solver.options import SolveOptions
+from nullpose.solver.proof import Proof
 from nullpose.solver.result import BoundedPose, Stats
+from nullpose.solver.rigour import Rigour
 from nullpose.solver.solve_and_prove import Outcome, solve_and_prove
 
 HOVER_GAP = 1e-4
@@ -34,14 +36,16 @@ class HoverDetails:
     """What a pose gives at every instant of a scene in motion.
 
     Args:
+        scene: the scene in motion.
         times_s: (t,) the instants.
         values: (t,) the objective at each: power ratios, or bits/s/Hz.
-        binding: how many instants the proof is about; no pose exceeds its bound at all of them.
+        instants: those that the proof is about, counted from 0; no pose exceeds its bound at all of them.
     """
 
+    scene: Scenario
     times_s: FloatArray
     values: FloatArray
-    binding: int
+    instants: tuple[int, ...]
 
     @property
     def label(self) -> str:
@@ -56,7 +60,7 @@ class HoverDetails:
     def to_dict(self, objective: PlainTable) -> PlainTable:
         """Write plain data for JSON."""
         values = {"time_s": self.times_s.tolist(), "value": self.values.tolist()}
-        return {"hover": {"worst_s": self.worst_s, "binding_instants": self.binding, **values}}
+        return {"hover": {"worst_s": self.worst_s, "binding_instants": len(self.instants), **values}}
 
 
 def solve_hover(scenario: Scenario, limits: SolveOptions) -> tuple[BoundedPose, Scenario]:
@@ -92,8 +96,8 @@ class _Hover:
             len(times_s) <= _MOST_INSTANTS,
             f"time: given {len(times_s):,} instants for a hover, allowed: {_MOST_INSTANTS:,}; raise step_s",
         )
-        self.times_s, self.limits = times_s, limits
-        self.scenes = [scenario.at(float(t_s)) for t_s in times_s]
+        self.scenario, self.times_s, self.limits = scenario, times_s, limits
+        self.scenes = still_scenes(scenario)
         first = self.scenes[0]
         if first.array is not None or not first.antenna_record.is_quadratic or first.has_custom_channels:
             raise UsageError(
@@ -105,6 +109,8 @@ class _Hover:
         self.chosen: list[int] = [0]
         self.best: tuple[float, FloatArray, FloatArray] | None = None  # smallest ratio, position and axis
         self.bound, self.reason = math.inf, ""
+        self.instants: tuple[int, ...] = ()  # those of the proofs of the bound
+        self.proofs: tuple[Proof, ...] = ()
         self.starts = self.evaluations = self.boxes = 0
 
     def search(self) -> None:
@@ -122,7 +128,8 @@ class _Hover:
             )
             outcome = solve_and_prove(join_instants(self.families, self.chosen), [self.field], left)
             worst, self.reason = self._take(outcome), outcome.reason
-            promised = math.exp(outcome.incumbent.log_value)
+            reached = self.quantity.of_ratio(math.exp(outcome.incumbent.log_value))  # no rate below zero
+            promised = self.quantity.to_ratio(reached)
             is_over = bool(self.reason) or limit_clock() > deadline
             if promised > self._level(_SHARE) and worst not in self.chosen and not is_over:
                 self.chosen.append(worst)
@@ -142,7 +149,9 @@ class _Hover:
         found = outcome.incumbent
         self.starts, self.evaluations = self.starts + found.starts, self.evaluations + found.evaluations
         self.boxes += outcome.nodes
-        self.bound = min(self.bound, math.inf if outcome.upper_bound is None else outcome.upper_bound)
+        if outcome.upper_bound is not None and outcome.upper_bound < self.bound:
+            self.bound, self.proofs = outcome.upper_bound, outcome.proofs
+            self.instants = tuple(self.chosen)
         ratios = self.quantity.to_ratio(self._values(found.position_m, found.axis))
         if self.best is None or np.min(ratios) > self.best[0]:
             self.best = float(np.min(ratios)), found.position_m.copy(), found.axis.copy()
@@ -157,7 +166,12 @@ class _Hover:
         """Return the best pose with what is proved, and the scene of the instant at which it is worst."""
         assert self.best is not None
         values = self._values(*self.best[1:])
-        details = HoverDetails(times_s=self.times_s, values=values, binding=len(self.chosen))
+        details = HoverDetails(
+            scene=self.scenario,
+            times_s=self.times_s,
+            values=values,
+            instants=self.instants or tuple(self.chosen),
+        )
         worst = self.scenes[int(np.argmin(values))]
         pose = Pose.of_airframe(worst, *self.best[1:])
         count, last_s = len(self.times_s), self.times_s[-1]
@@ -170,6 +184,8 @@ class _Hover:
             reason=self.reason,
             settings=self.limits.settings,
             stats=Stats(starts=self.starts, evaluations=self.evaluations, boxes=self.boxes),
+            rigour=Rigour.VERIFIABLE if self.proofs and worst.prisms is None else None,
+            proofs=self.proofs,
             note=f"one pose for {count} instants from 0 to {last_s:g} s; value, links and bound are of the "
             f"smallest value over all, that at {details.worst_s:g} s",
             details=details,
