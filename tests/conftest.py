@@ -88,7 +88,8 @@ def _coarse(request: pytest.FixtureRequest) -> Iterator[None]:
             from matplotlib.figure import Figure
 
             def save(self: Figure, *paths: Any, draw: Any = Figure.savefig, **options: Any) -> None:
-                draw(self, *paths, **options | {"dpi": 40})
+                is_frame = options.get("format") == "rgba"  # of a film, which has a size
+                draw(self, *paths, **options if is_frame else options | {"dpi": 40})
 
             patch.setattr(Figure, "savefig", save)
         yield

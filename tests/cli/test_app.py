@@ -17,6 +17,7 @@ SCENE, PROOF = "--set --allow-outside --at", "--gap --time-limit --node-limit --
 VERBS = {
     "solve": f"{SCENE} {PROOF} --scheme --fast --robust --hover --off --null-jammer --certificate --verify "
     "--export --figure --width --json",
+    "trajectory": "--set --allow-outside --maximise --gap-db --time-limit --window --out --json",
     "compare": f"{SCENE} {PROOF} --airframes --fast --figure --width --json",
     "evaluate": f"{SCENE} {PROOF} --pose --pose-lat-lon --attitude --poses --off --json",
     "map": f"{SCENE} {PROOF} --scheme --altitude --cells --fast --out --width --json",

@@ -20,6 +20,7 @@ from nullpose.cli.solve import solve
 from nullpose.cli.studio import studio
 from nullpose.cli.study import study
 from nullpose.cli.sweep import sweep
+from nullpose.cli.trajectory import trajectory
 from nullpose.cli.vehicle import vehicle
 from nullpose.cli.verify import verify
 
@@ -60,7 +61,7 @@ def nullpose(
     """
 
 
-for _verb in (solve, compare, vehicle, sweep, evaluate, verify, reproduce, studio, check, schema):
+for _verb in (solve, trajectory, compare, vehicle, sweep, evaluate, verify, reproduce, studio, check, schema):
     app.command()(_verb)
 app.command("map")(best_map)
 app.add_typer(study)

@@ -1,8 +1,8 @@
-"""A solution on the map: GeoJSON (RFC 7946)."""
+"""A solution or a flight on the map: GeoJSON (RFC 7946)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from nullpose.report.geometry import outline_m
 from nullpose.scenario import Origin, Scenario
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.solver import Result
+from nullpose.solver.trajectory import Trajectory
 
 
 def solution_geojson(solution: Result) -> PlainTable:
@@ -44,7 +45,24 @@ def geojson_file(solution: Result) -> bytes:
     Raises:
         UsageError: the scenario has no origin.
     """
-    lines = ",\n".join(json_text(feature, indent=None) for feature in solution_geojson(solution)["features"])
+    return _collection(solution_geojson(solution)["features"])
+
+
+def flight_geojson_file(flight: Trajectory) -> bytes:
+    """Write a flight as GeoJSON: a line with its times, attitudes and values, and the outlines.
+
+    Raises:
+        UsageError: the scenario has no origin.
+    """
+    origin, rows = require_origin(flight.scenario), flight.rows()
+    places = [_point(origin, place_m, {})["geometry"]["coordinates"] for place_m in flight.positions_m]
+    about = {"kind": "flight"} | {name: [row[name] for row in rows] for name in rows[0]}
+    outlines = (_polygon(origin, *outline) for outline in _outlines(flight.scenario))
+    return _collection([_feature("LineString", places, about), *outlines])
+
+
+def _collection(features: Iterable[PlainTable]) -> bytes:
+    lines = ",\n".join(json_text(feature, indent=None) for feature in features)
     return f'{{"type": "FeatureCollection", "features": [\n{lines}\n]}}\n'.encode()
 
 

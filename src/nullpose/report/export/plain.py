@@ -1,15 +1,18 @@
-"""A pose as plain numbers: JSON, a row of CSV, and a line of a TUM trajectory."""
+"""A pose or a flight as plain numbers: JSON, rows of CSV, and lines of a TUM trajectory."""
 
 from __future__ import annotations
 
 import math
 from hashlib import sha256
 
+import numpy as np
+
 from nullpose.certificate.file import certificate_text
 from nullpose.files import json_text
 from nullpose.physics import FramePose, pose_frames
 from nullpose.solver import Result, Rigour
 from nullpose.solver.certificate_from_proof import certificate_of
+from nullpose.solver.trajectory import Trajectory
 
 
 def json_file(result: Result) -> bytes:
@@ -54,6 +57,20 @@ def csv_file(result: Result) -> bytes:
     row |= zip(("qw", "qx", "qy", "qz"), frames.enu.quaternion_wxyz, strict=True)
     row |= _angles_deg(frames.enu)
     return f"{','.join(row)}\n{','.join(map(repr, row.values()))}\n".encode()
+
+
+def flight_tum_file(flight: Trajectory) -> bytes:
+    """Write a flight as a TUM trajectory, a line ``t x y z qx qy qz qw`` for each instant."""
+    rows = ((row["time_s"], *row["position_m"], *np.roll(row["wxyz"], -1).tolist()) for row in flight.rows())
+    return "".join(f"{' '.join(map(repr, row))}\n" for row in rows).encode()
+
+
+def flight_csv_file(flight: Trajectory) -> bytes:
+    """Write a flight as rows of CSV: time, metres, quaternion, value and the optimum of the instant."""
+    names = [f"{name}_{flight.quantity.ending}" for name in ("value", "optimum")]
+    heads = ("time_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", *names)
+    rows = ((row["time_s"], *row["position_m"], *row["wxyz"], *map(row.get, names)) for row in flight.rows())
+    return "".join(f"{','.join(row)}\n" for row in (heads, *(map(repr, row) for row in rows))).encode()
 
 
 def _angles_deg(frame: FramePose) -> dict[str, float]:

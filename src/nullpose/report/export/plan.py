@@ -1,8 +1,9 @@
-"""The position of a result as a plan of QGroundControl: where to hover, at which yaw, within which fence."""
+"""A result or a flight as a plan of QGroundControl: where to hover or fly, at which yaw, in which fence."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,12 +13,14 @@ from nullpose.files import PlainTable, json_text
 from nullpose.physics import Pose, evaluate, objective_of_links, pose_frames
 from nullpose.report.export.places import map_place, require_origin
 from nullpose.report.numbers import with_unit
-from nullpose.scenario import Airspace, NoFlyZone, Origin
+from nullpose.scenario import Airspace, NoFlyZone, Origin, Scenario
 from nullpose.scenario.airspace import BORDER_M
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.solver import Result
+from nullpose.solver.trajectory import Trajectory
 
-_HOVER = 17  # MAV_CMD_NAV_LOITER_UNLIM
+_HOVER, _WAYPOINT, _CHANGE_SPEED = 17, 16, 178  # MAV_CMD_NAV_LOITER_UNLIM, _NAV_WAYPOINT, _DO_CHANGE_SPEED
+_OF_MISSION, _AT_LEAST_M_S = 2, 0.1  # MAV_FRAME_MISSION, and a speed
 _OVER_SEA, _OVER_HOME = (0, 2), (3, 1)  # MAV_FRAME, and AltitudeMode of QGroundControl
 _PX4, _MULTIROTOR = 12, 2  # MAV_AUTOPILOT, MAV_TYPE
 
@@ -31,26 +34,53 @@ def plan_file(result: Result) -> bytes:
     Raises:
         UsageError: the scenario has no origin.
     """
-    origin = require_origin(result.scenario)
-    place = map_place(origin, result.pose.position_m)
+    return _content(result.scenario, [result.pose], [_at_pose(_HOVER, result.scenario, result.pose, 0.0)])
+
+
+def flight_plan_file(flight: Trajectory) -> bytes:
+    """Write a flight as a plan: a waypoint for each instant and before it the speed to it; and the geofence.
+
+    Where the flight is slower than the lowest speed it waits at the waypoint. Zones are as in
+    :func:`plan_file`: one above or below any of the poses is left out.
+
+    Raises:
+        UsageError: the scenario has no origin.
+    """
+    items = [_at_pose(_WAYPOINT, flight.scenario, flight.poses[0], 0.0)]
+    speeds_m_s = np.maximum(flight.speeds_m_s, _AT_LEAST_M_S)
+    waits_s = np.diff(flight.times_s) * (1.0 - flight.speeds_m_s / speeds_m_s)
+    for pose, speed_m_s, wait_s in zip(flight.poses[1:], speeds_m_s.tolist(), waits_s.tolist(), strict=True):
+        # param 1: over ground; param 3: the throttle as it is
+        items.append(_item(_CHANGE_SPEED, [1, speed_m_s, -1, 0, 0, 0, 0]))
+        items.append(_at_pose(_WAYPOINT, flight.scenario, pose, wait_s))
+    return _content(flight.scenario, flight.poses, items)
+
+
+def _item(command: int, params: Sequence[float], frame: int = _OF_MISSION) -> PlainTable:
+    return {
+        "type": "SimpleItem",
+        "command": command,
+        "frame": frame,
+        "params": list(params),
+        "autoContinue": True,
+    }
+
+
+def _at_pose(command: int, scenario: Scenario, pose: Pose, wait_s: float) -> PlainTable:
+    """Write a command at the place of a pose, with its heading, and how long to stay there."""
+    place = map_place(require_origin(scenario), pose.position_m)
     frame, mode = _OVER_SEA if place.is_over_sea else _OVER_HOME
+    item = _item(command, [wait_s, 0, 0, _heading_deg(scenario, pose), *place[:3]], frame)
+    return item | {"Altitude": place.altitude_m, "AltitudeMode": mode, "AMSLAltAboveTerrain": None}
+
+
+def _content(scenario: Scenario, poses: Sequence[Pose], items: Sequence[PlainTable]) -> bytes:
+    origin = require_origin(scenario)
     content = {
         "fileType": "Plan",
         "groundStation": "QGroundControl",
         "mission": {
-            "items": [
-                {
-                    "type": "SimpleItem",
-                    "command": _HOVER,
-                    "frame": frame,
-                    "params": [0, 0, 0, _heading_deg(result), place.lat_deg, place.lon_deg, place.altitude_m],
-                    "Altitude": place.altitude_m,
-                    "AltitudeMode": mode,
-                    "AMSLAltAboveTerrain": None,
-                    "autoContinue": True,
-                    "doJumpId": 1,
-                }
-            ],
+            "items": [item | {"doJumpId": number} for number, item in enumerate(items, start=1)],
             # its altitude is over the sea, as a plan has it, or else over the ellipsoid
             "plannedHomePosition": [
                 *origin.geodetic.tolist()[:2],
@@ -62,7 +92,7 @@ def plan_file(result: Result) -> bytes:
             "hoverSpeed": 5,
             "version": 2,
         },
-        "geoFence": _fence(origin, result.scenario.airspace, result.pose),
+        "geoFence": _fence(origin, scenario.airspace, poses),
         "rallyPoints": {"points": [], "version": 2},
         "version": 1,
     }
@@ -82,8 +112,8 @@ def loss_words(result: Result) -> str:
     ]
     left, whole = (with_unit(value, quantity) for value in values)
     sentences = [
-        f"a plan holds no attitude: at a level hover there, at yaw {_heading_deg(result):.1f} deg clockwise "
-        f"from north, the {quantity.smallest} is {left}; with the pose's attitude it is {whole}"
+        f"a plan holds no attitude: at a level hover there, at yaw {_heading_deg(scenario, pose):.1f} deg "
+        f"clockwise from north, the {quantity.smallest} is {left}; with the pose's attitude it is {whole}"
     ]
     if require_origin(scenario).alt_msl_m is None:
         sentences.append(
@@ -95,15 +125,17 @@ def loss_words(result: Result) -> str:
     return "; ".join(sentences)
 
 
-def _heading_deg(result: Result) -> float:
+def _heading_deg(scenario: Scenario, pose: Pose) -> float:
     """Convert the yaw to degrees clockwise from north, in [0, 360)."""
-    return math.degrees(pose_frames(result.scenario, result.pose).ned.yaw_rad) % 360.0
+    return math.degrees(pose_frames(scenario, pose).ned.yaw_rad) % 360.0
 
 
-def _fence(origin: Origin, airspace: Airspace, pose: Pose) -> PlainTable:
+def _fence(origin: Origin, airspace: Airspace, poses: Sequence[Pose]) -> PlainTable:
     """List the geofence to stay in, and the zones to stay out of, as polygons and circles."""
     shapes: list[PlainTable] = [
-        _shape(origin, zone) for zone in airspace.no_fly if not _is_over_or_under(zone, pose)
+        _shape(origin, zone)
+        for zone in airspace.no_fly
+        if not any(_is_over_or_under(zone, pose) for pose in poses)
     ]
     if airspace.geofence_m is not None:
         shapes.insert(

@@ -69,7 +69,7 @@ _FAR_M = 1e7  # of an airspace without an end
 _BESIDE_INCH, _BELOW_INCH = 1.6, 1.0  # for labels and the colour bar
 _TALLEST_INCH = 8.0
 _SLIM = 0.75  # least width of a plan over its height
-_NULL_LINE: Look = {  # its rim is seen on any ground
+NULL_LINE: Look = {  # its rim is seen on any ground
     "color": NULL,
     "linewidth": 1.8,
     "path_effects": [withStroke(linewidth=2.6, foreground=INK)],
@@ -87,19 +87,12 @@ def draw_plan(axes: Axes, scene: PlanScene, pose: Pose, box_m: FloatArray | None
         pose: of the drone.
         box_m: low and high corner of what is shown, (2, 2), metres; the whole scene if left out.
     """
-    low, high = box_m if box_m is not None else scene.box_m if scene.key else _filled(axes, scene.box_m)
+    low, high = box_m if box_m is not None else scene.box_m if scene.key else filled(axes, scene.box_m)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     axes.set(xlabel="East x (m)", ylabel="North y (m)")
     if box_m is None:  # a map has its own colours
         draw_shadows(axes, scene, float(pose.position_m[2]), np.stack([low, high]))
-    draw_outlines(axes, scene.scenario, is_filled=box_m is None)
-    for zone, corners_m in scene.zones:
-        look: Look = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}
-        if zone is not None:
-            look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
-            name = scene.key.get((True, zone.name), zone.name)
-            write_name(axes, name, corners_m.mean(axis=0), is_area=True)
-        axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
+    draw_areas(axes, scene, is_filled=box_m is None)
     x, y = pose.position_m[:2]
     drone = f"drone {pose.position_m[2]:.3g} m up"
     if not scene.key:
@@ -126,7 +119,7 @@ def draw_plan(axes: Axes, scene: PlanScene, pose: Pose, box_m: FloatArray | None
         axes.scatter(*place, color=colour, marker=marker, zorder=3.0, label="source", **rim)
         write_name(axes, source.name, place)
     name = "antenna axis (null)" if scene.scenario.antenna_record.is_quadratic else "antenna's z axis"
-    start, ahead, look = -1.0, pose.antenna_axis[:2], _NULL_LINE | {"label": name}
+    start, ahead, look = -1.0, pose.antenna_axis[:2], NULL_LINE | {"label": name}
     if scene.scenario.array is not None:
         start, ahead = 0.0, np.array([np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)])
         look = {"color": INK, "label": "heading (yaw)"}
@@ -135,7 +128,19 @@ def draw_plan(axes: Axes, scene: PlanScene, pose: Pose, box_m: FloatArray | None
     axes.scatter(x, y, color=DRONE, zorder=7, label=drone if scene.key else "drone", **rim)
 
 
-def _filled(axes: Axes, box_m: FloatArray) -> FloatArray:
+def draw_areas(axes: Axes, scene: PlanScene, *, is_filled: bool = True) -> None:
+    """Draw the buildings, the fence and the no-fly zones of a scene, with the names of these."""
+    draw_outlines(axes, scene.scenario, is_filled=is_filled)
+    for zone, corners_m in scene.zones:
+        look: Look = {"edgecolor": GREY, "fill": False, "linestyle": "--", "label": "geofence"}
+        if zone is not None:
+            look = {"facecolor": (FORBIDDEN, 0.12), "edgecolor": FORBIDDEN, "label": "no-fly zone"}
+            name = scene.key.get((True, zone.name), zone.name)
+            write_name(axes, name, corners_m.mean(axis=0), is_area=True)
+        axes.add_patch(Polygon(corners_m, linewidth=0.8, zorder=1.0, **look))
+
+
+def filled(axes: Axes, box_m: FloatArray) -> FloatArray:
     """Widen a box, (2, 2), to the shape of the axes, but not too slim."""
     shape = np.array([max(axes.bbox.width, _SLIM * axes.bbox.height), axes.bbox.height])
     half = 0.5 * shape * np.max(np.ptp(box_m, axis=0) / shape)
