@@ -15,7 +15,9 @@ from nullpose.antenna.files import read_pattern
 from nullpose.paper.reproduce import reproduce
 from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.poses import draw_result
+from nullpose.report.figures.trajectory import draw_flight
 from nullpose.solver import solve
+from nullpose.study.between_instants import sample_between
 
 DOCS = Path(__file__).parent
 sys.path.append(str(DOCS / "figures"))
@@ -38,9 +40,19 @@ def draw_examples() -> None:
     write(draw_pattern(read_pattern(PATTERN, estimate=True)), "pattern-file")
 
 
+def draw_trajectory() -> None:
+    """Draw the flight of the page on trajectories, as ``trajectory --out`` does."""
+    example = nullpose.load(EXAMPLES / "moving_jammer.toml")
+    flight = nullpose.solve_trajectory(nullpose.apply_overrides(example, ["jammers.M.power_w=100"]))
+    figures = draw_flight(flight, sample_between(flight))
+    write(figures["plan"], "trajectory")
+    write(figures["values"], "trajectory-values")
+
+
 def main() -> None:
     """Draw the examples, run the reproduction, copy its figures and check the claims on its data."""
     draw_examples()
+    draw_trajectory()
     with TemporaryDirectory() as folder:
         reproduction = reproduce(Path(folder))
         for name in ("figure2.png", "figure2-printed.png", "poses.png"):

@@ -43,11 +43,11 @@ _BOUNDS = MappingProxyType(
 )
 _FLIGHTS = MappingProxyType(
     {
-        "hover": "hover: one place, the attitude turns",
-        "greedy": "greedy: towards the best place of each instant",
+        "hover": "hover: one place, turning",
+        "greedy": "greedy: to each best place",
         "window": "seeing the window ahead",
         "trajectory": "this trajectory",
-        "clairvoyant": "clairvoyant bound: without a speed limit",
+        "clairvoyant": "clairvoyant bound: no speed limit",
     }
 )
 _SHOWN = 15
@@ -97,7 +97,7 @@ def trajectory_view(flight: Trajectory, samples: FloatArray) -> View:
         f"from {_BOUNDS[flight.bound_name]}",
         flight.status.message.removeprefix("certified ") + (flight.reason and f": {flight.reason}"),
         Rigour.FLOATING_POINT.message,
-        f"holds for {'any flight in continuous time' if is_worst else 'the mean of the instants only'}",
+        f"the bound is of {'any flight in continuous time' if is_worst else 'the mean of the instants only'}",
         f"{len(flight.poses)} instants; {flight.stats.wall_s:.2g} s",
     )
     step = -(-len(flight.poses) // _SHOWN)
@@ -116,7 +116,7 @@ def _worth(flight: Trajectory) -> list[dict[str, str]]:
         {
             "flight": words,
             f"{flight.maximise} ({flight.unit})": f"{value:z.4f}",
-            f"to this trajectory ({flight.unit})": f"{value - flight.value:+z.4f}",
+            f"difference ({flight.unit})": f"{value - flight.value:+z.4f}",
         }
         for name, words in _FLIGHTS.items()
         if (value := values.get(name)) is not None
