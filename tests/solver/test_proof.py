@@ -51,6 +51,32 @@ def test_the_papers_optimum_is_closed(power_w: float) -> None:
     assert np.sum(np.prod(high - low, axis=1)) == pytest.approx(whole, rel=1e-9)
 
 
+@pytest.mark.parametrize("moved_m", [0.05, 3.0, 1e3])
+@pytest.mark.parametrize("altitude_m", ["[8, 30]", "[9, 9]"])
+def test_leaves_of_another_proof_are_cut_and_added_to_until_they_cover(
+    moved_m: float, altitude_m: str
+) -> None:
+    """A proof that begins with one of a scene near by or far away is about every position, and none twice."""
+    family = build_family(apply_overrides(load(PAPER), [f"airspace.altitude_m={altitude_m}"]))
+    points_m = family.ratios.points_m + moved_m * np.array(
+        [[0.6, 0.8, 0.0], [0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]]
+    )
+    field, options = AxisField.free(), SolveOptions(gap=1e-4)
+    moved = family.changed(points_m=points_m)
+    last, found = proof_of(family, field, gap=1e-4), multistart(moved, field, seed=1)
+    proof, alone = prove(moved, field, found, options, last=last), prove(moved, field, found, options)
+    np.testing.assert_array_equal(proof.root, alone.root)
+    assert proof.upper_bound == alone.upper_bound
+    assert proof.reason == ""
+    (low, high), sides = boxes(proof), np.ptp(proof.root, axis=0)
+    solid = sides > 0.0
+    assert np.sum(np.prod((high - low)[:, solid], axis=1)) == pytest.approx(np.prod(sides[solid]), rel=1e-6)
+    rng = np.random.default_rng(6)
+    for row in proof.leaves[rng.integers(len(proof.leaves), size=200)]:
+        p = row[node.CENTRE : node.HALF] + rng.uniform(-1, 1, size=3) * row[node.HALF : node.LEVEL]
+        assert value_at(moved, p) <= row[node.LEVEL] * (1.0 + 1e-12)
+
+
 def test_no_pose_of_a_leaf_reaches_its_level(random_scene: Callable) -> None:
     """Positions drawn from the leaves, each with its exact best axis, stay below the level excluded there."""
     rng = np.random.default_rng(4)

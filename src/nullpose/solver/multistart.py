@@ -147,6 +147,7 @@ def multistart(
     seed: int,
     settings: SearchSettings | None = None,
     deadline: float = math.inf,
+    near: FloatArray | None = None,
 ) -> Incumbent:
     """Return the best pose that a multistart finds: coarse positions, the promising ones polished.
 
@@ -159,17 +160,20 @@ def multistart(
         seed: start of the low-discrepancy sequence.
         settings: how hard to try.
         deadline: on ``limit_clock``.
+        near: (m, 3) positions close to which the best may be, metres.
 
     Raises:
         SolveError: no position of the domain gave every ratio a positive value.
     """
     with ended_when(lambda: limit_clock() > deadline):
-        return _multistart(family, axis_field, seed, settings or SearchSettings())
-    return _multistart(family, axis_field, seed, _LIGHT)
+        return _multistart(family, axis_field, seed, settings or SearchSettings(), near)
+    return _multistart(family, axis_field, seed, _LIGHT, near)
 
 
-def _multistart(family: Family, axis_field: AxisField, seed: int, settings: SearchSettings) -> Incumbent:
-    places = landmarks(family)
+def _multistart(
+    family: Family, axis_field: AxisField, seed: int, settings: SearchSettings, near: FloatArray | None
+) -> Incumbent:
+    places = landmarks(family) if near is None else np.vstack([near, landmarks(family)])
     found = _run(family, axis_field, places, seed, settings)
     if not math.isfinite(found.log_value):  # what is allowed may be of no width: a point, a line or a wall
         places = np.vstack([places, _corners(family.domain)])

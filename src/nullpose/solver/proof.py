@@ -49,8 +49,10 @@ _FOR_STAGES = 4  # boxes of a limit that are left to the stages, which bound wha
 _STAGE = 0.1  # each stage's gap, as a share of the one before
 _LAST_STAGE = 2.0  # a stage that would end within so many times the target gap goes to the target
 _CHUNK = 4096  # boxes between two looks at the clock, for few ratios
+_CHUNKS_A_S = 4_000  # and at most so many times the seconds of the time limit
 _MOST_BYTES = 2e9  # of a tree; beyond, leaves are not kept, and the next stage begins at the root
 _WIDEST_GAP = 1e6
+_GROWTH = 2  # boxes of a try from leaves at most, over those
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -73,6 +75,11 @@ class Proof:
     leaves: FloatArray
     reason: str
     nodes: int
+
+    @property
+    def gap(self) -> float:
+        """What the bound is above the value, relative."""
+        return self.upper_bound / math.exp(self.incumbent.log_value) - 1.0
 
 
 class _Run(BranchAndBound):
@@ -100,7 +107,8 @@ class _Run(BranchAndBound):
         self.node, self.branch, self.touch = node, entry_of(branch.branch), signed_sum.touch
         self.incumbent, self.search = incumbent, search
         # the same on every machine: where improvements are noticed decides which pose is found
-        self.chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
+        chunk = _CHUNK // (1 + (len(ratios.numerator_point) + len(ratios.denominator_point)) // 4)
+        self.chunk = int(min(chunk, 1.0 + _CHUNKS_A_S * limits.time_limit_s))
         self.target = INSIDE * limits.ratio_gap(self.value)
         self.spare = _LATE
         # two forms have no duality gap (Brickman), unless a band is in force
@@ -127,12 +135,45 @@ class _Run(BranchAndBound):
     def value(self) -> float:
         return math.exp(self.incumbent.log_value)
 
+    def try_from(self, start: FloatArray) -> tuple[str, bool]:
+        """Try the target from other boxes than the root; return why it stopped short, and if time is left."""
+        self.nodes_of_search += len(start)
+        until = self._half_time
+        _, reason = self.exclude_all(WorkerPool(start), self.target, _GROWTH * len(start), until)
+        return reason, limit_clock() < until
+
+    def cover_from(self, last: Proof) -> FloatArray:
+        """Cover the root by what another proof's leaves have of it, and boxes around that proof's root.
+
+        Where it is of almost the same problem, the multipliers that they have exclude most of them at once.
+        """
+        ends, columns = self.ends, self.node.LEVEL
+        middle_m, side_m = np.moveaxis(last.leaves[:, :columns].reshape(-1, 2, 3), 1, 0)
+        shell = _shell(np.clip(last.root, *ends), ends)
+        parts = np.concatenate([np.stack([middle_m - side_m, middle_m + side_m], axis=1), shell])
+        low_m, high_m = np.maximum(parts[:, 0], ends[0]), np.minimum(parts[:, 1], ends[1])
+        rows = np.vstack([last.leaves, np.repeat(self.root, len(shell), axis=0)])
+        lap_m = 16.0 * np.spacing(np.max(np.abs(ends)))  # the corners are rounded
+        rows[:, :columns] = np.hstack([0.5 * (low_m + high_m), 0.5 * (high_m - low_m) + lap_m])
+        return rows[np.all((high_m > low_m) | (ends[0] == ends[1]), axis=1)]
+
+    @property
+    def ends(self) -> FloatArray:
+        """Lowest and highest corner of the root, (2, 3)."""
+        middle, side = self.root[0, : self.node.LEVEL].reshape(2, 3)
+        return np.array([middle - side, middle + side])
+
+    @property
+    def _half_time(self) -> float:
+        """When a share of the time that is left will be over."""
+        return (1.0 - _DIRECT_SHARE) * limit_clock() + _DIRECT_SHARE * self.deadline
+
     def try_target(self) -> tuple[FloatArray, str]:
         """Try the target from the root; return the leaves and why it stopped short, if it did.
 
         Boxes that do not end may lie around a better pose: if one is found there, the try begins again.
         """
-        until = (1.0 - _DIRECT_SHARE) * limit_clock() + _DIRECT_SHARE * self.deadline
+        until = self._half_time
         pools: dict[float, WorkerPool] = {}
         examined, last = {_LATE: 0, _EARLY: 0}, self.node_limit - _FOR_STAGES
         for spare, boxes in _TRIES:
@@ -232,15 +273,26 @@ class _Run(BranchAndBound):
 
     def result(self, reason: str) -> Proof:
         """Return the proof as far as the run has come."""
-        middle, side = self.root[0, : self.node.LEVEL].reshape(2, 3)
+        side = 0.5 * (self.ends[1] - self.ends[0])
         return Proof(
             incumbent=self.incumbent,
             upper_bound=float(bound_above(self.value, self.proved)),
-            root=np.array([middle - side, middle + side]),
+            root=self.ends,
             leaves=self.leaves if self._has_certificate(side) else self.leaves[:0].copy(),
             reason=reason,
             nodes=self.nodes,
         )
+
+
+def _shell(inner: FloatArray, whole: FloatArray) -> FloatArray:
+    """Return boxes that cover what a box has outside of one in it, lowest and highest corners, (s, 2, 3)."""
+    parts, left = np.empty((0, 2, 3)), whole.copy()
+    for side, end in product(range(3), range(2)):
+        if inner[end, side] != left[end, side]:
+            part = left.copy()
+            part[1 - end, side] = left[end, side] = inner[end, side]
+            parts = np.append(parts, part[None], axis=0)
+    return parts
 
 
 def prove(
@@ -253,6 +305,7 @@ def prove(
     nodes: int = 0,
     bound: float = math.inf,
     search: Callable[[], Incumbent] | None = None,
+    last: Proof | None = None,
 ) -> Proof:
     """Return a bound on the best pose, and a better pose if one turns up on the way.
 
@@ -269,6 +322,8 @@ def prove(
         nodes: boxes examined before, which count towards the limit.
         bound: one proved before for a field that holds all axes of this one; the leaves do not prove it.
         search: a thorough search, made once if the proof does not close at once.
+        last: a proof of almost the same problem, to begin with; leaves that come of its leaves are not for a
+            certificate.
     """
     began = limit_clock() if began is None else began
     run = _Run(family, axis_field, incumbent, limits, began, nodes, bound, search)
@@ -276,9 +331,16 @@ def prove(
     try:
         if run.proved <= run.value * (1.0 + target):  # distances alone have shown it
             return run.result("")
-        leaves, reason = run.try_target()
+        start, gap, has_time = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0), True
+        if last is not None:
+            start = run.cover_from(last)
+            gap = min(gap, max(last.gap / _STAGE, target / _STAGE**2))  # most leaves pass the first stage
+            reason, has_time = (last.reason, False) if last.reason else run.try_from(start)
+            if not reason:
+                return run.result("")
+        if has_time:  # else the stages go on from where the last proof stopped
+            leaves, reason = run.try_target()
         if reason and run.nodes < run.node_limit and limit_clock() < run.deadline:
-            start, gap = run.root, min(_WIDEST_GAP, run.proved / run.value - 1.0)
             while gap > target:
                 gap = target if _STAGE * gap <= _LAST_STAGE * target else _STAGE * gap
                 leaves, reason = run.exclude_all(

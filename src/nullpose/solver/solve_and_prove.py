@@ -54,6 +54,8 @@ def solve_and_prove(
     *,
     incumbent: Incumbent | None = None,
     bound: float = math.inf,
+    last: Proof | None = None,
+    searches_again: bool = True,
 ) -> Outcome:
     """Return the best pose over the axis fields, with a proof if one is asked for.
 
@@ -66,6 +68,8 @@ def solve_and_prove(
         options: what is asked for, its gap stated.
         incumbent: a pose under the only field, in place of a search.
         bound: known before of more axes than the fields have.
+        last: a proof of almost the same family under the only field, to begin with.
+        searches_again: whether the search without a proof may be made.
 
     Raises:
         SolveError: no pose reaches every node, or what it requires.
@@ -106,7 +110,8 @@ def solve_and_prove(
             began=began,
             nodes=sum(p.nodes for p in proofs),
             bound=bound,
-            search=partial(searched, field, False),
+            search=partial(searched, field, False) if searches_again else None,
+            last=last,
         )
         proofs.append(proof)
         reason = reason or proof.reason
