@@ -45,6 +45,7 @@ from .solver import (
     Result as Result,
     Scheme as Scheme,
     Status as Status,
+    Tracker as Tracker,
     compare as compare,
     sensitivity as sensitivity,
     solve as solve,

@@ -1,7 +1,9 @@
 """The page on scenario files shows every key, and its examples load."""
 
+import io
 import re
 import tomllib
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
@@ -43,3 +45,12 @@ def test_overrides_apply(override: str) -> None:
     """Every override in the table can be applied to the paper's scenario, and changes it."""
     scenario = nullpose.load(ROOT / "examples" / "paper.toml")
     assert nullpose.apply_overrides(scenario, [override]) != scenario
+
+
+def test_the_stream_prints_what_stands_below_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every step is certified, and the pose jumps from one side of the nodes' line to the other."""
+    monkeypatch.chdir(ROOT)
+    ((code, text),) = re.findall(r"```python\n(.*?)```\n+```text\n(.*?)```", PAGE, flags=re.DOTALL)
+    with redirect_stdout(io.StringIO()) as printed:
+        exec(compile(code, "scenario-files.md", "exec"), {"nullpose": nullpose})
+    assert printed.getvalue() == text

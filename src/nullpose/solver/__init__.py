@@ -18,6 +18,7 @@ from nullpose.solver.options import (
 from nullpose.solver.result import Result, Results, Stats
 from nullpose.solver.rigour import Rigour, Status
 from nullpose.solver.sensitivity import ErrorSizes, Sensitivity, sensitivity
+from nullpose.solver.tracker import Tracker
 
 __all__ = [
     "NODE_LIMIT",
@@ -36,6 +37,7 @@ __all__ = [
     "SolveOptions",
     "Stats",
     "Status",
+    "Tracker",
     "announce_compiling",
     "as_scheme",
     "best_axis",

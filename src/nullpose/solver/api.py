@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import Unpack
 
 import numpy as np
@@ -20,9 +19,8 @@ from nullpose.solver.array import solve_array
 from nullpose.solver.by_scheme import solve_by_scheme
 from nullpose.solver.compiling import working_clock
 from nullpose.solver.hover import HOVER_GAP, solve_hover
-from nullpose.solver.objective import objective_of, status_of
 from nullpose.solver.options import SolveKeywords, SolveOptions
-from nullpose.solver.result import Result, Results, provenance
+from nullpose.solver.result import Result, Results, result_of
 from nullpose.solver.robust.exchange import ROBUST_GAP, solve_robust
 from nullpose.solver.sensitivity import ErrorSizes
 from nullpose.solver.solve_and_prove import solve_and_prove
@@ -100,24 +98,9 @@ def solve(
         answer = solve_array(scenario, scenario.array, limits)
     else:
         answer = solve_by_scheme(scenario, scheme, null_jammer, limits)
-    objective = objective_of(scenario, answer.value, answer.upper_bound, answer.rigour)
-    status, reason = status_of(objective, limits.target, answer.reason)
-    return Result(
-        scenario=scenario,
-        scheme=answer.scheme,
-        status=status,
-        reason=reason,
-        objective=objective,
-        pose=answer.pose,
-        links=answer.links,
-        stats=replace(answer.stats, wall_s=working_clock() - began),
-        provenance=provenance(limits.seed) | answer.settings,
-        note=answer.note,
-        null_jammer=null_jammer,
-        proofs=answer.proofs,
-        details=answer.details,
-        error_sizes=None if hover else ErrorSizes(),  # at one instant they tell nothing of the others
-    )
+    # at one instant errors tell nothing of the others
+    sizes = None if hover else ErrorSizes()
+    return result_of(scenario, answer, limits, began, sizes, null_jammer)
 
 
 @checked

@@ -49,6 +49,26 @@ def solve_by_scheme(
             f"null jammer: given {null_jammer!r} with scheme {scheme.value}; it goes with {nulling} only"
         )
     outcome, fields = solve_scheme(scenario, record, options, null_jammer)
+    return answer_of(scenario, scheme, outcome, fields, options)
+
+
+def answer_of(
+    scenario: Scenario,
+    scheme: Scheme,
+    outcome: Outcome,
+    fields: Mapping[str, AxisField] | None,
+    options: SolveOptions,
+) -> BoundedPose:
+    """Turn the vehicle as an outcome says, and evaluate what that gives each node.
+
+    Args:
+        scenario: what was solved, with one antenna.
+        scheme: how the pose was chosen.
+        outcome: of search and proof.
+        fields: the axis fields of the scheme by name; None where there are none.
+        options: those of the scenario.
+    """
+    record = scheme.record
     pose = Pose.of_airframe(scenario, outcome.incumbent.position_m, outcome.incumbent.axis)
     links = evaluate(scenario, pose)
     is_verifiable = outcome.proofs and fields is not None and scenario.prisms is None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import platform
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
@@ -18,7 +18,9 @@ from nullpose.physics import Link, Pose, pose_frames
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INTERRUPT
-from nullpose.solver.objective import Objective
+from nullpose.solver.compiling import working_clock
+from nullpose.solver.objective import Objective, objective_of, status_of
+from nullpose.solver.options import SolveOptions
 from nullpose.solver.proof import Proof
 from nullpose.solver.rigour import Rigour, Status
 from nullpose.solver.sensitivity import ErrorSizes, Sensitivity, sensitivity
@@ -217,6 +219,44 @@ class Result:
             **({} if sensitivity is None else {"sensitivity": sensitivity.to_dict()}),
             **({} if self.details is None else self.details.to_dict(objective)),
         }
+
+
+def result_of(
+    scenario: Scenario,
+    answer: BoundedPose,
+    options: SolveOptions,
+    began: float,
+    error_sizes: ErrorSizes | None,
+    null_jammer: str | None = None,
+) -> Result:
+    """Make the result of an answer.
+
+    Args:
+        scenario: what was solved.
+        answer: the pose and what is proved.
+        options: those of the scenario.
+        began: when the solve began, on ``working_clock``.
+        error_sizes: as in a result.
+        null_jammer: likewise.
+    """
+    objective = objective_of(scenario, answer.value, answer.upper_bound, answer.rigour)
+    status, reason = status_of(objective, options.target, answer.reason)
+    return Result(
+        scenario=scenario,
+        scheme=answer.scheme,
+        status=status,
+        reason=reason,
+        objective=objective,
+        pose=answer.pose,
+        links=answer.links,
+        stats=replace(answer.stats, wall_s=working_clock() - began),
+        provenance=provenance(options.seed) | answer.settings,
+        note=answer.note,
+        null_jammer=null_jammer,
+        proofs=answer.proofs,
+        details=answer.details,
+        error_sizes=error_sizes,
+    )
 
 
 class Results(tuple[Result, ...]):
