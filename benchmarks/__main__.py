@@ -12,7 +12,7 @@ from rich.progress import track
 
 from benchmarks.machine import ROOT, describe_machine, pin_threads
 
-WORKLOADS = ("fields", "certified", "proofs", "processes", "studio")
+WORKLOADS = ("fields", "certified", "proofs", "processes", "tracker", "studio")
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -14,7 +14,7 @@ from benchmarks.provers import FINISHED, NOT_CLOSED, Problem
 from benchmarks.provers.problem import Scaled
 from benchmarks.scenes import Scene, field_scenes
 
-from benchmarks import certified, fields, proofs
+from benchmarks import certified, fields, proofs, tracker
 from nullpose.physics import Pose, min_sinr, sinr
 
 SCENE = Scene(nodes=5, jammers=3, jamming_ratio=10.0, seed=1)
@@ -151,3 +151,27 @@ def test_senseless_command_is_refused(arguments: list[str], capsys: pytest.Captu
     with pytest.raises(SystemExit, match="2"):
         main(arguments)
     assert capsys.readouterr().err
+
+
+def test_late_or_uncertified_steps_of_a_tracker_break_a_promise() -> None:
+    """Scenes of two nodes have two milliseconds in the median, those of ten have forty."""
+    good = {"scene": "circle", "nodes": 2, "steps": 9, "certified": 9} | {
+        "median_thread_ms": 1.0,
+        "p99.9_thread_ms": 4.0,
+    }
+    slow = good | {"median_thread_ms": 30.0}
+    rows = [good, slow, slow | {"nodes": 10}, good | {"certified": 8}, good | {"p99.9_thread_ms": 11.0}]
+    assert tracker.faults(rows[:1] + rows[2:3]) == []
+    assert [fault.split(",")[0] for fault in tracker.faults(rows)] == [
+        "circle: 9 of 9 certified",
+        "circle: 8 of 9 certified",
+        "circle: 9 of 9 certified",
+    ]
+
+
+def test_the_jammer_that_passes_makes_the_pose_jump() -> None:
+    """In a run of steps that are further apart, too, and every step of it is certified."""
+    named = {name: (scene, jammers_m) for name, scene, jammers_m in tracker._scenes()}
+    row = tracker._followed("cross", *named["cross, P_M/P = 1"], steps=200)
+    assert row["jumps"] >= 1
+    assert row["certified"] == 200
