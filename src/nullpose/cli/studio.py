@@ -45,7 +45,7 @@ def studio(
         scenario, text = apply_overrides(new_scenario(), overrides or []), ""
     else:
         scene = SceneOptions(file=file, overrides=overrides, allow_outside=allow_outside, at_s=at_s)
-        scenario, text = scene.read(), file_text(file)
+        scenario, text = scene.read(in_motion=at_s is None), file_text(file)
 
     ended = threading.Event()
     with (

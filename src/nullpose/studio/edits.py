@@ -146,7 +146,7 @@ def with_fence(state: State, corners_m: ArrayLike) -> State:
         ScenarioError: they make no fence.
     """
     corners = tuple((round(float(x), 2), round(float(y), 2)) for x, y in np.asarray(corners_m))
-    return state.with_scenario(apply_overrides(state.scenario, [Override("airspace.geofence_m", corners)]))
+    return state.with_scenario(apply_overrides(state.stated, [Override("airspace.geofence_m", corners)]))
 
 
 def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
@@ -159,8 +159,7 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
     if key is None:
         return _vehicle_entries(state.scenario)
     kind, index = key
-    member, path = state.members(kind)[index], f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
-    path = path.replace("destinations[0]", "destination")
+    member, path = dict(state.points()).get(key, state.members(kind)[index]), _path(key)
     entries = [
         Entry(f"{path}.{key}", label, _text(getattr(member, key)))
         for key, label in ({"name": "name"} | _keys(member)).items()
@@ -174,6 +173,12 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
     # a profile needs a table, which is not typed
     kinds = tuple(kind for kind in GROUND_ANTENNAS if kind != "profile" or kind == member.antenna)
     return (entries[0], *place, *entries[1:], Entry(f"{path}.antenna", "antenna", member.antenna, kinds))
+
+
+def _path(key: Key) -> str:
+    kind, index = key
+    path = f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
+    return path.replace("destinations[0]", "destination")
 
 
 def _keys(member: GroundPoint | NoFlyZone) -> dict[str, str]:
@@ -223,9 +228,12 @@ def with_typed(state: State, entry: Entry, text: str) -> State:
     Raises:
         ScenarioError: the value is not allowed.
     """
-    typed, path, scenario = text.strip(), entry.path, state.scenario
+    typed, path, scenario = text.strip(), entry.path, state.stated
     if typed == entry.text:
         return state
+    for key, _ in state.points():
+        if path.startswith(f"{_path(key)}.position_m"):
+            state.require_rest(key)
     if path.endswith(
         ".name"
     ):  # by itself in the text, where a point that moves too would be taken for another

@@ -18,12 +18,13 @@ from nullpose.errors import NullposeError, ScenarioError
 from nullpose.scenario import Scenario
 from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.camera import NARROW_PX, aim, canvas_px, ray
-from nullpose.studio.case import case_named, cases_of, new_scenario
+from nullpose.studio.case import case_named, new_scenario
 from nullpose.studio.edits import Entry, with_typed, without
 from nullpose.studio.exports import figure_png, pose_json, scene_html
 from nullpose.studio.look import DARK, LIGHT
 from nullpose.studio.panel import NO_CASE, Panel, by_hand
 from nullpose.studio.picking import clicked, dragged_to_m, reading
+from nullpose.studio.player import Player
 from nullpose.studio.readout import macros
 from nullpose.studio.session import History, Session
 from nullpose.studio.stage import Drag, Stage
@@ -42,7 +43,7 @@ class Page:
 
     Args:
         client: the browser.
-        scenario: the scene to begin with.
+        scenario: the scene to begin with; one in motion is shown at 0.
         text: of the file that it is from; empty without a file.
         dark: whether the page is dark.
     """
@@ -59,8 +60,9 @@ class Page:
         self._grip_m = np.zeros(3)  # where a dragged point is held, from its position
         self._is_folded = False
         self._shown: History | None = None  # in the panel
-        state = State(scenario=scenario, case=cases_of(scenario)[0], text=text)
+        state = State(scenario=scenario.still()).with_scenario(scenario, text)
         self.session = Session(state, on_change=self._changed, on_event=lambda event: self.render())
+        self._player = Player(self.session, self.change)
         self.panel = Panel(client.gui, self._typed, dark=dark)
         self.stage = Stage(client.scene, self._look, self._dragged)
         self._listen()
@@ -72,6 +74,7 @@ class Page:
         with self._lock:
             self._is_open = False
             self._end_wait()
+        self._player.stop()
         self.session.close()
 
     def change(self, change: Callable[[State], State], gesture: str = "", name: str = "The change") -> bool:
@@ -149,9 +152,11 @@ class Page:
 
     def _changed(self) -> None:
         with self._lock:
-            if self.session.state.dragged is None:
+            if self.session.state.dragged is None and not self._player.is_playing:
                 self.render()
-            elif self._late is None and self._is_open:  # each step of a drag has one picture: with its answer
+            elif (
+                self._late is None and self._is_open
+            ):  # a step of a drag or a play has one picture: its answer
                 self._late = threading.Timer(_LATE_S, self.render)
                 self._late.daemon = True
                 self._late.start()
@@ -171,11 +176,13 @@ class Page:
             "compared": lambda label: self.change(
                 lambda state: replace(state, compared=None if label == NO_CASE else case_named(label))
             ),
+            "time": lambda values: self.change(lambda state: state.at_time(values[0]), name="The instant"),
             "power": self._slid,
             "power_text": self._power_typed,
             "pointer": self._pointed,
         }
         buttons: dict[str, Callable[[], object]] = {
+            "play": self._player.press,
             "undo": session.undo,
             "redo": session.redo,
             "delete": self._delete,
@@ -183,7 +190,7 @@ class Page:
             "aim": self.aim,
             "present": self._present,
             "save": lambda: self._export(
-                "scenario.toml", lambda state: toml_like(state.text, state.scenario).encode()
+                "scenario.toml", lambda state: toml_like(state.text, state.stated).encode()
             ),
             "pose": lambda: self._export("pose.json", pose_json),
             "figure": lambda: self._export("figure.png", figure_png),
@@ -298,9 +305,7 @@ class Page:
 
     def _load(self, file: UploadedFile) -> None:
         def loaded(state: State) -> State:
-            return state.with_scenario(
-                scenario_from_text(file.content, file.name).still(), file.content.decode()
-            )
+            return state.with_scenario(scenario_from_text(file.content, file.name), file.content.decode())
 
         if not self.change(loaded, name=file.name):  # viser has said by now that the file has arrived
             self._notify(

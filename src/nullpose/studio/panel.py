@@ -16,7 +16,7 @@ from nullpose.studio.picking import FENCE, RULER
 from nullpose.studio.plot import power_plot_svg
 from nullpose.studio.readout import card_html, macros, readout_html
 from nullpose.studio.session import History
-from nullpose.studio.state import POWER_DB
+from nullpose.studio.state import POWER_DB, State
 
 if TYPE_CHECKING:
     from viser import GuiApi, GuiDropdownHandle, GuiEvent, GuiFolderHandle, GuiTextHandle
@@ -30,6 +30,18 @@ Control = tuple[str, str, str, dict[str, object]]
 
 TABS: dict[str, dict[str, Control | dict[str, Control]]] = {
     "Scene": {
+        "time": (
+            "multi_slider",
+            "Time (s)",
+            "The instant of the scene in motion that is shown and solved.",
+            {"min": 0.0, "max": 1.0, "step": 1.0, "initial_value": (0.0,), "visible": False},
+        ),
+        "play": (
+            "button",
+            "Play or stop",
+            "Go through the instants to the last, each when its pose is found, at most five a second.",
+            {"visible": False} | _GREY,
+        ),
         "power": (
             "multi_slider",  # of one handle: viser's other one has a field that takes every keystroke
             "Jamming (dB)",
@@ -198,6 +210,8 @@ class Panel(SimpleNamespace):
             unit=Quantity.of(state.scenario).unit,
         )
         shown: dict[str, dict[str, object]] = {
+            "time": _time_values(state),
+            "play": {"visible": state.motion is not None},
             "case": {"options": labels, "value": state.case.label},
             "compared": {"options": others, "value": state.compared.label if state.compared else NO_CASE},
             "power": {"disabled": power_db is None},
@@ -222,6 +236,15 @@ class Panel(SimpleNamespace):
             put(getattr(self, name), **values)
         self._selected.render(entries)
         self._vehicle.render(entries_of(state, None))
+
+
+def _time_values(state: State) -> dict[str, object]:
+    if state.motion is None or state.motion.time is None:
+        return {"visible": False}
+    step_s, last_s = state.motion.time.step_s, state.motion.time.duration_s
+    digits = max(len(f"{t_s:.4g}".partition(".")[2]) for t_s in (step_s, last_s))
+    look: dict[str, object] = {"visible": True, "max": last_s, "step": step_s, "precision": digits}
+    return look | {"value": (state.scenario.at_s,)}
 
 
 class _Fields:

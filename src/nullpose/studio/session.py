@@ -30,7 +30,7 @@ class History:
     gesture: str = ""
 
     def changed(self, state: State, gesture: str = "") -> History:
-        """Return the history with a new state; a step only if its scene is another.
+        """Return the history with a new state; a step only if its scene is another, and not just its instant.
 
         Args:
             state: the new one.
@@ -39,6 +39,8 @@ class History:
         """
         if state.scene == (now := self.present).scene:
             return replace(self, present=replace(state, version=now.version, events=now.events))
+        if state.motion is not None and replace(state, scenario=now.scenario).scene == now.scene:
+            return replace(self, present=self._next(state))
         if gesture and gesture == self.gesture:
             return replace(self, present=self._next(state), future=())
         return History(

@@ -15,6 +15,7 @@ from nullpose.errors import Fault, ScenarioError
 from nullpose.physics import from_db, to_db
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import GroundPoint, NoFlyZone, Scenario
+from nullpose.scenario.motion import is_moving
 from nullpose.studio.answer import Answer, Event, Notice, status_words
 from nullpose.studio.case import OPTIMUM, PoseCase, cases_of
 from nullpose.studio.field_map import MAPS, FieldMap, Scale
@@ -27,7 +28,7 @@ Key = tuple[Kind, int]
 """A ground point or a no-fly zone: which list of the scenario it is in, and where there."""
 
 KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "destinations", "sources", "no_fly")
-_SCENE = ("scenario", "case", "compared", "text", "opened")
+_SCENE = ("scenario", "motion", "case", "compared", "text", "opened")
 _ROUND_M = 3  # digits of a metre that a dragged position keeps
 _ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field has all of them
 
@@ -42,7 +43,8 @@ class State:
     """A scene, what is found for it, and how it is shown.
 
     Args:
-        scenario: the scene.
+        scenario: the scene; of one in motion, the instant that is shown.
+        motion: the scene in motion, or None.
         case: how its pose is chosen.
         compared: a second case to set beside it, or None.
         text: of the file that the scenario is from, which may be out of date; empty without a file.
@@ -62,6 +64,7 @@ class State:
     """
 
     scenario: Scenario
+    motion: Scenario | None = None
     case: PoseCase = OPTIMUM
     compared: PoseCase | None = None
     text: str = ""
@@ -120,6 +123,11 @@ class State:
         return status_words(answer) if notice is None else notice.words
 
     @property
+    def is_answered(self) -> bool:
+        """Whether each case has an answer to the present version of the scene, or a reason for none."""
+        return all(self.current(case) or self.present(Notice, case) for case in self.cases)
+
+    @property
     def field_map(self) -> FieldMap | None:
         """The maps of the present version, or None."""
         return self.present(FieldMap)
@@ -156,9 +164,14 @@ class State:
             for index, point in enumerate(getattr(self.scenario, kind))
         )
 
+    @property
+    def stated(self) -> Scenario:
+        """The scenario that is edited and saved: the one in motion, if there is one."""
+        return self.scenario if self.motion is None else self.motion
+
     def members(self, kind: Kind) -> tuple[GroundPoint | NoFlyZone, ...]:
-        """Return a list of the scenario."""
-        return tuple(getattr(self.scenario.airspace if kind == "no_fly" else self.scenario, kind))
+        """Return a list of the scenario, as it is stated."""
+        return tuple(getattr(self.stated.airspace if kind == "no_fly" else self.stated, kind))
 
     def with_members(self, kind: Kind, members: Iterable[GroundPoint | NoFlyZone]) -> State:
         """Return the state with another list in the scenario.
@@ -168,22 +181,60 @@ class State:
         """
         update: dict[str, object] = {kind: tuple(members)}
         if kind == "no_fly":
-            update = {"airspace": self.scenario.airspace.model_copy(update=update)}
+            update = {"airspace": self.stated.airspace.model_copy(update=update)}
         elif kind == "destinations":
             update = {"destination": next(iter(members), None)}
-        return self.with_scenario(self.scenario.model_copy(update=update))
+        return self.with_scenario(self.stated.model_copy(update=update))
 
     def moved(self, key: Key, position_m: ArrayLike) -> State:
         """Return the state with one ground point elsewhere, to a millimetre.
 
         Raises:
-            ScenarioError: the scenario would be faulty.
+            ScenarioError: the point moves by itself, or the scenario would be faulty.
         """
+        self.require_rest(key)
         kind, index = key
         east, north, up = np.round(np.asarray(position_m, dtype=float), _ROUND_M).tolist()
         points = list(self.members(kind))
         points[index] = points[index].model_copy(update={"position_m": (east, north, up)})
         return self.with_members(kind, points)
+
+    def require_rest(self, key: Key) -> None:
+        """Do nothing if a point stays in one place in time.
+
+        Raises:
+            ScenarioError: it moves, and a place of its own is not stated.
+        """
+        kind, index = key
+        point = self.members(kind)[index]
+        if isinstance(point, GroundPoint) and is_moving(point):
+            words = "it moves, so its place follows from the time; change its motion in the file, or open one"
+            raise ScenarioError(
+                [Fault(f"{kind}[{index}].position_m", f"{words} instant as a still scene (--at SECONDS)")]
+            )
+
+    @property
+    def next_s(self) -> float | None:
+        """The time of the next instant, seconds; None at the last one, and in a still scene."""
+        if self.motion is None or self.scenario.at_s is None:
+            return None
+        instants_s = self.motion.instants_s
+        return next(map(float, instants_s[instants_s > self.scenario.at_s]), None)
+
+    def at_time(self, t_s: float) -> State:
+        """Return the state at the instant of the scene in motion that is nearest to a time.
+
+        Args:
+            t_s: the time, seconds; without meaning in a still scene, which stays as it is.
+
+        Raises:
+            ScenarioError: the points are then where still ones may not be.
+        """
+        if self.motion is None:
+            return self
+        instants_s = self.motion.instants_s
+        nearest_s = float(instants_s[np.argmin(np.abs(instants_s - t_s))])
+        return replace(self, scenario=self.motion.at(nearest_s))
 
     @property
     def power_db(self) -> float | None:
@@ -209,13 +260,12 @@ class State:
             {"power_w": float(f"{jammer.transmit_power_w * float(from_db(by_db)):.12g}")}
             if jammer.power_dbm is None
             else {"power_dbm": float(f"{jammer.power_dbm + by_db:.12g}")}
-            for jammer in self.scenario.jammers
+            for jammer in self.stated.jammers
         )
         jammers = tuple(
-            jammer.model_copy(update=power)
-            for jammer, power in zip(self.scenario.jammers, powers, strict=True)
+            jammer.model_copy(update=power) for jammer, power in zip(self.stated.jammers, powers, strict=True)
         )
-        return replace(self, scenario=self.scenario.model_copy(update={"jammers": jammers}))
+        return self.with_scenario(self.stated.model_copy(update={"jammers": jammers}))
 
     @property
     def power_text(self) -> str:
@@ -242,19 +292,25 @@ class State:
         """Return the state of another scenario, the cases kept where they have a meaning for it.
 
         Args:
-            scenario: the new one.
+            scenario: the new one; of one in motion the time that is shown stays, and is 0 of another scene.
             text: of the file that it is from, which makes it another scene; None for a change of this one.
+
+        Raises:
+            ScenarioError: the points are at that time where still ones may not be.
         """
+        motion = scenario if scenario.time else None
+        if motion is not None:
+            scenario = motion.still(self.scenario.at_s if text is None else None)
         allowed = cases_of(scenario)
         case = self.case if self.case in allowed else allowed[0]
         compared = self.compared if self.compared in allowed and self.compared != case else None
-        state = replace(self, scenario=scenario, case=case, compared=compared)
+        state = replace(self, scenario=scenario, motion=motion, case=case, compared=compared)
         return state if text is None else replace(state, text=text, opened=self.opened + 1)
 
     @property
     def written(self) -> State:
         """The state with the text of its file, if it has one, brought up to date."""
-        return replace(self, text=self.text and toml_like(self.text, self.scenario))
+        return replace(self, text=self.text and toml_like(self.text, self.stated))
 
     def with_case(self, case: PoseCase) -> State:
         """Return the state with another case chosen."""
