@@ -177,8 +177,7 @@ def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
 
 def _path(key: Key) -> str:
     kind, index = key
-    path = f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]"
-    return path.replace("destinations[0]", "destination")
+    return f"{'airspace.' * (kind == 'no_fly')}{kind}[{index}]".replace("destinations[0]", "destination")
 
 
 def _keys(member: GroundPoint | NoFlyZone) -> dict[str, str]:

@@ -243,8 +243,13 @@ def _time_values(state: State) -> dict[str, object]:
         return {"visible": False}
     step_s, last_s = state.motion.time.step_s, state.motion.time.duration_s
     digits = max(len(f"{t_s:.4g}".partition(".")[2]) for t_s in (step_s, last_s))
-    look: dict[str, object] = {"visible": True, "max": last_s, "step": step_s, "precision": digits}
-    return look | {"value": (state.scenario.at_s,)}
+    return {
+        "visible": True,
+        "max": last_s,
+        "step": step_s,
+        "precision": digits,
+        "value": (state.scenario.at_s,),
+    }
 
 
 class _Fields:

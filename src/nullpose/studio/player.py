@@ -33,9 +33,9 @@ class Player:
 
     def press(self) -> None:
         """Play from the present instant, from the first if it is the last; stop if that is under way."""
-        was_playing = self.is_playing
-        self.stop()
-        if not was_playing:
+        if self.is_playing:
+            self.stop()
+        else:
             self._stopped = threading.Event()  # each play has its own, so that one that was stopped ends
             threading.Thread(
                 target=self._play, args=(self._stopped,), name="nullpose-studio-player", daemon=True
@@ -47,9 +47,9 @@ class Player:
 
     def _play(self, stopped: threading.Event) -> None:
         next_s: float | None = self._session.state.next_s or 0.0
-        while next_s is not None and not stopped.is_set():
-            if not self._change(partial(State.at_time, t_s=next_s)):
-                break
+        while (
+            next_s is not None and not stopped.is_set() and self._change(partial(State.at_time, t_s=next_s))
+        ):
             while not stopped.wait(FRAME_S) and not self._session.state.is_answered:
                 pass
             next_s = self._session.state.next_s

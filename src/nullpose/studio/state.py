@@ -29,6 +29,10 @@ Key = tuple[Kind, int]
 
 KINDS: tuple[Kind, ...] = ("nodes", "jammers", "eavesdroppers", "destinations", "sources", "no_fly")
 _SCENE = ("scenario", "motion", "case", "compared", "text", "opened")
+_MOVES = (
+    "it moves, so its place follows from the time; change its motion in the file, or open one instant as a "
+    "still scene (--at SECONDS)"
+)
 _ROUND_M = 3  # digits of a metre that a dragged position keeps
 _ROUND_DB = 6  # digits of a decibel that a typed power keeps, so that the field has all of them
 
@@ -208,18 +212,14 @@ class State:
         kind, index = key
         point = self.members(kind)[index]
         if isinstance(point, GroundPoint) and is_moving(point):
-            words = "it moves, so its place follows from the time; change its motion in the file, or open one"
-            raise ScenarioError(
-                [Fault(f"{kind}[{index}].position_m", f"{words} instant as a still scene (--at SECONDS)")]
-            )
+            raise ScenarioError([Fault(f"{kind}[{index}].position_m", _MOVES)])
 
     @property
     def next_s(self) -> float | None:
         """The time of the next instant, seconds; None at the last one, and in a still scene."""
         if self.motion is None or self.scenario.at_s is None:
             return None
-        instants_s = self.motion.instants_s
-        return next(map(float, instants_s[instants_s > self.scenario.at_s]), None)
+        return next(map(float, (times_s := self.motion.instants_s)[times_s > self.scenario.at_s]), None)
 
     def at_time(self, t_s: float) -> State:
         """Return the state at the instant of the scene in motion that is nearest to a time.
@@ -233,8 +233,7 @@ class State:
         if self.motion is None:
             return self
         instants_s = self.motion.instants_s
-        nearest_s = float(instants_s[np.argmin(np.abs(instants_s - t_s))])
-        return replace(self, scenario=self.motion.at(nearest_s))
+        return replace(self, scenario=self.motion.at(float(instants_s[np.abs(instants_s - t_s).argmin()])))
 
     @property
     def power_db(self) -> float | None:
@@ -299,8 +298,7 @@ class State:
             ScenarioError: the points are at that time where still ones may not be.
         """
         motion = scenario if scenario.time else None
-        if motion is not None:
-            scenario = motion.still(self.scenario.at_s if text is None else None)
+        scenario = scenario.still(self.scenario.at_s if motion and text is None else None)
         allowed = cases_of(scenario)
         case = self.case if self.case in allowed else allowed[0]
         compared = self.compared if self.compared in allowed and self.compared != case else None
