@@ -12,6 +12,7 @@ from nullpose import ErrorSizes, Pose, Poses, Scenario, plot
 from nullpose.errors import checked
 
 PAPER = nullpose.load("examples/paper.toml")
+MOVING = nullpose.load("examples/moving_jammer.toml")
 POSE = Pose([0.0, 25.0, 8.0], 0.0, 0.0)
 ARRAYS: dict[str, Any] = {"noise_w": 1e-3, "altitude_m": (8, 30)}
 FAST: dict[str, Any] = {"certify": False}
@@ -93,6 +94,14 @@ CALLS: dict[str, Calls] = {
     "solve_many": [
         (lambda wrong: nullpose.solve_many(wrong, **FAST), (None, *ALWAYS_WRONG, [PAPER, 5])),
         (lambda wrong: nullpose.solve_many([PAPER], airframes=wrong, **FAST), (5, "x", [5], {})),
+    ],
+    "solve_trajectory": [
+        (nullpose.solve_trajectory, (None, *ALWAYS_WRONG, PAPER)),
+        (lambda wrong: nullpose.solve_trajectory(MOVING, wrong), (None, *ALWAYS_WRONG)),
+        *(
+            (lambda wrong, key=key: nullpose.solve_trajectory(MOVING, **{key: wrong}), ("x", {}, -1.0))
+            for key in ("gap_db", "time_limit_s", "window_s")
+        ),
     ],
     "guarantee": [
         (lambda wrong: nullpose.guarantee(wrong, [0, 25, 8], [0, 0, 1]), (None, *ALWAYS_WRONG)),

@@ -120,7 +120,7 @@ def test_a_held_pose_has_a_certificate(run: Run, tmp_path: Path) -> None:
     """It is about the scene in motion, and not about one of its instants."""
     scene, proof = tmp_path / "scene.toml", tmp_path / "proof.json.gz"
     text = Path(MOVING).read_text(encoding="utf-8").replace("step_s = 1.0", "step_s = 10.0")
-    scene.write_text(text + "\n[airframe]\ntilt_max_deg = 0.0\n", encoding="utf-8")
+    scene.write_text(text.replace("omnidirectional", "level"), encoding="utf-8")
     found = json.loads(run("solve", scene, "--hover", "--certificate", proof, "--json").stdout)
     assert found["rigour"] == "verified"
     done = run("verify", proof, "--scenario", scene)
