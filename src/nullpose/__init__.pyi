@@ -57,7 +57,7 @@ from .solver.trajectory import (
     Trajectory as Trajectory,
     solve_trajectory as solve_trajectory,
 )
-from .studio.exports import (
+from .studio.show import (
     show as show,
 )
 from .study import (

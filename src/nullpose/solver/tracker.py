@@ -107,7 +107,7 @@ class Tracker:
             destination_m: place of a relay's destination, ``(3,)``.
 
         Returns:
-            As from :func:`nullpose.solve`, its scenario being the one of this moment. The bound has no
+            As from :func:`nullpose.solver.solve`, its scenario being the one of this moment. The bound has no
             certificate: solve that scenario for one.
 
         Raises:
