@@ -104,7 +104,14 @@ def test_missing_keys_are_named(data: Data) -> None:
             del part_at(broken, path[:-1])[path[-1]]
             assert words_for(path) in fault(broken)
     data["version"] = 1
-    assert fault(data) == f"version: must be {VERSION}; solve again with --certificate to have one"
+    assert fault(data) == f"version: must be 2 or {VERSION}; solve again with --certificate to have one"
+
+
+def test_files_of_the_version_before_are_read(data: Data, text: str) -> None:
+    """They state no instants, and say the same without."""
+    assert data.pop("instants") == []
+    data["version"] = 2
+    assert certificate_text(parse_certificate(json.dumps(data))) == certificate_text(parse_certificate(text))
 
 
 def refusal(text: str) -> str:

@@ -23,7 +23,8 @@ from nullpose.scenario import Scenario
 from nullpose.scenario.faults import printable
 
 FORMAT = "nullpose-certificate"
-VERSION = 3
+VERSION, STILL_VERSION = 3, 2
+"""The version written, and one that is read as well: it is of a scene that stands, and states no instants."""
 
 _GZIP_MAGIC = b"\x1f\x8b"
 _GZIP = 31  # for zlib: a header and a checksum as gzip writes them
@@ -163,9 +164,11 @@ def parse_certificate(text: str) -> Certificate:
         f"is no certificate: its format must be {FORMAT!r}",
     )
     _require(
-        type(data.get("version")) is int and data["version"] == VERSION,
-        f"version: must be {VERSION}; solve again with --certificate to have one",
+        type(data.get("version")) is int and data["version"] in (STILL_VERSION, VERSION),
+        f"version: must be {STILL_VERSION} or {VERSION}; solve again with --certificate to have one",
     )
+    if data["version"] == STILL_VERSION:
+        data = {"instants": [], **data}
     scenario = _table(data.get("scenario", _MISSING), "scenario")
     _require(
         scenario_digest(scenario) == data.get("scenario_sha256"),
