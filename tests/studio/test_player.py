@@ -123,8 +123,8 @@ def test_edits_are_of_the_whole_motion() -> None:
         assert [jammer.power_w for jammer in scene.jammers] == pytest.approx([10.0, 10.0])
         assert [node.position_m for node in scene.nodes] == [(1.0, 2.0, 0.0)]
         assert scene.airframe.tilt_max_deg == 30.0
-    assert toml_like(state.text, state.stated) == FILE.read_text()
-    assert scenario_from_text(toml_like(edited.text, edited.stated).encode(), FILE.name) == edited.motion
+    assert toml_like(state.text, state.draft) == FILE.read_text()
+    assert scenario_from_text(toml_like(edited.text, edited.draft).encode(), FILE.name) == edited.motion
 
 
 def test_a_point_in_motion_is_not_put_elsewhere() -> None:

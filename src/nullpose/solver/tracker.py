@@ -144,8 +144,8 @@ class Tracker:
         if outcome.reason and limit_clock() > started + self._deadline_s:
             outcome = replace(outcome, reason=f"the deadline of {self._deadline_s:g} s")
         self._keep(outcome, last)
-        told = replace(outcome, proofs=(), cells=outcome.nodes)
-        answer = answer_of(scenario, Scheme.OPTIMUM, told, None, options)
+        without_leaves = replace(outcome, proofs=(), cells=outcome.nodes)
+        answer = answer_of(scenario, Scheme.OPTIMUM, without_leaves, None, options)
         return result_of(scenario, answer, options, began, ErrorSizes())
 
     @staticmethod

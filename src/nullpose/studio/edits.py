@@ -146,7 +146,7 @@ def with_fence(state: State, corners_m: ArrayLike) -> State:
         ScenarioError: they make no fence.
     """
     corners = tuple((round(float(x), 2), round(float(y), 2)) for x, y in np.asarray(corners_m))
-    return state.with_scenario(apply_overrides(state.stated, [Override("airspace.geofence_m", corners)]))
+    return state.with_scenario(apply_overrides(state.draft, [Override("airspace.geofence_m", corners)]))
 
 
 def entries_of(state: State, key: Key | None) -> tuple[Entry, ...]:
@@ -227,7 +227,7 @@ def with_typed(state: State, entry: Entry, text: str) -> State:
     Raises:
         ScenarioError: the value is not allowed.
     """
-    typed, path, scenario = text.strip(), entry.path, state.stated
+    typed, path, scenario = text.strip(), entry.path, state.draft
     if typed == entry.text:
         return state
     for key, _ in state.points():

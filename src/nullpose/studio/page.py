@@ -190,7 +190,7 @@ class Page:
             "aim": self.aim,
             "present": self._present,
             "save": lambda: self._export(
-                "scenario.toml", lambda state: toml_like(state.text, state.stated).encode()
+                "scenario.toml", lambda state: toml_like(state.text, state.draft).encode()
             ),
             "pose": lambda: self._export("pose.json", pose_json),
             "figure": lambda: self._export("figure.png", figure_png),

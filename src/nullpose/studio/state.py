@@ -169,13 +169,13 @@ class State:
         )
 
     @property
-    def stated(self) -> Scenario:
+    def draft(self) -> Scenario:
         """The scenario that is edited and saved: the one in motion, if there is one."""
         return self.scenario if self.motion is None else self.motion
 
     def members(self, kind: Kind) -> tuple[GroundPoint | NoFlyZone, ...]:
         """Return a list of the scenario, as it is stated."""
-        return tuple(getattr(self.stated.airspace if kind == "no_fly" else self.stated, kind))
+        return tuple(getattr(self.draft.airspace if kind == "no_fly" else self.draft, kind))
 
     def with_members(self, kind: Kind, members: Iterable[GroundPoint | NoFlyZone]) -> State:
         """Return the state with another list in the scenario.
@@ -185,10 +185,10 @@ class State:
         """
         update: dict[str, object] = {kind: tuple(members)}
         if kind == "no_fly":
-            update = {"airspace": self.stated.airspace.model_copy(update=update)}
+            update = {"airspace": self.draft.airspace.model_copy(update=update)}
         elif kind == "destinations":
             update = {"destination": next(iter(members), None)}
-        return self.with_scenario(self.stated.model_copy(update=update))
+        return self.with_scenario(self.draft.model_copy(update=update))
 
     def moved(self, key: Key, position_m: ArrayLike) -> State:
         """Return the state with one ground point elsewhere, to a millimetre.
@@ -259,12 +259,12 @@ class State:
             {"power_w": float(f"{jammer.transmit_power_w * float(from_db(by_db)):.12g}")}
             if jammer.power_dbm is None
             else {"power_dbm": float(f"{jammer.power_dbm + by_db:.12g}")}
-            for jammer in self.stated.jammers
+            for jammer in self.draft.jammers
         )
         jammers = tuple(
-            jammer.model_copy(update=power) for jammer, power in zip(self.stated.jammers, powers, strict=True)
+            jammer.model_copy(update=power) for jammer, power in zip(self.draft.jammers, powers, strict=True)
         )
-        return self.with_scenario(self.stated.model_copy(update={"jammers": jammers}))
+        return self.with_scenario(self.draft.model_copy(update={"jammers": jammers}))
 
     @property
     def power_text(self) -> str:
@@ -308,7 +308,7 @@ class State:
     @property
     def written(self) -> State:
         """The state with the text of its file, if it has one, brought up to date."""
-        return replace(self, text=self.text and toml_like(self.text, self.stated))
+        return replace(self, text=self.text and toml_like(self.text, self.draft))
 
     def with_case(self, case: PoseCase) -> State:
         """Return the state with another case chosen."""

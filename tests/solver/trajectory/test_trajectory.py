@@ -117,6 +117,15 @@ def test_it_starts_and_ends_where_it_is_told() -> None:
     assert np.max(found.speeds_m_s) <= 4.0 * (1.0 + 1e-9)
 
 
+def test_no_flight_that_misses_the_end_takes_its_place() -> None:
+    """One that sees a second ahead does not know of the end; the flight given gets there all the same."""
+    ends = {"preset": "omnidirectional", "speed_max_m_s": 4.0, "start_m": [0.0, 25.0, 8.0]}
+    far = {"airframe": ends | {"end_m": [20.0, 25.0, 8.0]}}
+    found = nullpose.solve_trajectory(scene(**far), "mean-db", gap_db=100.0, window_s=1.0)
+    np.testing.assert_allclose(found.positions_m[-1], [20.0, 25.0, 8.0], atol=1e-9)
+    assert found.baselines["window"] is None
+
+
 @settings(max_examples=6, deadline=None)
 @given(east_m=st.floats(-12.0, 12.0), north_m=st.floats(15.0, 35.0), speed_m_s=st.sampled_from([4.0, 10.0]))
 def test_no_segment_cuts_a_mast(east_m: float, north_m: float, speed_m_s: float) -> None:

@@ -98,6 +98,8 @@ class KeyInstants:
         from nullpose.solver.kernels.bounds.node import HALF
 
         boxes = [self._root(t, log_level) for t in self.chosen]
+        if not np.all(np.isfinite(boxes)):  # far away nothing is excluded
+            return False
         while all(len(each) for each in boxes):
             if limit_clock() > deadline:
                 return False

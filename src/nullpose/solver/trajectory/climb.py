@@ -24,7 +24,6 @@ _STEPS = 40  # of Newton's method at each
 _NEAR_M, _LONGEST_M = 12.0, 5.0  # obstacles that count, and the longest move of a step
 _HALVINGS = 12
 _ENOUGH = 0.02  # of the barrier's weight: gains below end Newton's method
-_LEAST_SLACK_M = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +90,7 @@ class Climb:
             for family, domain, pose in zip(self.course.families, self.domains, self.poses, strict=True)
         ]
         logs = [values[rows] for values, rows in each]
-        return [self.mu / (own - level) for own, level in zip(logs, self._levels(logs), strict=True)]
+        return [self.mu / (reached - level) for reached, level in zip(logs, self._levels(logs), strict=True)]
 
     def _to_stationary(self) -> None:
         self._update_domains()

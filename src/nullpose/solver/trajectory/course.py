@@ -14,6 +14,7 @@ from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
+from nullpose.problem.instants import still_scenes
 from nullpose.scenario import Scenario
 from nullpose.scenario.motion import time_of
 
@@ -97,7 +98,7 @@ class Course:
             "trajectory: given an array, an antenna that is no dipole, or a channel in Python; allowed: a "
             "dipole, and the channels that a file can state",
         )
-        scenes = [scenario.at(float(t_s)) for t_s in times_s]
+        scenes = still_scenes(scenario)
         require_usage(
             not (aim is Aim.MEAN_RATE and Quantity.of(scenes[0]).is_rate),
             "maximise: given mean-rate, but the objective is a rate; allowed: mean-db, which is its mean",

@@ -92,7 +92,7 @@ class PriceBound:
     ) -> None:
         assert flight.prices is not None
         assert flight.multipliers is not None
-        self.course, self.flight, self.best, self.gap = course, flight, best, gap
+        self.course, self.flight, self.gap = course, flight, gap
         self.deadline, self.on_bound, self.numbers = deadline, on_bound, count()
         self.offset = 1.0 if course.aim is Aim.MEAN_RATE else 0.0
         self.total = len(course.times_s)
@@ -103,20 +103,21 @@ class PriceBound:
             [self._gain(t, place_m) for place_m in places] for t, places in enumerate(self.pool_m)
         ]
 
-    def run(self) -> float:
-        """Return a bound on the mean, nats, as near as time and gap let it."""
-        cap = float(np.mean(self.caps))
-        root = self._bounded(self._root(), -cap, _ROUNDS)
-        open_nodes = [root]
+    def run(self) -> None:
+        """Tell bounds on the mean, as near as time and gap let them come."""
+        cap, root = float(np.mean(self.caps)), self._root()
+        if not (np.all(np.isfinite(root.low_m)) and np.all(np.isfinite(root.high_m))):
+            return  # far away nothing is excluded
+        open_nodes = [self._bounded(root, -cap, _ROUNDS)]
         while open_nodes:
             node = heapq.heappop(open_nodes)
             bound = min(cap, max(self.flight.score, -node.bound))
             self.on_bound(self.flight, bound)
             if bound <= self.flight.score + self.gap or limit_clock() > self.deadline or node.split is None:
-                return bound
+                return
             for child in self._halves(node):
                 heapq.heappush(open_nodes, child)
-        return self.flight.score
+        self.on_bound(self.flight, self.flight.score)  # no part has a flight
 
     def _root(self) -> _Node:
         """Return the boxes outside which a trajectory falls behind the best, whatever it does elsewhere.
@@ -190,15 +191,13 @@ class PriceBound:
             if np.all(low_m <= high_m):
                 radius = max(node.radius, _LATER_RADIUS * float(np.max(np.abs(node.prices))))
                 half = _Node(node.bound, next(self.numbers), low_m, high_m, node.prices, radius)
-                half = self._bounded(half, node.bound, _ROUNDS_OF_HALVES)
-                if -half.bound > self.flight.score + self.gap:
-                    halves.append(half)
+                halves.append(self._bounded(half, node.bound, _ROUNDS_OF_HALVES))
         return halves
 
-    def _bounded(self, node: _Node, known: float, rounds: int) -> _Node:
+    def _bounded(self, node: _Node, negative_bound: float, rounds: int) -> _Node:
         """Bound a node by prices, bettered round by round; choose what to split."""
         prices, centre, at_centre = node.prices, node.prices, math.inf
-        bound, radius, mixture, lower = -known, node.radius, None, -math.inf
+        bound, radius, mixture, lower = -negative_bound, node.radius, None, -math.inf
         for _ in range(rounds):
             if limit_clock() > self.deadline:
                 break

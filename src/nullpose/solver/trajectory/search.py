@@ -20,6 +20,7 @@ _FINISHED = 2  # of the rough climbs, the best
 _AT_REST_M_S = 1e-4
 _MARGIN = 1e-3  # of the airspace's height that starts keep from its floor, at most 1 cm
 _MARGIN_M = 1e-2
+_ROUNDING = 1e-9  # metres, and of a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,7 @@ def best_flight(course: Course, places_m: FloatArray) -> tuple[Flight, Lattice]:
     climbs = [
         (Climb(course, poses), mu)
         for poses in (inside(course, path) for path in _distinct(paths))
-        if is_clear(course, poses[:, :3])
+        if is_allowed(course, poses[:, :3])
         for mu in _BARRIERS[is_worst]
     ]
     rough = [(climb, climb.run(mu, _ROUGH)) for climb, mu in climbs]
@@ -139,6 +140,19 @@ def seeing_ahead(course: Course, window_s: float, start: Flight) -> Flight:
     return flight_of(course, poses)
 
 
+def is_allowed(course: Course, positions_m: FloatArray) -> bool:
+    """Check that a flight, (t, 3), keeps to speed, airspace, points and the ends that are given."""
+    steps_m = np.linalg.norm(np.diff(positions_m, axis=0), axis=1)
+    is_slow = bool(np.all(steps_m <= course.reach_m * (1.0 + _ROUNDING) + _ROUNDING))
+    given = [
+        (place_m, end_m)
+        for place_m, end_m in zip(positions_m[[0, -1]], course.ends_m, strict=True)
+        if end_m is not None
+    ]
+    at_ends = all(np.allclose(place_m, end_m, rtol=0.0, atol=_ROUNDING) for place_m, end_m in given)
+    return is_slow and at_ends and is_clear(course, positions_m)
+
+
 def is_clear(course: Course, positions_m: FloatArray, first: int = 0) -> bool:
     """Check that straight segments keep to the airspace and clear of every point.
 
@@ -149,11 +163,12 @@ def is_clear(course: Course, positions_m: FloatArray, first: int = 0) -> bool:
     """
     families = course.families[first : first + len(positions_m)]
     domain, points_m = families[0].domain, np.stack([each.ratios.points_m for each in families])
-    inside = np.all((positions_m >= domain.low_m - 1e-9) & (positions_m <= domain.high_m + 1e-9))
+    low_m, high_m = domain.low_m - _ROUNDING, domain.high_m + _ROUNDING
+    within = bool(np.all((positions_m >= low_m) & (positions_m <= high_m)))
     spaces = half_spaces(
         domain, positions_m[:-1], positions_m[1:], points_m[:-1], points_m[1:], domain.keep_out_m
     )
-    return bool(inside and np.all(spaces.slacks_m >= -1e-9))
+    return within and bool(np.all(spaces.slacks_m >= -_ROUNDING))
 
 
 def _distinct(paths: list[FloatArray]) -> list[FloatArray]:

@@ -20,7 +20,7 @@ from nullpose.solver.trajectory.bounds import Clairvoyant, clairvoyant, worst_bo
 from nullpose.solver.trajectory.course import Aim, Course
 from nullpose.solver.trajectory.prices import PriceBound
 from nullpose.solver.trajectory.result import Trajectory, from_nats
-from nullpose.solver.trajectory.search import Flight, best_flight, greedy, hovering, seeing_ahead
+from nullpose.solver.trajectory.search import Flight, best_flight, greedy, hovering, is_allowed, seeing_ahead
 
 GAP_DB = 0.05
 """The gap asked for unless another is, in dB or, of a rate, bits/s/Hz."""
@@ -105,6 +105,11 @@ class _Run:
         others = {"hover": hovering(course, lattice), "greedy": greedy(course, places_m), "window": None}
         if window_s is not None:
             others["window"] = seeing_ahead(course, window_s, flight)
+        # one that does not get to its end, or waits where a point comes by, is no flight
+        others = {
+            name: each if each is not None and is_allowed(course, each.poses[:, :3]) else None
+            for name, each in others.items()
+        }
         better = max([flight, *filter(None, others.values())], key=lambda each: each.score)
         flight = replace(better, prices=flight.prices, multipliers=flight.multipliers)
         top = course.aim.score(best.bounds)
