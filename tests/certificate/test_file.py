@@ -108,9 +108,10 @@ def test_missing_keys_are_named(data: Data) -> None:
 
 
 def test_files_of_the_version_before_are_read(data: Data, text: str) -> None:
-    """They state no instants, and say the same without."""
-    assert data.pop("instants") == []
+    """They say the same without instants, and are refused with them."""
     data["version"] = 2
+    assert fault(data) == f"instants: only version {VERSION} states them"
+    assert data.pop("instants") == []
     assert certificate_text(parse_certificate(json.dumps(data))) == certificate_text(parse_certificate(text))
 
 

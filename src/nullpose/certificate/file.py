@@ -168,6 +168,7 @@ def parse_certificate(text: str) -> Certificate:
         f"version: must be {STILL_VERSION} or {VERSION}; solve again with --certificate to have one",
     )
     if data["version"] == STILL_VERSION:
+        _require("instants" not in data, f"instants: only version {VERSION} states them")
         data = {"instants": [], **data}
     scenario = _table(data.get("scenario", _MISSING), "scenario")
     _require(
