@@ -209,9 +209,10 @@ def interior_multipliers(
     _, reached = smallest_form(forms, v)
     if primal > level and primal - reached > coarseness * level:
         # stopped early, so the axis is a poor one: finish, to see whether there is a duality gap at all
-        primal, total = sparse_dual(
+        met, total = sparse_dual(
             forms, every, sides, total, level, math.inf, 1e-4, start, pool, matrix, shares
         )
+        primal = max(primal, met)  # which may be less accurate
         top_eigenvector(matrix, v)
     put_weights(pool, sides, total, ratios, weights)
     return primal
