@@ -32,13 +32,13 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-class _Queue:
+class Queue:
     """A stack of nodes to do, ``top`` of them, and the leaves made of them, ``filled`` of them.
 
     Both arrays grow in place: a larger copy would hold them twice.
     """
 
-    def __init__(self, nodes: FloatArray, orientation: tuple[int, ...]) -> None:
+    def __init__(self, nodes: FloatArray, orientation: tuple[int, ...] = (3,)) -> None:
         rows, columns = nodes.shape
         self.stack, self.leaves = np.empty((rows + _DEPTH, columns)), np.empty((_FIRST, columns))
         self.top = self.filled = 0
@@ -88,7 +88,7 @@ class WorkerPool:
 
     def __init__(self, start: FloatArray, orientation: tuple[int, ...] = (3,)) -> None:
         self._orientation = orientation
-        self._queues = [_Queue(start, orientation)]
+        self._queues = [Queue(start, orientation)]
 
     @property
     def done(self) -> bool:
@@ -130,7 +130,7 @@ class WorkerPool:
             if richest.top < _FEWEST_TO_SHARE:
                 break
             if place == len(self._queues):
-                self._queues.append(_Queue(richest.give(), self._orientation))
+                self._queues.append(Queue(richest.give(), self._orientation))
             elif not self._queues[place].top:
                 self._queues[place].take(richest.give())
         busy = [queue for queue in self._queues if queue.top]

@@ -13,6 +13,7 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import count
@@ -27,23 +28,40 @@ from nullpose.solver.trajectory.course import Aim, Course, likely_poses
 from nullpose.solver.trajectory.lattice import INSIDE
 from nullpose.solver.trajectory.program import best_prices
 from nullpose.solver.trajectory.search import Flight, climbed, is_clear
-from nullpose.solver.worker_pool import WorkerPool
+from nullpose.solver.worker_pool import Queue, processors
 
 _ROUNDS, _ROUNDS_OF_HALVES = 14, 4  # of prices at the first node, and at others
-_SHARE, _LEAST_GAP = 0.05, 3e-4  # of what is open: the gap of the problems of one instant, nats
+_SHARE, _LEAST_GAP = 0.2, 3e-4  # of what is open: the gap of the problems of one instant, nats
 _NOTED = 0.3  # of that gap: positions that are better by less are not noted
 _BOXES = 20_000  # of one of them
-_CHUNK = 2_000
+_SPARE = 1.0  # as in ``Goal``
 _LARGEST = 300.0  # of a logarithm: prices that offer more are no use
 _LEAST_DROP, _DROPS = 0.05, 48  # below an instant's cap, nats: levels of boxes
 _LEAST_GAIN, _FAINTEST = 1e-12, -650.0  # of a rate, and the lowest logarithm
-_FIRST_RADIUS, _LATER_RADIUS = 0.3, 0.1  # of the largest price, where a node begins
+_FIRST_RADIUS, _LATER_RADIUS = 0.3, 0.6  # of the largest price, where a node begins
 _LEAST_RADIUS = 3e-3  # of prices around those at hand, nats by metre
 _GAIN = 0.02  # of what is open: a round of prices that gains less is the last
 _EDGE_M = 1e-9
 _MOST_OF_IT, _NO_SHARE, _NO_SPREAD_M2 = 0.5, 1e-6, 1e-6  # of a mixture
 _CLIMB_EVERY, _BARRIER, _BLENDS = 6, 1e-2, (0.03, 0.1, 0.3, 0.6)  # nodes, and ways from means to the flight
 _Mixture: TypeAlias = list[list[tuple[float, int]]]  # at each instant shares, and positions of its pool
+
+
+@dataclass(frozen=True)
+class _Priced:
+    """What prices prove of a node.
+
+    Args:
+        prices: (t - 1, 3) nats by metre.
+        bounds: (t,) no position of the box at the instant offers more, nats.
+        best_m: (t, 3) the position met that offers most.
+        mean: what follows for the mean, nats.
+    """
+
+    prices: FloatArray
+    bounds: FloatArray
+    best_m: FloatArray
+    mean: float
 
 
 @dataclass(order=True)
@@ -55,7 +73,7 @@ class _Node:
         number: of the node.
         low_m: (t, 3) lowest corners.
         high_m: (t, 3) highest.
-        prices: (t - 1, 3) the best so far.
+        priced: the best prices so far, in a box around this one's, with their bounds.
         radius: of those tried around them.
         split: the instant and the coordinate to halve, and where.
     """
@@ -64,7 +82,7 @@ class _Node:
     number: int
     low_m: FloatArray = field(compare=False)
     high_m: FloatArray = field(compare=False)
-    prices: FloatArray = field(compare=False)
+    priced: _Priced = field(compare=False)
     radius: float = field(compare=False)
     split: tuple[int, int, float] | None = field(compare=False, default=None)
 
@@ -94,6 +112,7 @@ class PriceBound:
         assert flight.multipliers is not None
         self.course, self.flight, self.gap = course, flight, gap
         self.deadline, self.on_bound, self.numbers = deadline, on_bound, count()
+        self.threads = ThreadPoolExecutor(processors())
         self.offset = 1.0 if course.aim is Aim.MEAN_RATE else 0.0
         self.total = len(course.times_s)
         self.caps = course.aim.gains(best.bounds)
@@ -146,7 +165,9 @@ class PriceBound:
                 low_m[t], high_m[t] = end_m, end_m
         assert prices is not None
         radius = max(_LEAST_RADIUS, _FIRST_RADIUS * float(np.max(np.abs(prices))))
-        return _Node(0.0, next(self.numbers), *self._reachable(low_m, high_m), prices, radius)
+        unknown = np.full((self.total, 4), np.inf)
+        priced = _Priced(prices, unknown[:, 0], unknown[:, 1:], math.inf)
+        return _Node(0.0, next(self.numbers), *self._reachable(low_m, high_m), priced, radius)
 
     def _level_box(self, t: int, drop: float) -> FloatArray:
         """Return the box outside which an instant's gain is below its cap by a drop, (2, 3).
@@ -189,54 +210,64 @@ class PriceBound:
             (high_m if side == 0 else low_m)[t, axis] = at_m
             low_m, high_m = self._reachable(low_m, high_m)
             if np.all(low_m <= high_m):
-                radius = max(node.radius, _LATER_RADIUS * float(np.max(np.abs(node.prices))))
-                half = _Node(node.bound, next(self.numbers), low_m, high_m, node.prices, radius)
+                radius = max(node.radius, _LATER_RADIUS * float(np.max(np.abs(node.priced.prices))))
+                half = _Node(node.bound, next(self.numbers), low_m, high_m, node.priced, radius)
                 halves.append(self._bounded(half, node.bound, _ROUNDS_OF_HALVES))
         return halves
 
     def _bounded(self, node: _Node, negative_bound: float, rounds: int) -> _Node:
         """Bound a node by prices, bettered round by round; choose what to split."""
-        prices, centre, at_centre = node.prices, node.prices, math.inf
         bound, radius, mixture, lower = -negative_bound, node.radius, None, -math.inf
+        prices, centre = node.priced.prices, replace(node.priced, mean=math.inf)
         for _ in range(rounds):
             if limit_clock() > self.deadline:
                 break
             gap = max(_LEAST_GAP, _SHARE * (bound - self.flight.score))
             found = self._lagrangian(node, prices, gap)
-            bound = min(bound, found)
-            if math.isfinite(at_centre):  # a trust region: by how much of what was foreseen came true
-                share = (at_centre - found) / max(1e-12, at_centre - lower)
+            bound = min(bound, found.mean)
+            if math.isfinite(centre.mean):  # a trust region: by how much of what was foreseen came true
+                share = (centre.mean - found.mean) / max(1e-12, centre.mean - lower)
                 radius *= 2.0 if share > 0.5 else 1.0 if share > 0.1 else 0.3
-            if found < at_centre:
-                centre, at_centre = prices, found
+            if found.mean < centre.mean:
+                centre = found
             if bound <= self.flight.score + self.gap:
                 break
-            lower, prices, mixture = self._master(node, centre, radius)
-            if at_centre - lower < _GAIN * (at_centre - self.flight.score):
+            lower, prices, mixture = self._master(node, centre.prices, radius)
+            if centre.mean - lower < _GAIN * (centre.mean - self.flight.score):
                 break
         split = None if mixture is None else self._split(node, mixture)
-        return replace(node, bound=-bound, prices=centre, radius=radius, split=split)
+        return replace(node, bound=-bound, priced=centre, radius=radius, split=split)
 
-    def _lagrangian(self, node: _Node, prices: FloatArray, gap: float) -> float:
-        """Bound the mean at prices, nats; add the positions met to the pools."""
+    def _lagrangian(self, node: _Node, prices: FloatArray, gap: float) -> _Priced:
+        """Bound the mean at prices; add the positions met to the pools.
+
+        At the node's own prices nothing is new where the best position that was met is still in the box.
+        """
         tilts = np.diff(np.vstack([np.zeros(3), prices, np.zeros(3)]), axis=0)
-        total = float(np.sum(self.course.reach_m * np.linalg.norm(prices, axis=1)))
-        for t, tilt in enumerate(tilts):
-            total += self._priced(node, t, tilt, gap)
-        return total / self.total
+        bounds, best_m = np.full(self.total, np.inf), np.full((self.total, 3), np.inf)
+        if prices is node.priced.prices:
+            bounds, best_m = node.priced.bounds.copy(), node.priced.best_m.copy()
+        unknown = np.flatnonzero(np.any((best_m < node.low_m) | (best_m > node.high_m), axis=1))
+        met = self.threads.map(lambda t: self._best_offer(node, t, tilts[t], gap), unknown.tolist())
+        for t, (most, place_m) in zip(unknown, met, strict=True):
+            bounds[t], best_m[t] = min(bounds[t], most), place_m
+        flown = float(np.sum(self.course.reach_m * np.linalg.norm(prices, axis=1)))
+        return _Priced(prices, bounds, best_m, (flown + float(np.sum(bounds))) / self.total)
 
-    def _priced(self, node: _Node, t: int, tilt: FloatArray, gap: float) -> float:
-        """Bound ``g_t(p) + tilt . p`` over the node's box at an instant, nats."""
+    def _best_offer(self, node: _Node, t: int, tilt: FloatArray, gap: float) -> tuple[float, FloatArray]:
+        """Bound ``g_t(p) + tilt . p`` over the node's box at an instant, nats; return the best p met, too."""
         from nullpose.solver.kernels.bounds import branch, node as rows
         from nullpose.solver.kernels.bounds.records import Goal
         from nullpose.solver.kernels.compiler.jit import entry_of
 
         family, low_m, high_m = self.course.families[t], node.low_m[t], node.high_m[t]
-        inside = [i for i, place in enumerate(self.pool_m[t]) if np.all((low_m <= place) & (place <= high_m))]
         middle_m, flown_m = 0.5 * (low_m + high_m), self.flown_m[t]
-        offers = [self.pool_gain[t][i] + float(tilt @ (self.pool_m[t][i] - flown_m)) for i in inside]
+        places_m = np.array(self.pool_m[t])
+        offers = np.array(self.pool_gain[t]) + (places_m - flown_m) @ tilt
+        offers[np.any((places_m < low_m) | (places_m > high_m), axis=1)] = -np.inf
         most = self.caps[t] + float(tilt @ (middle_m - flown_m) + np.abs(tilt) @ (high_m - middle_m))
-        best, met = max(offers, default=min(-20.0, most - 20.0)), None
+        first = int(np.argmax(offers))
+        best, best_m = max(float(offers[first]), min(-20.0, most - 20.0)), places_m[first]
         row = np.zeros(rows.COLUMNS)
         row[rows.CENTRE : rows.HALF], row[rows.HALF : rows.LEVEL] = middle_m, 0.5 * (high_m - low_m)
         row[rows.FACE] = -1.0
@@ -245,26 +276,22 @@ class PriceBound:
         price = np.concatenate([tilt, flown_m, [self.offset]])
         domain = family.domain._replace(low_m=low_m, high_m=high_m)
         fixed = family.ratios, domain, self.course.field.arrays
-        kernel = entry_of(branch.branch)
-        while best + gap < min(most, _LARGEST):
-            workers, done = WorkerPool(row[None]), 0
-            while not workers.done and done < _BOXES and best < _LARGEST:
-                level, value = (math.exp(x) - self.offset for x in (best + gap, best + _NOTED * gap))
-                goal = Goal(value, row, 0.0, price)
-                done += workers.work(partial(kernel, *fixed, level, goal), _CHUNK, _BOXES, None)
-                for place_m, axis in workers.better():
-                    gain = self._gain_of(t, place_m, axis)
-                    if (offer := gain + float(tilt @ (place_m - flown_m))) > best:
-                        best, met = offer, (place_m, gain)
-                workers.drop_leaves()
-            if workers.done:
-                break
-            gap *= 4.0
+        kernel, queue, done, met = entry_of(branch.branch), Queue(row[None]), 0, None
+        while queue.top and best + gap < min(most, _LARGEST):
+            level, value = (math.exp(x) - self.offset for x in (best + gap, best + _NOTED * gap))
+            done += queue.work(partial(kernel, *fixed, level, Goal(value, row, _SPARE, price)), _BOXES)
+            queue.filled = 0
+            if queue.better:
+                gain = self._gain_of(t, queue.position_m, queue.orientation)
+                if (offer := gain + float(tilt @ (queue.position_m - flown_m))) > best:
+                    best, best_m = offer, queue.position_m.copy()
+                    met = best_m, gain
+            if done >= _BOXES:
+                gap, done = 4.0 * gap, 0
         if met is not None:
             self.pool_m[t].append(met[0])
             self.pool_gain[t].append(met[1])
-        found = best + gap if best + gap < _LARGEST else most
-        return float(min(most, found) + tilt @ flown_m)
+        return float(min(most, best + gap) + tilt @ flown_m), best_m
 
     def _gain(self, t: int, place_m: FloatArray) -> float:
         return float(self.course.aim.gains(likely_poses(self.course, t, np.array(place_m[None]))[1])[0])

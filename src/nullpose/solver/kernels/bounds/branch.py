@@ -43,6 +43,7 @@ from nullpose.solver.kernels.bounds.node import (
 from nullpose.solver.kernels.bounds.records import Goal, Workspace
 from nullpose.solver.kernels.bounds.sight import hidden_nowhere, in_sight
 from nullpose.solver.kernels.bounds.signed_sum import fill_sum, touch
+from nullpose.solver.kernels.bounds.tilt import priced, takes_tilt
 from nullpose.solver.kernels.compiler.jit import (
     heap_kernel,
     inner_heap_kernel,
@@ -69,7 +70,6 @@ _CLOSE = 2.0  # boxes nearer to a point than so many of their radii are split un
 _CLEAR = 2.0  # an affine axis must be this much longer than its change in the box
 _BEATS = 1e-9
 _APART_M = 1e-3
-_FAINTEST = 1e-290  # a level that nothing is below
 _POINT_M = 1e-7  # half diagonal of boxes that wait until no other is left: on a border they may have no end
 
 
@@ -157,6 +157,8 @@ def examine_free(whole, domain, axis_field, goal, seen, row, coarseness, workspa
     is_free, is_band = axis_field.kind != AFFINE_AXIS, axis_field.kind >= BAND_AXIS
     if not is_free:  # an affine axis that may vanish in the box
         axis_field = Axes(np.int64(FREE_AXIS), axis_field.offset, axis_field.matrix)
+    if workspace.tilt[3] > 0.0:
+        row[LEVEL] = workspace.tilt[3]
     fill_sum(family, row, workspace.sums)
     kind, anchor = best_frame(family, has_horizontal_axes(axis_field), row, workspace.sums)
     frame = frame_at(family, kind, anchor, centre, half, basis)
@@ -306,6 +308,7 @@ def workspace_of(family):
         np.empty((points, 2)), np.empty((points, JET)), np.empty((groups, 6)), np.empty(groups),
         np.empty(6), np.empty((3, 6)), np.empty(6), np.empty(ratios),
         np.empty(family.denominator_weight.shape[0]), np.empty((0, 5)), np.empty(3),
+        np.zeros(4),
     )  # fmt: skip
 
 
@@ -334,17 +337,6 @@ def halve(stack, place, top):
     split_across(stack[place], CENTRE + side, HALF + side, stack[place], stack[top])
 
 
-@rare_kernel
-def priced(level, best, price, row):
-    """Return the level that no position of a box needs at its price, and the best at its centre."""
-    offered, spread, offset = 0.0, 0.0, price[6]
-    for i in range(3):
-        offered += price[i] * (row[CENTRE + i] - price[3 + i])
-        spread += abs(price[i]) * row[HALF + i]
-    needed = (offset + level) * math.exp(-offered - spread) - offset
-    return max(needed, _FAINTEST), max((offset + best) * math.exp(-offered) - offset, _FAINTEST)
-
-
 @heap_kernel
 def branch(
     family, domain, axis_field, level, run_goal, stack, top, leaves, filled, most, better_p, better_u
@@ -371,7 +363,9 @@ def branch(
     workspace, row, axis = workspace_of(family), scratch(COLUMNS), zeroed(3)
     boxes = sought = aside = 0
     goal = run_goal
-    has_shadows = family.shadow_sides.shape[0] > 0
+    has_shadows, tilt = family.shadow_sides.shape[0] > 0, scratch(4)
+    if run_goal.price.shape[0] > 0 and takes_tilt(family, axis_field):
+        tilt = workspace.tilt
     while top > aside or (top > 0 and not has_shadows):
         if boxes >= most:
             copy_into(row[CENTRE:HALF], better_p)
@@ -385,7 +379,7 @@ def branch(
         copy_into(stack[top], row)
         row[LEVEL] = level
         if run_goal.price.shape[0] > 0:
-            row[LEVEL], best = priced(level, run_goal.best, run_goal.price, row)
+            best = priced(level, run_goal.best, run_goal.price, row, tilt)
             goal = Goal(best, run_goal.multipliers, run_goal.spare, run_goal.price)
         seen, hidden, verdict = -1, 0, EXCLUDED
         while True:  # as it is; then, where some interferers are never hidden together, with each in sight

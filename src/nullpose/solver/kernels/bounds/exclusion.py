@@ -41,6 +41,7 @@ from nullpose.solver.kernels.bounds.node import (
 )
 from nullpose.solver.kernels.bounds.records import TOWARDS_POINT, WORLD
 from nullpose.solver.kernels.bounds.signed_sum import fill_sum, log_most_mean, unreachable_pair
+from nullpose.solver.kernels.bounds.tilt import tilt_sum
 from nullpose.solver.kernels.compiler.jit import inner_kernel, rare_kernel, small_kernel
 from nullpose.solver.kernels.compiler.scratch import scratch, scratch_int, zeroed
 from nullpose.solver.kernels.linear_algebra.forms import bilinear, congruence, form_value
@@ -156,7 +157,7 @@ def add_sum(family, axis_field, frame, row, workspace, matrix):
     matrix[:], slopes[:, :] = 0.0, 0.0
     identity, size = fill_sum(family, row, workspace.sums)
     add_identity(identity, matrix)
-    everywhere, across, subtracted = ROUNDING * size, 0.0, 0.0
+    everywhere, across, subtracted, added = ROUNDING * size, 0.0, 0.0, 0.0
     for j in range(workspace.sums.shape[0]):
         weight = workspace.sums[j]
         if weight != 0.0:
@@ -169,6 +170,10 @@ def add_sum(family, axis_field, frame, row, workspace, matrix):
                 left *= family.leak
             everywhere += left
             subtracted += left if weight < 0.0 else 0.0
+            added += left if weight > 0.0 else 0.0
+    rest[:] = 0.0
+    if workspace.tilt[3] > 0.0:
+        everywhere += tilt_sum(workspace, half, slopes, rest, added)
     side = scratch(6)
     for number in range(3):
         weight, level = constraint_of(axis_field, row, number, side)
@@ -176,9 +181,8 @@ def add_sum(family, axis_field, frame, row, workspace, matrix):
             add_identity(weight * level, matrix)  # which no frame turns
             everywhere += half_square * add_side(side, weight, frame, matrix, slopes)
             everywhere += 4.0 * ROUNDING * weight  # a form's entries are at most 1
-    rest[:] = 0.0
-    rest[0] = rest[1] = everywhere + across
-    rest[2] = everywhere
+    add_identity(everywhere, rest)
+    rest[0], rest[1] = rest[0] + across, rest[1] + across
     return subtracted
 
 

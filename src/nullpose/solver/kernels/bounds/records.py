@@ -69,6 +69,7 @@ class Workspace(NamedTuple):
         denominator_weight: (entries,) likewise.
         no_sides: (0, 5).
         place: (3,) where a pose is that beats the best.
+        tilt: (4,) a price by metre that the test of boxes knows of, and the level at the centre; or zeros.
     """
 
     weights: FloatArray
@@ -89,3 +90,4 @@ class Workspace(NamedTuple):
     denominator_weight: FloatArray
     no_sides: FloatArray
     place: FloatArray
+    tilt: FloatArray
