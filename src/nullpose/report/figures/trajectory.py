@@ -80,6 +80,9 @@ def write_film(flight: Trajectory, path: Path) -> None:
                 f"{number(float(values[index]), flight.quantity)} {flight.unit}",
                 fontsize=9,
             )
+            if index == 0:
+                figure.draw_without_rendering()
+                figure.set_layout_engine("none")  # which would shift the ground from frame to frame
             writer.grab_frame()
         writer.finish()
 
