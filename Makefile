@@ -1,8 +1,9 @@
 # Everything here needs Python 3.11 or newer with pip, and nothing else: each target makes what it misses in .venv.
-# Another interpreter: make demo PYTHON=python3.12
+# Another interpreter: make demo PYTHON=python3.12. All combinations, as CI takes them: make test TESTS="not slow"
 
 PYTHON ?= python3
 BIN := .venv/bin
+TESTS ?= not slow and not grid
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-input -qq
 
 .DEFAULT_GOAL := help
@@ -20,10 +21,10 @@ demo: .venv/.with-core ## the paper's problem solved and its Figure 2 redrawn, i
 test test-random: export PYTHONDONTWRITEBYTECODE =
 
 test: .venv/.with-test ## the tests, on two processes
-	$(BIN)/pytest -n 2 --dist worksteal -m "not slow"
+	$(BIN)/pytest -n 2 --dist worksteal -m "$(TESTS)"
 
 test-random: .venv/.with-test ## property tests on new examples, which a failure prints, and the large sizes
-	$(BIN)/pytest -n 2 --dist worksteal --hypothesis-profile random -m "hypothesis or slow"
+	$(BIN)/pytest -n 2 --dist worksteal --hypothesis-profile random -m "hypothesis or grid or slow"
 
 test-studio: .venv/.with-studiotest ## the studio's page, in Chromium, and who is let in, on two processes
 	@command -v chromium > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null && apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium > /dev/null; } || { echo "Chromium is not on the path. Debian has it: apt install chromium"; exit 1; }

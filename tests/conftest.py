@@ -15,6 +15,7 @@ os.environ["MPLBACKEND"] = "Agg"
 import numpy as np
 import pytest
 from hypothesis import settings
+from tests.reference.sizes import chosen
 from tests.reference.whip import whip_rows
 
 from nullpose.channel import ENVIRONMENTS, LinkChannel
@@ -178,7 +179,12 @@ CHANNELS: dict[str, LinkChannel | None] = {
 }
 
 
-@pytest.fixture(params=CHANNELS.values(), ids=CHANNELS, scope="session")
+FEW_CHANNELS = 0, 1, 3, 6, 7, 9, 12  # one of each kind, of each average and of exponents either side of 2
+
+
+@pytest.fixture(
+    params=chosen(zip(CHANNELS.values(), strict=True), FEW_CHANNELS), ids=CHANNELS, scope="session"
+)
 def channel(request: pytest.FixtureRequest) -> LinkChannel | None:
     """A channel of each kind."""
     return request.param  # type: ignore[no-any-return]

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sizes import diagonal
 from tests.certificate.plain import accepted, certified, rejected
 from tests.reference.whip import whip_rows
 
@@ -33,8 +34,9 @@ def with_whips(scenario: Scenario, rows: list[list[float]], kinds: tuple[str, ..
 
 
 @pytest.mark.parametrize("gap", [1.0, pytest.param(1e-3, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("kinds", [("nodes",), ("jammers",), ("nodes", "jammers")], ids=" and ".join)
-@pytest.mark.parametrize("name", EVERYTHING)
+@pytest.mark.parametrize(
+    ("name", "kinds"), diagonal([*EVERYTHING], [("nodes",), ("jammers",), ("nodes", "jammers")])
+)
 def test_whips_are_proved(name: str, kinds: tuple[str, ...], gap: float, paper: Callable) -> None:
     """On nodes and on the jammer, with coarse steps and fine ones, and read again from its text."""
     scenario = Scenario.from_dict(paper().to_dict() | EVERYTHING[name])

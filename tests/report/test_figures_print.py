@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from matplotlib.figure import Figure
-from sizes import few_examples
+from sizes import chosen, diagonal, few_examples
 
 from nullpose import Pose, Scenario, compare_airframes, load, solve, sweep
 from nullpose.report.figures.dots import draw_comparison
@@ -50,8 +50,9 @@ def test_every_figure_has_the_width(drawings: list[Callable[[str], Figure]], wid
         assert figure.get_suptitle() == ""
 
 
-@WIDTHS
-@pytest.mark.parametrize("name", ["paper", "no-fly", "field", "array", "robust"])
+@pytest.mark.parametrize(
+    ("name", "width"), diagonal(["paper", "no-fly", "field", "array", "robust"], [*WIDTHS_MM])
+)
 def test_letters_stay_on_the_paper_and_apart(name: str, width: str) -> None:
     """Names of points, names of axes and the legend are on the paper; names of points do not run together."""
     figure = draw_result(best_found(name, robust=name == "robust"), width)
@@ -89,7 +90,7 @@ def test_the_same_figure_gives_the_same_file(tmp_path: Path, kind: str) -> None:
     assert kind != "pdf" or (b"/FontFile2" in first and b"/Type3" not in first)
 
 
-@pytest.mark.parametrize("name", ["paper", "town", "whips", "requirements"])
+@pytest.mark.parametrize("name", chosen(["paper", "town", "whips", "requirements"], [0, 1]))
 def test_a_name_stands_nearest_its_own_point(name: str) -> None:
     """In a column, where names are close to each other, none stands at the mark of another point."""
     figure = draw_result(best_found(name), "column")
@@ -103,7 +104,7 @@ def test_a_name_stands_nearest_its_own_point(name: str) -> None:
         assert away[0] <= min(away) + 6.0 * figure.dpi / 72.0, text.get_text()
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", chosen([1, 2, 3], [0]))
 def test_a_key_has_every_name_in_a_crowded_column(seed: int) -> None:
     """Each node with its number, each jammer and zone, and the sign of each in the plan."""
     places_m = (

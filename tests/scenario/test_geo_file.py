@@ -29,13 +29,13 @@ from geo_files import (
     zones,
     zones_of,
 )
+from sizes import diagonal
 
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Scenario, load
 
 
-@pytest.mark.parametrize("ending", WRITERS)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("ending", "seed"), diagonal([*WRITERS], range(3)))
 def test_what_is_kept_out_is_shapelys_union(ending: str, seed: int, tmp_path: Path) -> None:
     """Of polygons, multi-polygons and collections in any order; 2,000 positions are as shapely says."""
     rng = np.random.default_rng([seed, len(ending)])

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from sizes import chosen
 
 from nullpose.errors import SolveError, UsageError
 from nullpose.physics import evaluate, min_sinr, sinr
@@ -74,13 +75,13 @@ SCENES = {
     "wide keep-outs": ([(0, 0, 0), (0, 50, 0)], [(17, 15, 4)], {"keep_out_m": 26.5}),
 }
 CASES = [
-    pytest.param(nodes, jammers, airspace, scheme, id=f"{name}, {scheme}")
-    for (name, (nodes, jammers, airspace)), scheme in itertools.product(SCENES.items(), Scheme)
+    (nodes, jammers, airspace, scheme)
+    for (nodes, jammers, airspace), scheme in itertools.product(SCENES.values(), Scheme)
     if (jammers or scheme is not Scheme.ZERO_INTERFERENCE)
 ]
 
 
-@pytest.mark.parametrize(("nodes", "jammers", "airspace", "scheme"), CASES)
+@pytest.mark.parametrize(("nodes", "jammers", "airspace", "scheme"), chosen(CASES, range(0, 35, 3)))
 def test_a_solution_keeps_its_promises(
     nodes: list, jammers: list, airspace: dict, scheme: Scheme, scene: Callable
 ) -> None:
@@ -112,7 +113,7 @@ def test_equal_seeds_give_equal_answers(scheme: Scheme, paper: Callable) -> None
     assert first.provenance["seed"] == 5
 
 
-@pytest.mark.parametrize("ratio", [1e-3, 0.1, 1.0, 10.0, 1e3, 1e6])
+@pytest.mark.parametrize("ratio", chosen([1e-3, 0.1, 1.0, 10.0, 1e3, 1e6], [0, 2, 5]))
 def test_no_scheme_beats_the_optimum(ratio: float, paper: Callable) -> None:
     """The optimum is at least as good as every other scheme, which all restrict its axis."""
     optimum, *others = compare(paper(ratio))
@@ -259,7 +260,8 @@ def peer(one: Scenario, rng: np.random.Generator, starts: int) -> float:
 
 
 @pytest.mark.parametrize(
-    ("nodes", "jammers", "jamming_w"), [(1, 1, 100.0), (2, 1, 3.0), (3, 2, 10.0), (4, 1, 0.3), (5, 3, 50.0)]
+    ("nodes", "jammers", "jamming_w"),
+    chosen([(1, 1, 100.0), (2, 1, 3.0), (3, 2, 10.0), (4, 1, 0.3), (5, 3, 50.0)], [1, 2]),
 )
 def test_a_peer_finds_nothing_better(
     nodes: int, jammers: int, jamming_w: float, random_scene: Callable

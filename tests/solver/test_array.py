@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from array_beams import beam_sinr
 from scipy.optimize import differential_evolution
-from sizes import and_slow
+from sizes import and_slow, diagonal
 
 import nullpose
 from nullpose.errors import SolveError, UsageError
@@ -265,8 +265,7 @@ def test_nothing_out_of_reach_is_as_good(random_scene: Callable) -> None:
             assert np.all((low_m <= state[:3]) & (state[:3] <= high_m))
 
 
-@pytest.mark.parametrize("layout", ["linear", "circular"])
-@pytest.mark.parametrize("jamming_w", [0.01, 10.0, 1e5])
+@pytest.mark.parametrize(("jamming_w", "layout"), diagonal([0.01, 10.0, 1e5], ["linear", "circular"]))
 def test_no_state_exceeds_the_bound(
     layout: str, jamming_w: float, random_scene: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from sizes import chosen
 
 from nullpose import Scenario, load, min_sinr, solve
 from nullpose.errors import UsageError
@@ -125,7 +126,7 @@ def test_buildings_of_height_0_change_nothing(paper: Callable[[float], Scenario]
     assert flat.pose == free.pose
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", chosen(range(4), [0, 1]))
 def test_no_pose_of_many_beats_a_bound(seed: int) -> None:
     """Random fields with prisms, roofs in intervals, three channels: 20,000 poses stay below the bound."""
     rng = np.random.default_rng(seed)

@@ -6,7 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
-from sizes import and_slow
+from sizes import and_slow, chosen
 
 from nullpose.physics import sinr
 from nullpose.solver import Scheme, solve
@@ -104,7 +104,7 @@ def test_the_needle_on_top_of_a_keep_out_ball(nodes, jammers, powers, altitude_m
         assert solve(one, Scheme.VERTICAL, seed=seed).objective.value >= above
 
 
-@pytest.mark.parametrize("seed", [0, 1, 5])
+@pytest.mark.parametrize("seed", chosen([0, 1, 5], [1]))
 def test_no_seed_misses_the_better_half(seed, scene):
     """Two nodes, two strong jammers, low altitudes: 0.7778 is there to be found, not 0.4097."""
     one = scene(
@@ -117,7 +117,7 @@ def test_no_seed_misses_the_better_half(seed, scene):
     assert solve(one, seed=seed).objective.value == pytest.approx(0.77781528, rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", chosen(range(3), [0]))
 def test_ends_on_a_ball_and_a_face_are_exact(seed, scene):
     """The end of a crawl along a keep-out ball to the floor, 3480.0385947556 (found on the circle itself)."""
     one = scene(
@@ -131,7 +131,7 @@ def test_ends_on_a_ball_and_a_face_are_exact(seed, scene):
     assert value == pytest.approx(3480.0385947555383, rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", chosen(range(3), [0]))
 def test_zero_interference_on_a_ball(seed, scene):
     """With faces and balls near: 39.9967 is there, and 39.9865 on the floor, far above 3.806."""
     one = scene(

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from sizes import diagonal
 
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
@@ -51,8 +52,7 @@ def test_the_papers_optimum_is_closed(power_w: float) -> None:
     assert np.sum(np.prod(high - low, axis=1)) == pytest.approx(whole, rel=1e-9)
 
 
-@pytest.mark.parametrize("moved_m", [0.05, 3.0, 1e3])
-@pytest.mark.parametrize("altitude_m", ["[8, 30]", "[9, 9]"])
+@pytest.mark.parametrize(("moved_m", "altitude_m"), diagonal([0.05, 3.0, 1e3], ["[8, 30]", "[9, 9]"]))
 def test_leaves_of_another_proof_are_cut_and_added_to_until_they_cover(
     moved_m: float, altitude_m: str
 ) -> None:

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from sizes import and_slow
+from sizes import and_slow, chosen
 
 import nullpose
 from nullpose.errors import UsageError
@@ -88,7 +88,7 @@ def test_no_random_error_is_worse_by_more_than_a_twentieth_of_a_decibel(seed):
         assert getattr(found, kind) <= lowest * 10.0**0.005
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", chosen(range(5), [0, 1, 4]))
 def test_more_errors_never_give_a_larger_value(seed):
     """All errors together are at least as bad as each kind; each kind is at least as bad as none."""
     scenario, sizes = random_scene(seed)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from sizes import chosen
 
 import nullpose
 from nullpose.physics import objective_value
@@ -72,7 +73,14 @@ def test_without_errors_it_is_the_nominal_solution(paper: Callable) -> None:
 
 @pytest.mark.parametrize(
     ("tilt_max_deg", "mount_deg", "band"),
-    [(10.0, 90.0, (0.0, math.sin(math.radians(10.0)) ** 2)), (0.0, 0.0, (1.0, 1.0)), (0.0, 90.0, (0.0, 0.0))],
+    chosen(
+        [
+            (10.0, 90.0, (0.0, math.sin(math.radians(10.0)) ** 2)),
+            (0.0, 0.0, (1.0, 1.0)),
+            (0.0, 90.0, (0.0, 0.0)),
+        ],
+        [0],
+    ),
 )
 def test_airframes_are_kept(
     tilt_max_deg: float, mount_deg: float, band: tuple[float, float], paper: Callable, erring: Callable
