@@ -13,21 +13,6 @@ DATA = Path(__file__).parents[1] / "antenna" / "data"
 HALF = DATA / "alone_half_5deg.out.gz"
 
 
-def test_the_table(run: Run) -> None:
-    """What was read, also where the word show is there, and options before the file."""
-    result = run("antenna", "show", "--format", "nec", HALF)
-    assert (result.exit_code, result.stderr) == (0, "")
-    for told in (
-        "alone_half_5deg.out.gz (nec)",
-        "2.14 dBi, at theta 90, phi 0",
-        "exact, at theta 0",
-        "linear along theta, at the peak",
-        "2400 MHz",
-        "steps of 5 degrees, with phases",
-    ):
-        assert told in result.stdout
-
-
 def test_the_figure_and_json(run: Run, tmp_path: Path) -> None:
     """The figure is written where it was asked for, never over the pattern; JSON has every number."""
     figure = tmp_path / "deeper" / "pattern.png"
@@ -61,15 +46,3 @@ def test_faults_are_one_message(run: Run, tmp_path: Path) -> None:
     for words in ((file, "--format", "msi"), (HALF, "--frequency", "1e9"), (tmp_path / "none.csv",)):
         refused = run("antenna", *words)
         assert (refused.exit_code, refused.stdout) == (2, "")
-
-
-def test_a_comparison_is_a_table_and_an_answer(run: Run, paper: str) -> None:
-    """What is promised, received and possible, and the answer in a sentence at the end; all in JSON too."""
-    whips = paper.replace("paper", "whips")
-    shown = run("antenna", "compare", whips).stdout
-    for words in ("1 the paper's", "2 stated, pose 1", "3 stated", "24.11 dB less"):
-        assert words in shown
-    data = json.loads(run("antenna", "compare", whips, "--fast", "--json").stdout)
-    values = {row["case"]: row["min_sinr"] for row in data["rows"]}
-    assert {"scenario", "rows", "provenance", "answer"} <= set(data)
-    assert values["received"] < values["possible"]

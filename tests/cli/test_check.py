@@ -12,14 +12,6 @@ from nullpose import json_schema
 Run = Callable[..., Result]
 
 
-def test_table_tells_what_the_file_amounts_to(run: Run, paper: str) -> None:
-    """Nodes, jammers, airspace and receiver are shown, powers in both units."""
-    result = run("check", paper)
-    assert (result.exit_code, result.stderr) == (0, "")
-    for words in ("S1", "S2", "M", "8 to 30", "unbounded", "30.00", "0.00 dBm", f"{paper}: no faults"):
-        assert words in result.stdout
-
-
 def test_best_ratio_is_that_of_the_closest_point(run: Run, paper: str) -> None:
     """Straight above a node at the lowest altitude, broadside: P / (8^2 sigma^2)."""
     answer = json.loads(run("check", paper, "--json").stdout)

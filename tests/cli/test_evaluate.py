@@ -55,26 +55,3 @@ def test_a_pose_by_latitude_and_longitude(run: Run) -> None:
     mistaken = run("evaluate", geodetic, "--pose", "50.0006,14.5012,60", *common)
     assert "warning: --pose: 50.0006 m east and 14.5012 m north are close to the origin's" in mistaken.stderr
     assert "--pose-lat-lon" in mistaken.stderr
-    far = run("evaluate", geodetic, "--pose-lat-lon", "14.5012,50.0006,280", *common)
-    assert far.exit_code == 2
-    assert "are latitude and longitude exchanged?" in far.stderr
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        ((), "give either --pose"),
-        (("--pose", "1,2,9", "--pose-lat-lon", "50,14,9"), "give either --pose"),
-        (("--pose-lat-lon", "50,14,9"), "the scenario has no [origin]"),
-        (("--pose", "1,2"), "--pose: given '1,2'; allowed: three numbers"),
-        (("--pose", "1,2,9", "--attitude", "0;0;0"), "--attitude: given '0;0;0'"),
-        (("--pose", "1,2,9", "--poses", "none.csv"), "give either --pose"),
-        (("--poses", "none.csv"), "none.csv: 1 fault"),
-        (("--pose", "1,2,9", "--set", "array.elements=2"), "array"),
-    ],
-)
-def test_what_cannot_be_evaluated(run: Run, paper: str, arguments: tuple[str, ...], told: str) -> None:
-    """Ends with a message and exit code 2."""
-    result = run("evaluate", paper, *arguments)
-    assert result.exit_code == 2
-    assert told in result.stderr

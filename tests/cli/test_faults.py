@@ -55,56 +55,6 @@ def test_unreadable_file(run: Run, tmp_path: Path) -> None:
     assert_refused(run("solve", path), str(path))
 
 
-@pytest.mark.parametrize(
-    ("setting", "words"),
-    [
-        ("jammers.X.power_w=3", ["jammers.X.power_w", "jammers.M.power_w"]),
-        ("jammers.M.powr_w=3", ["jammers.M.powr_w", "jammers.M.power_w"]),
-        ("jammers.M.power_w=-3", ["power_w", "-3"]),
-        ("jammers.M.power_w", ["jammers.M.power_w", "equals sign"]),
-    ],
-)
-def test_bad_override(run: Run, good: Path, setting: str, words: list[str]) -> None:
-    """An override that leads nowhere is refused with the nearest path that exists."""
-    assert_refused(run("solve", good, "--set", setting), *words)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["solve"], ["Missing argument"]),
-        (["fly"], ["fly"]),
-        (["solve", "x.toml", "--scheme", "best"], ["best", "optimum", "vertical"]),
-        (["solve", "x.toml", "--seed", "-1"], ["--seed", "0"]),
-        (["solve", "x.toml", "--frobnicate"], ["--frobnicate"]),
-        (["reproduce"], ["--out"]),
-    ],
-)
-def test_bad_usage(run: Run, arguments: list[str], words: list[str]) -> None:
-    """A command line that cannot be read is refused with the option at fault."""
-    assert_refused(run(*arguments), *words)
-
-
-@pytest.mark.parametrize(
-    ("option", "value", "words"),
-    [
-        ("--gap", "0", ["gap: given 0.0", "1e-8 to 10"]),
-        ("--gap", "tight", ["--gap", "valid number"]),
-        ("--time-limit", "0", ["time limit: given 0.0", "more than 0 seconds"]),
-        ("--node-limit", "0", ["node limit: given 0", "at least 1"]),
-    ],
-)
-@pytest.mark.parametrize("verb", ["solve", "sweep"])
-def test_bad_limit(
-    run: Run, good: Path, tmp_path: Path, verb: str, option: str, value: str, words: list[str]
-) -> None:
-    """A limit that means nothing is refused with what is allowed, before any work."""
-    out = tmp_path / "out"
-    power = ("--set", "jammers.M.power_w", "--from", 1, "--to", 2, "--out", out)
-    assert_refused(run(verb, good, option, value, *(power if verb == "sweep" else ())), *words)
-    assert not out.exists()
-
-
 @pytest.mark.parametrize("inside", [False, True])
 def test_output_folder_that_cannot_be_written(
     run: Run, good: Path, inside: bool, monkeypatch: pytest.MonkeyPatch
@@ -254,11 +204,3 @@ def test_narrow_terminals_count_as_twenty_columns() -> None:
     ]
     assert outputs[0] == outputs[1]
     assert b"Airspace" in outputs[0]
-
-
-def test_an_error_that_is_named_twice_is_refused(run: Run, good: Path) -> None:
-    """One size of each; jammers_m and its other name are the same one."""
-    for sizes in ("attitude_deg=1,attitude_deg=2", "jammers_m=1,eavesdroppers_m=2"):
-        assert_refused(
-            run("solve", good, "--fast", "--off", sizes), f"--off: given '{sizes.split(',')[1]}'", "once"
-        )

@@ -31,18 +31,3 @@ def test_json_of_a_map(run: Run, paper: str, tmp_path: Path) -> None:
     assert (found["map"]["name"], found["map"]["unit"], len(found["files"])) == ("min_sinr_db", "dB", 3)
     assert best["value"] == pytest.approx(found["objective"]["value_db"], abs=1e-9)
     assert best["position_m"] == pytest.approx(found["pose"]["position_m"])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (("--altitude", 99), "altitude: given 99 m; allowed: 8 to 30 m"),
-        (("--cells", 1), "cells: given 1; allowed: 2 to 2000"),
-    ],
-)
-def test_what_makes_no_map(run: Run, paper: str, tmp_path: Path, arguments: tuple, told: str) -> None:
-    """Ends before any work, with exit code 2."""
-    result = run("map", paper, "--out", tmp_path / "none", *arguments)
-    assert result.exit_code == 2
-    assert told in result.stderr
-    assert not (tmp_path / "none").exists()

@@ -5,15 +5,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from sizes import diagonal
 from typer.testing import Result
 
 from nullpose.certificate import certificate_text, read_certificate, write_certificate
+from nullpose.solver import Scheme
 
 Run = Callable[..., Result]
 
 
-@pytest.mark.parametrize("scheme", ["optimum", "zero-interference", "maximum-gain", "vertical"])
-@pytest.mark.parametrize("name", ["proof.json", "proof.json.gz"])
+@pytest.mark.parametrize(("name", "scheme"), diagonal(["proof.json", "proof.json.gz"], [*Scheme]))
 def test_round_trips(name: str, scheme: str, run: Run, paper: str, tmp_path: Path) -> None:
     """Every scheme's certificate is written, compressed or not, read back unchanged, and proved."""
     path = tmp_path / name
@@ -52,9 +53,4 @@ def test_a_bound_that_was_not_closed_is_certified_too(run: Run, paper: str, tmp_
 def test_a_proof_is_verified_in_one_go(run: Run, paper: str) -> None:
     """With --verify the rigour is verified; without it the answer says that it could be."""
     assert json.loads(run("solve", paper, "--json").stdout)["rigour"] == "verifiable"
-    checked = run("solve", paper, "--verify")
-    assert checked.exit_code == 0
-    assert "verified (the bound was checked in interval arithmetic)" in checked.stdout
     assert json.loads(run("solve", paper, "--verify", "--json").stdout)["rigour"] == "verified"
-    refused = run("solve", paper, "--verify", "--fast")
-    assert (refused.exit_code, refused.stdout) == (2, "")

@@ -4,7 +4,6 @@ import csv
 import json
 import re
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -40,31 +39,6 @@ def test_the_example_is_solved_and_put_on_the_map(run: Run, geodetic: str, tmp_p
     assert pose["geometry"]["coordinates"][:2] == pytest.approx([lon_deg, lat_deg], abs=1e-8)
     assert pose["geometry"]["coordinates"][2] == pytest.approx(alt_m, abs=1e-3)
     assert [each["properties"]["name"] for each in others[:5]] == ["weir", "gauge", "lock", "mill", "meadow"]
-
-
-def test_without_an_origin_nothing_is_solved(run: Run, paper: str, tmp_path: Path) -> None:
-    """A scenario without an origin is refused at once, with exit code 2 and what to add."""
-    out = tmp_path / "pose.geojson"
-    result = run("solve", paper, "--export", out)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert "error: GeoJSON, KML and plans: the scenario has no origin" in result.stderr
-    assert "[origin]" in result.stderr
-    assert not out.exists()
-
-
-@pytest.mark.parametrize("ending", ["xyz", "JSON5", ""])
-def test_an_unknown_ending_is_refused_before_the_solve(
-    run: Run, geodetic: str, tmp_path: Path, ending: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Exit code 2 and the endings that are allowed; nothing is solved, and not even the folder is made."""
-    import_module("nullpose.study")  # first: it keeps the solver that it finds
-    monkeypatch.setattr(import_module("nullpose.solver"), "solve", None)  # a call would be an error
-    out = tmp_path / "new" / f"pose.{ending}"
-    result = run("solve", geodetic, "--export", tmp_path / "good.json", "--export", out)
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr == f"error: --export: given {out}; allowed endings: {', '.join(EXPORTS)}\n"
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_help_names_every_ending(run: Run) -> None:
@@ -123,11 +97,3 @@ def test_every_file_has_the_attitude_that_is_printed(
     (item,) = json.loads(files[".plan"].read_bytes())["mission"]["items"]
     assert item["params"][3] == pytest.approx((90.0 - yaw_deg) % 360.0, abs=6e-4)
     assert f"{files['.plan']}: a plan holds no attitude" in result.stderr
-
-
-def test_an_array_has_no_attitude_to_hand_over(run: Run, geodetic: str, tmp_path: Path) -> None:
-    """An option that has no meaning for an array is named, and nothing is solved."""
-    array = geodetic.replace("geodetic", "array")
-    result = run("solve", array, "--export", tmp_path / "pose.json")
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert "--export: given for a scenario with an [array], which has none" in result.stderr

@@ -35,33 +35,6 @@ def test_json_holds_guarantee_and_bound(run: Run) -> None:
     assert answer["relative_gap"] <= 0.05
 
 
-def test_tables_say_what_is_guaranteed(run: Run) -> None:
-    """Both poses stand side by side, with the errors, the bound and the worst case in words."""
-    result = run("solve", ROBUST, "--robust", *QUICK)
-    assert result.exit_code == 0
-    for words in (
-        "guaranteed: smallest SINR",
-        "upper bound ",
-        "errors: axis 2 deg, M up to 3 m",
-        "best pose without errors",
-        "worst for the robust pose: axis 2 deg off",
-        "dB more than the best pose without errors",
-    ):
-        assert words in result.stdout
-
-
-@pytest.mark.parametrize("option", ["--scheme=vertical", "--null-jammer=M", "--certificate=c.json"])
-@pytest.mark.parametrize("scene", ["robust", "array"])
-def test_options_without_meaning_are_refused(run: Run, tmp_path: Path, scene: str, option: str) -> None:
-    """What --robust or an array has none of is named, and nothing is solved."""
-    file = ROBUST.replace("robust.toml", f"{scene}.toml")
-    option = option.replace("=c", f"={tmp_path}/c")
-    result = run("solve", file, option, *(["--robust"] if scene == "robust" else []))
-    assert (result.exit_code, result.stdout) == (2, "")
-    where = "with --robust" if scene == "robust" else "for a scenario with an [array]"
-    assert f"{option.partition('=')[0]}: given {where}" in result.stderr
-
-
 def test_the_robust_pose_comes_in_every_frame(run: Run, tmp_path: Path) -> None:
     """With an origin both poses are told on the Earth and in NED, in tables, in JSON and as GeoJSON."""
     earthly = tmp_path / "scene.toml"

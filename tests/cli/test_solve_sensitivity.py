@@ -24,30 +24,6 @@ def test_a_pose_is_told_with_what_errors_cost(run, paper, verb):
     assert larger["jammers"]["value_db"] < usual["jammers"]["value_db"] - 2.0
 
 
-def test_a_pose_on_a_null_is_called_one(run, paper):
-    """Where all errors together cost more than 3 dB a line names the null and the way out."""
-    said = " ".join(run("solve", paper, "--set", "jammers.M.power_w=100").stdout.split())
-    assert "stands on a null (towards M)" in said
-    assert "--robust finds the best pose for such errors" in said
-    still = run("solve", paper, "--off", "attitude_deg=0,position_m=0,jammers_m=0").stdout
-    assert "stands on a null" not in still
-
-
-def test_no_way_out_is_named_that_is_refused(run):
-    """Among buildings --robust is refused, so that nothing advises it."""
-    said = run("solve", "examples/town.toml", "--gap", "0.1").stdout
-    assert "stands on a null (towards M)" in said
-    assert "--robust" not in said
-
-
-@pytest.mark.parametrize("text", ["", "attitude=1", "position_m=far", "jammers_m=-1", "jammers_m"])
-def test_sizes_that_are_none_are_refused_by_name(run, paper, text):
-    """A size that cannot be read ends with exit code 2 and says what is allowed."""
-    found = run("solve", paper, "--off", text)
-    assert found.exit_code == 2
-    assert "allowed" in found.stderr
-
-
 def test_robust_takes_these_errors_where_none_are_stated(run, paper):
     """--robust solves for the errors of --off, and says so."""
     found = json.loads(

@@ -52,24 +52,6 @@ def test_json_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
     assert answer["rows"][0]["stats"]["boxes"] > 0
 
 
-@pytest.mark.parametrize(
-    ("settings", "words"),
-    [
-        (["receiver.noise_w=1"], "exactly one path"),
-        (["jammers.M.power_w", "receiver.noise_w"], "exactly one path"),
-        (["jammers.M.power_w", "receiver.noise_w=-1"], "receiver.noise_w"),
-    ],
-)
-def test_exactly_one_path_is_varied(
-    run: Run, paper: str, tmp_path: Path, settings: list[str], words: str
-) -> None:
-    """None or two paths without a value are refused, and a bad value of a fixed one."""
-    named = [text for setting in settings for text in ("--set", setting)]
-    result = run("sweep", paper, *named, "--from", 1, "--to", 3, "--out", tmp_path / "out")
-    assert (result.exit_code, (tmp_path / "out").exists()) == (2, False)
-    assert words in result.stderr
-
-
 def test_a_time_limit_holds_for_each_row(run: Run, paper: str, tmp_path: Path) -> None:
     """Every row tells that its proof was stopped, and has a bound."""
     field = paper.replace("paper.toml", "field.toml")
@@ -97,28 +79,6 @@ def test_least_tilts_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:
     ]
     answer = json.loads(run("sweep", paper, "--set", "jammers.M.power_w", *arguments, "--json").stdout)
     assert [row["too_little_deg"] for row in answer["rows"][:2]] == [75.3, 6.0]
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (("--reach", "0"), "reach: got 0.0, must be a share"),
-        (("--reach", "1.2"), "reach: got 1.2, must be a share"),
-        (("--mount", "95"), "mount_deg: got 95.0, must be an angle in degrees from 0 to 90"),
-        (("--mount", "flat"), "--mount: given 'flat'; allowed: angles in degrees"),
-        (("--mount", "best"), "mounts: given best"),
-        (("--reach", "0.9", "--scheme", "optimum"), "--scheme: given with a least tilt"),
-    ],
-)
-def test_a_bad_least_tilt_is_refused_by_name(
-    run: Run, paper: str, tmp_path: Path, options: tuple[str, ...], message: str
-) -> None:
-    """In one message; the exit code is 2."""
-    ends = ("--from", 1, "--to", 3, "--points", 2, "--out", tmp_path)
-    result = run("sweep", paper, "--set", "jammers.M.power_w", *ends, *options)
-    assert result.exit_code == 2
-    assert message in " ".join(result.stderr.split())
-    assert result.stderr.count("must be") + result.stderr.count("given") == 1
 
 
 LAW = ["channel.model=power-law", "channel.exponent=2.5"]

@@ -33,16 +33,10 @@ def spoil(path: Path, change: Callable[[dict[str, Any]], object]) -> None:
 
 
 def test_a_proof_is_shown(run: Run, proof: Path) -> None:
-    """What is proved goes to standard output, a line for each number, with exit code 0; or as one object."""
+    """What is proved goes to standard output, with exit code 0, as one object if that is asked for."""
     result = run("verify", proof)
     answer = json.loads(run("verify", proof, "--json").stdout)
     assert (result.exit_code, result.stderr) == (0, "")
-    lines = [" ".join(line.split()) for line in result.stdout.splitlines()]
-    assert lines[1] == "PROVED"
-    assert f"boxes checked {answer['leaves']:,}" in lines
-    assert f"SHA-256 {answer['scenario_sha256']}" in lines
-    assert len(lines) <= 12
-    assert "Jammers" in run("verify", proof, "--show").stdout
     assert (list(answer), answer["proved"]) == ([*CHECKED, *SUBJECT], True)
     assert answer["leaves"] == len(json.loads(proof.read_text())["trees"][0]["leaves"]["test"])
 
