@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,8 +16,8 @@ from nullpose.certificate.file import certificate_text
 from nullpose.certificate.profile_links import sine_cosine
 from nullpose.scenario import Scenario, apply_overrides, load
 from nullpose.solver.certificate_from_proof import certificate_of
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 HALF_WAVE = {"kind": "half-wave"}
 TILTED = ["airframe.tilt_max_deg=30", "airframe.mount_deg=90"]
 LEANING = ["airframe.tilt_max_deg=10", "airframe.mount_deg=60"]

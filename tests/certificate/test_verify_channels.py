@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,8 @@ from tests.certificate.plain import accepted, certified, put_together, rejected
 
 from nullpose.certificate import Certificate, certificate_text, differences, parse_certificate
 from nullpose.scenario import Scenario, load
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SCHEMES = ["optimum", "zero-interference", "maximum-gain", "vertical"]
 
 

@@ -2,13 +2,12 @@
 
 import json
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
-Run = Callable[..., Result]
+from scenes import Run
+
 DATA = Path(__file__).parents[1] / "antenna" / "data"
 HALF = DATA / "alone_half_5deg.out.gz"
 

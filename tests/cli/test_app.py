@@ -1,16 +1,20 @@
 """The program as a whole: its help, its version, and what it does not import."""
 
+import json
+import math
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
-from typer.testing import Result
+from typer.testing import CliRunner
 
-from nullpose import __version__
+from nullpose import __version__, json_schema
+from nullpose.cli.app import app
 from nullpose.problem.schemes import Scheme
+from scenes import Run
 
-Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
 
 SCENE, PROOF = "--set --allow-outside --at", "--gap --time-limit --node-limit --seed"
@@ -85,3 +89,36 @@ def test_help_keeps_words_whole(run: Run, width: str, monkeypatch: pytest.Monkey
     for name in Scheme:
         assert any(line.split()[:1] == [name.value] for line in lines)
     assert "what [origin] states" in " ".join(run("evaluate", "--help").stdout.split())
+
+
+def test_best_ratio_is_that_of_the_closest_point(run: Run, paper: str) -> None:
+    """Straight above a node at the lowest altitude, broadside: P / (8^2 sigma^2)."""
+    answer = json.loads(run("check", paper, "--json").stdout)
+    assert answer["nodes"][0]["nearest_m"] == pytest.approx(8.0)
+    assert answer["nodes"][0]["best_power_to_noise_db"] == pytest.approx(10.0 * math.log10(1e3 / 64.0))
+    assert answer["jammers"][0]["nearest_m"] == pytest.approx(4.0)
+
+
+def test_schema_is_printed_whole(run: Run) -> None:
+    """Standard output is the schema and nothing else."""
+    result = run("schema")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert json.loads(result.stdout) == json_schema()
+
+
+def test_a_missing_extra_ends_with_code_2(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without viser the verb says in one line how to install it."""
+    monkeypatch.setitem(sys.modules, "viser", None)
+    result = CliRunner().invoke(app, ["studio", str(Path(__file__).parents[2] / "examples" / "paper.toml")])
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") == 1
+    assert "pip install -e '.[studio]'" in result.stderr
+
+
+def test_a_faulty_file_ends_with_code_2(tmp_path: Path) -> None:
+    """A file at fault is refused before anything is opened, with its faults by path."""
+    path = tmp_path / "broken.toml"
+    path.write_text("[airspace]\naltitude_m = 3\n")
+    result = CliRunner().invoke(app, ["studio", str(path)])
+    assert result.exit_code == 2
+    assert "airspace.altitude_m" in result.stderr

@@ -1,16 +1,13 @@
 """The verb `evaluate`: a pose of one's own, held against the proved bound."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
 from nullpose import load
+from scenes import EXAMPLES, Run
 
-Run = Callable[..., Result]
-EXAMPLES = Path(__file__).parents[2] / "examples"
 BEST = ("--pose", "-2.2423,23.8182,8", "--attitude", "-17.180,-79.071,0")
 
 

@@ -16,8 +16,8 @@ from typer.testing import Result
 import nullpose.cli.check
 from nullpose.cli.faults import BAD_INPUT, INTERNAL, INTERRUPTED, PIPE_CLOSED
 from nullpose.errors import SolveError
+from scenes import Run
 
-Run = Callable[..., Result]
 Process = Callable[..., subprocess.CompletedProcess[str]]
 
 

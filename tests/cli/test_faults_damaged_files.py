@@ -18,8 +18,8 @@ from typer.testing import CliRunner
 from nullpose import certificate_of, load, solve
 from nullpose.certificate import certificate_text
 from nullpose.cli.app import app
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENE = b"[airspace]\naltitude_m = [8, 30]\n[receiver]\nnoise_w = 1e-3\nreference_gain_db = 0.0\n"
 ORIGIN = b"[origin]\nlat_deg = 50.0\nlon_deg = 14.5\nalt_m = 230.0\n"
 CSV = b"name,x_m,y_m,z_m,power_dbm,weight\na,1.0,2.0,3.0,20,\nb,-40,20.5,0,17,2\nc,10,-30,1,20,\n"

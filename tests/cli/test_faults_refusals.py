@@ -7,7 +7,8 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import Run
+
+from scenes import Run
 
 REFUSALS = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8"))
 CASES = [(f"{verb} {line}", words) for verb, lines in REFUSALS.items() for line, words in lines.items()]

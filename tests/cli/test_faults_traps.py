@@ -1,6 +1,5 @@
 """Ten traps of a first hour: each ends with a message that says what is wrong and what to do about it."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +8,7 @@ from typer.testing import Result
 
 import nullpose
 from nullpose.errors import UsageError
-
-Run = Callable[..., Result]
+from scenes import Run
 
 HEAD = """\
 [origin]

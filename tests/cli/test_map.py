@@ -2,13 +2,11 @@
 
 import csv
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
-Run = Callable[..., Result]
+from scenes import Run
 
 
 def test_files_of_a_map(run: Run, paper: str, tmp_path: Path) -> None:

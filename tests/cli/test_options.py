@@ -1,17 +1,14 @@
 """Every command answers for one instant of a scene in motion, and says for which."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import Result
 
 from nullpose import load
 from nullpose.scenario import Scenario
-
-Run = Callable[..., Result]
+from scenes import Run
 
 ROOT = Path(__file__).parents[2]
 MOVING = str(ROOT / "examples" / "moving_jammer.toml")

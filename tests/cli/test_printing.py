@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from nullpose.cli import printing
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 NAME = "Größe \N{MINUS SIGN} ∞ ☃"
 
 

@@ -9,7 +9,8 @@ import shlex
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import Run
+
+from scenes import Run
 
 FILE = Path(__file__).with_name("transcripts.txt")
 BLOCKS = re.split(r"^(?=\$ )", FILE.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]

@@ -1,16 +1,13 @@
 """The verb `reproduce`, on fewer jamming levels than it takes in earnest."""
 
 import json
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
 import nullpose.paper.reproduce
-
-Run = Callable[..., Result]
+from scenes import Run
 
 FILES = [
     "figure2-printed.csv",

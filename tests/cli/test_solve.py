@@ -5,15 +5,12 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 
 import pytest
-from typer.testing import Result
 
 from nullpose.cli.faults import INTERRUPTED
 from nullpose.cli.progress import GapBar
-
-Run = Callable[..., Result]
+from scenes import Run
 
 _LEEWAY = 2.0  # other tests run beside this one; `make bench` measures in earnest
 

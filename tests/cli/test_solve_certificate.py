@@ -1,17 +1,14 @@
 """`solve --certificate`: the proof as a file that `verify` accepts."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from sizes import diagonal
-from typer.testing import Result
 
 from nullpose.certificate import certificate_text, read_certificate, write_certificate
 from nullpose.solver import Scheme
-
-Run = Callable[..., Result]
+from scenes import Run
 
 
 @pytest.mark.parametrize(("name", "scheme"), diagonal(["proof.json", "proof.json.gz"], [*Scheme]))

@@ -3,7 +3,6 @@
 import csv
 import json
 import re
-from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -12,11 +11,9 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 from scipy.spatial.transform import Rotation
-from typer.testing import Result
 
 from nullpose.report.export import EXPORTS
-
-Run = Callable[..., Result]
+from scenes import Run
 
 
 @pytest.fixture

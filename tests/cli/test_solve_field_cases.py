@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import Result
 
-Run = Callable[..., Result]
+from scenes import Run
+
 CASES = Path(__file__).parents[1] / "reference" / "field_cases"
 SQUARE_M = 85.0  # half the side of the square of inclusive.geojson, with the margin
 

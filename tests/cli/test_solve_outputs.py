@@ -4,16 +4,13 @@ import json
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
 from nullpose import load
-
-Run = Callable[..., Result]
+from scenes import Run
 
 LIMITED = """
 import json, resource, signal, sys

@@ -2,16 +2,13 @@
 
 import json
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
 from nullpose import load
 from nullpose.study.monte_carlo import draw_scene, read_study, scene_at
-
-Run = Callable[..., Result]
+from scenes import Run
 
 SPEC = """
 name = "Two vehicles"

@@ -2,15 +2,12 @@
 
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
 from nullpose.study.monte_carlo import StudySpec, folder as folder_module, run_study
-
-Run = Callable[..., Result]
+from scenes import Run
 
 HOVER = {"position_m": [0.0, 25.0, 10.0]}
 SPEC = {

@@ -2,15 +2,12 @@
 
 import csv
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
 from nullpose import apply_overrides, load, solve
-
-Run = Callable[..., Result]
+from scenes import Run
 
 
 def test_files_of_a_sweep(run: Run, paper: str, tmp_path: Path) -> None:

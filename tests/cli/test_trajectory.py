@@ -2,14 +2,12 @@
 
 import json
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from sizes import chosen
-from typer.testing import Result
 
-Run = Callable[..., Result]
+from scenes import Run
 
 MOVING = str(Path(__file__).parents[2] / "examples" / "moving_jammer.toml")
 SMALL = ("--set", "time.step_s=10", "--set", "jammers.M.power_w=100")

@@ -1,17 +1,14 @@
 """The verb `vehicle`: both sides for each mount, as tables, JSON and figure; bad input in words."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from matplotlib.image import imread
-from typer.testing import Result
 
 from nullpose.cli.options import REACH
 from nullpose.study.case import SHARE
-
-Run = Callable[..., Result]
+from scenes import Run
 
 
 def test_json_is_a_contract(run: Run, paper: str) -> None:

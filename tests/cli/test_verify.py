@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import Result
 
-Run = Callable[..., Result]
+from scenes import Run
+
 Process = Callable[..., subprocess.CompletedProcess[str]]
 
 CHECKED = ("proved", "message", "leaves")

@@ -1,12 +1,17 @@
 """The page on arrays: its numbers are those of the program, and its examples load."""
 
+import io
 import re
 import tomllib
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 import nullpose
+from nullpose.antenna.files import read_pattern
+from nullpose.antenna.summary import summary_of
+from nullpose.report.pattern import pattern_view
 from nullpose.scenario import Array
 from nullpose.solver import Status, solve
 
@@ -44,3 +49,15 @@ def test_the_example_is_what_the_page_shows() -> None:
     scenario = nullpose.load(EXAMPLE)
     assert scenario.array == Array(**tomllib.loads(shown[1])["array"])
     assert solve(scenario).objective.value == pytest.approx(ROWS[10.0][2], abs=6e-5)
+
+
+SECTION = (ROOT / "docs" / "antennas.md").read_text(encoding="utf-8").split("## Reading a pattern file")[1]
+
+
+def test_the_console_block_is_what_is_printed() -> None:
+    """Line by line."""
+    file, shown = re.findall(r"\$ nullpose antenna (\S+)\n(.*?)\n```", SECTION, flags=re.DOTALL)[0]
+    console = Console(file=io.StringIO(), width=80, highlight=False)
+    console.print(pattern_view(summary_of(read_pattern(ROOT / file))))
+    printed = [line.rstrip() for line in console.file.getvalue().rstrip().splitlines()]
+    assert shown.splitlines() == printed

@@ -10,10 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import Result as Ended
 
 from nullpose.errors import Fault, ScenarioError
 from nullpose.scenario import Scenario, load
 from nullpose.solver import Result, solve
+
+Run = Callable[..., Ended]
+"""Runs a verb in this process: the fixture of the command line's tests."""
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NODE: dict[str, Any] = {"position_m": [0.0, 0.0, 0.0], "power_w": 1.0}

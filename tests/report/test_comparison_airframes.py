@@ -4,7 +4,6 @@ import io
 import math
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -16,8 +15,7 @@ from nullpose.report.figures.dots import draw_comparison
 from nullpose.report.numbers import bound_text
 from nullpose.scenario import apply_overrides
 from nullpose.study.vehicles import dipoles
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 @cache

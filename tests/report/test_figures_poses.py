@@ -18,9 +18,7 @@ from nullpose.report.geometry import outline_m
 from nullpose.scenario import apply_overrides
 from nullpose.study.value_map import value_map
 from nullpose.study.vehicles import compare_schemes
-from scenes import best_found
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES, best_found
 
 
 @pytest.mark.parametrize("name", ["airframe", "eavesdropper", "no-fly", "requirements", "geodetic", "town"])

@@ -19,9 +19,8 @@ from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.style import WIDTHS_MM, house_style, write_figure
 from nullpose.report.figures.sweep import draw_sweep
 from nullpose.study import compare_schemes, value_map
-from scenes import best_found
+from scenes import EXAMPLES, best_found
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 WIDTHS = pytest.mark.parametrize("width", list(WIDTHS_MM))
 
 

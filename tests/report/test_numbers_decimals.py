@@ -4,7 +4,6 @@ import io
 import math
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,9 +20,8 @@ from nullpose.solver import Status
 from nullpose.solver.objective import objective_of
 from nullpose.solver.result import Stats
 from nullpose.study.evaluation import pose_faults
-from scenes import best_found
+from scenes import EXAMPLES, best_found
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 NAMES = [path.stem for path in sorted(EXAMPLES.glob("*.toml")) if "study" not in path.name]
 NUMBER = r"(-?[\d.]+)"
 

@@ -3,7 +3,6 @@
 import io
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from rich.console import Console, RenderableType
@@ -13,8 +12,6 @@ from nullpose.report.comparison import comparison_view
 from nullpose.report.results import frame_rows, result_view
 from nullpose.scenario import Origin
 from nullpose.study import compare_schemes
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def text_of(view: RenderableType, width: int = 200) -> str:

@@ -9,8 +9,7 @@ from rich.console import Console, RenderableType
 from nullpose import Scenario, load
 from nullpose.report.sweep import sweep_view
 from nullpose.study import sweep
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 def example(name: str) -> Scenario:

@@ -1,13 +1,10 @@
 """What an airframe reaches, requirements met or missed, and channels, in words."""
 
-from pathlib import Path
-
 import pytest
 
 from nullpose import Airframe, Scenario, load, solve
 from nullpose.report.words import reach_words, requirement_words
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 @pytest.mark.parametrize(

@@ -24,8 +24,8 @@ from nullpose.scenario import (
     Transmitter,
     json_schema,
 )
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENARIOS = sorted(path for path in EXAMPLES.glob("*.toml") if not path.stem.startswith("study"))  # a spec
 KINDS = (Airframe, Airspace, Array, Building, Eavesdropper, Jammer, Node, NoFlyZone, Receiver, Transmitter)
 TABLES = {kind.__name__: kind for kind in KINDS}

@@ -1,17 +1,14 @@
 """Single values changed by path."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from nullpose.errors import ScenarioError
 from nullpose.scenario import Airframe, NoFlyZone, Override, Scenario, apply_overrides, load, parse_override
 from nullpose.scenario.geodesy import enu_from_geodetic
-from scenes import small
+from scenes import EXAMPLES, small
 
 NO_ASSIGNMENTS = ("", "=", "a", "a=", "=1", " = 1", "a= ")
-EXAMPLES = Path(__file__).parents[2] / "examples"
 PAPER = load(EXAMPLES / "paper.toml")
 
 

@@ -1,7 +1,6 @@
 """Scenes whose points move on: the same as scenes that are made anew, and as strict."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ from nullpose.physics import Pose, evaluate
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
 from nullpose.scenario.stream import move_points
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = (
     "paper",
     "field",

@@ -1,12 +1,15 @@
 """Arrays and antennas with a pattern in channels other than free space."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings, strategies as st
 from scipy.optimize import differential_evolution
 
 from nullpose import Scenario, apply_overrides, certificate_of, load, solve, verify
+from nullpose.channel.elevation import AVERAGES
 from nullpose.errors import UsageError
 from nullpose.physics import Pose, min_sinr
 from nullpose.physics.array import digital_sinr, element_positions
@@ -81,3 +84,28 @@ def test_poses_at_random_never_exceed_the_bound_of_a_pattern() -> None:
     for _ in range(2000):
         position_m = rng.uniform([-30.0, -10.0, 12.0], [30.0, 60.0, 30.0])
         assert min_sinr(scenario, Pose(position_m, *rng.uniform(-np.pi, np.pi, 3))) <= bound
+
+
+LOSSES_DB = st.floats(0.0, 15.0)
+
+
+@settings(max_examples=40)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    average=st.sampled_from(AVERAGES),
+    los_loss_db=LOSSES_DB,
+    more_db=LOSSES_DB,
+    hidden_db=LOSSES_DB,
+)
+def test_more_loss_never_raises_a_value_without_jammers(
+    seed: int, average: str, los_loss_db: float, more_db: float, hidden_db: float, random_scene: Callable
+) -> None:
+    """More loss with line of sight, that without it being the same: no link gets better at any pose."""
+    rng = np.random.default_rng(seed)
+    scene = random_scene(rng, int(rng.integers(1, 5)), 0)
+    curve = {"a": float(rng.uniform(1.0, 40.0)), "b": float(rng.uniform(0.05, 0.5))}
+    table = {"model": "elevation", "average": average, "nlos_loss_db": los_loss_db + more_db + hidden_db}
+    channels = (table | curve | {"los_loss_db": los_loss_db + added_db} for added_db in (0.0, more_db))
+    scenes = (Scenario.from_dict(scene.to_dict() | {"channel": channel}) for channel in channels)
+    less, more = (solve(each, gap=1e-3, time_limit_s=5.0) for each in scenes)
+    assert more.objective.value <= less.objective.upper_bound

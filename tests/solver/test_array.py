@@ -4,7 +4,6 @@ import json
 import math
 import pickle
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,8 +20,7 @@ from nullpose.solver import Result, Status, solve
 from nullpose.solver.array import array_bound
 from nullpose.solver.array_search import ArraySearch
 from nullpose.solver.kernels.search.domain import walls
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 def with_array(scenario: Scenario, elements: int, layout: str = "linear", spacing: float = 0.5) -> Scenario:

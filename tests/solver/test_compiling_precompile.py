@@ -2,7 +2,6 @@
 
 import subprocess
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
@@ -18,8 +17,8 @@ from nullpose.solver.kernels.linear_algebra.links import log_objective
 from nullpose.solver.kernels.search.search import search_and_climb
 from nullpose.solver.options import SolveOptions
 from nullpose.solver.solve_and_prove import solve_and_prove
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 KERNELS = (branch, search_and_climb, log_objective, keep_largest, fill_root, touch)
 
 

@@ -1,14 +1,11 @@
 """What the solver refuses is known before it is asked."""
 
-from pathlib import Path
-
 import pytest
 
 from nullpose import Scenario, apply_overrides, load, solve
 from nullpose.errors import UsageError
 from nullpose.solver.refusal import refusal
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 def _scene(name: str) -> Scenario:

@@ -1,7 +1,6 @@
 """The pose at every step of a stream: proved, as good as a solve's, and never the last one that was best."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,8 @@ from nullpose.physics import evaluate, objective_of_links
 from nullpose.scenario import Scenario
 from nullpose.solver import Result, Status, Tracker, solve, tracker as module
 from nullpose.solver.solve_and_prove import Outcome
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 NODES_M = np.array([[0.0, 0.0, 0.0], [0.0, 50.0, 0.0]])
 GAP = 1e-3
 

@@ -1,7 +1,5 @@
 """Editing keeps scenarios sound: what is added, deleted or typed is there, and nothing else changes."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,8 +9,8 @@ from nullpose.scenario.loading import scenario_from_text
 from nullpose.studio.case import new_scenario
 from nullpose.studio.edits import ADDED, entries_of, with_added, with_fence, with_typed, without
 from nullpose.studio.state import Key, State
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 PAPER = State(scenario=load(EXAMPLES / "paper.toml"))
 
 

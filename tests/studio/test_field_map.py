@@ -1,7 +1,5 @@
 """The maps agree with the physics, point by point."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import shapely
@@ -14,8 +12,7 @@ from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM, PoseCase, case_named, cases_of
 from nullpose.studio.field_map import field_map
 from nullpose.studio.look import scale_range
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 def _map(scenario: Scenario, case: PoseCase):  # type: ignore[no-untyped-def]

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,9 +21,9 @@ from nullpose.studio.case import CASES, OPTIMUM, case_named
 from nullpose.studio.readout import card_html
 from nullpose.studio.session import History, Session
 from nullpose.studio.state import Key, State
+from scenes import EXAMPLES
 
 _PATIENCE_S = 600.0
-EXAMPLES = Path(__file__).parents[2] / "examples"
 JAMMER: Key = ("jammers", 0)
 
 

@@ -1,7 +1,5 @@
 """What the antennas of a scenario cost, and what a pose of their own gets back."""
 
-from pathlib import Path
-
 import pytest
 
 from nullpose import Scenario, load
@@ -9,8 +7,7 @@ from nullpose.errors import UsageError
 from nullpose.physics import min_sinr
 from nullpose.solver import solve
 from nullpose.study import ResultTable, compare_antennas
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 @pytest.fixture(scope="module")

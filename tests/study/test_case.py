@@ -1,14 +1,12 @@
 """The vehicles that are compared."""
 
-from pathlib import Path
-
 import pytest
 
 from nullpose import Airframe, Array, Scenario, load
 from nullpose.study import AIRFRAME_CASES, cases_of
 from nullpose.study.case import SHARE, Case
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 LEVELS = ("level", "tilt-10", "tilt-20", "tilt-30")
 DIPOLES = [f"{level}-{dipole}" for level in LEVELS for dipole in ("vertical", "horizontal")] + [
     "omnidirectional"

@@ -1,7 +1,6 @@
 """The least tilt that suffices: two proved sides, checked by solves with that tilt and by brute force."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +12,7 @@ from nullpose import Scenario
 from nullpose.errors import UsageError
 from nullpose.physics import objective_value
 from nullpose.study.least_tilt import LeastTilt, MountTilt, least_tilt, values_by_angle
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from scenes import EXAMPLES
 
 
 def with_vehicle(scenario: Scenario, tilt_deg: float, mount_deg: float) -> Scenario:

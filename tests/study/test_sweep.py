@@ -3,7 +3,6 @@
 import dataclasses
 import itertools
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -11,8 +10,8 @@ from nullpose import Scenario, ScenarioError, UsageError, load, solve
 from nullpose.scenario import apply_overrides
 from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.study import least_tilt, sweep
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 POWER = "jammers.M.power_w"
 
 

@@ -1,8 +1,6 @@
 """The optimum pose of the paper's scene, against the values known from several independent solvers."""
 
-import csv
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,29 +9,6 @@ from scipy.optimize import differential_evolution
 from nullpose.physics import antenna_gain, maximum_gain_sinr, sinr, zero_interference_sinr
 from nullpose.scenario import Scenario
 from nullpose.solver import Scheme, Status, solve
-
-KNOWN = Path(__file__).parents[2] / "reference" / "paper_scenario" / "known_answers.csv"
-
-
-def known(scheme: Scheme) -> list[tuple[float, float, float]]:
-    """Returns (jamming ratio, dB, half a unit of its last digit) of a scheme, errata corrected."""
-    with KNOWN.open(encoding="utf-8", newline="") as lines:
-        _units, *rows = csv.DictReader(lines)
-    answers = []
-    for row in rows:
-        if row["scheme"] == scheme and row["jamming_ratio"]:
-            text = row["corrected_db"] or row["min_sinr_db"]
-            answers.append((float(row["jamming_ratio"]), float(text), 0.5 * 10.0 ** -len(text.split(".")[1])))
-    assert answers
-    return answers
-
-
-@pytest.mark.parametrize("scheme", [Scheme.OPTIMUM, Scheme.MAXIMUM_GAIN, Scheme.VERTICAL])
-def test_the_known_answers(scheme: Scheme, paper: Callable) -> None:
-    """Every value known for a scheme is met to all of its digits."""
-    for ratio, value_db, half_digit in known(scheme):
-        found_db = solve(paper(ratio), scheme).objective.value_db
-        assert found_db == pytest.approx(value_db, abs=1.02 * half_digit), ratio
 
 
 def upright_sinr(scene: Scenario, positions: np.ndarray) -> np.ndarray:

@@ -18,8 +18,8 @@ from playwright.sync_api import Browser, Locator, Page
 from nullpose import Scenario, load
 from nullpose.studio.server import Studio
 from nullpose.studio.session import Session
+from scenes import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 PAPER = load(EXAMPLES / "paper.toml")
 CERTIFIED = "document.querySelector('[data-np=overlay-status-0]')?.innerText.includes('Proved optimal')"
 DESK: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}, "device_scale_factor": 0.5}
