@@ -19,21 +19,26 @@ def _two_slopes(distance_m: FloatArray, elevation_rad: FloatArray, azimuth_rad: 
 
 
 BOUNDED = Custom(gain=_two_slopes, exponents=(2.0, 3.5), db_per_deg=0.5, azimuth_db_per_deg=0.8)
+# by its elevation alone, and by no less than is stated
+RISING = Custom(
+    gain=lambda d, e, a: d**-2.0 * 10.0 ** (0.05 * np.degrees(e)), exponents=(2.0, 2.0), db_per_deg=0.5
+)
 sides = st.floats(0.01, 200.0)
 places = st.tuples(st.floats(-300.0, 300.0), st.floats(-300.0, 300.0), st.floats(0.0, 200.0))
 
 
+@pytest.mark.parametrize("channel", [BOUNDED, RISING])
 @given(centre_m=places, half_m=st.tuples(sides, sides, st.floats(0.01, 50.0)), seed=st.integers(0, 99))
 def test_the_range_over_a_box_contains_the_gain_at_its_positions(
-    centre_m: tuple[float, ...], half_m: tuple[float, ...], seed: int
+    channel: Custom, centre_m: tuple[float, ...], half_m: tuple[float, ...], seed: int
 ) -> None:
     """Whatever the box, no position in it has another excess gain."""
     middle_m = np.add(centre_m, (0.0, 0.0, half_m[2] + 1.0))
-    low, high = BOUNDED.excess_range(np.zeros(3), middle_m, np.array(half_m), 1.0)
+    low, high = channel.excess_range(np.zeros(3), middle_m, np.array(half_m), 1.0)
     positions_m = middle_m + np.array(half_m) * np.random.default_rng(seed).uniform(-1.0, 1.0, (50, 3))
     east, north, up = positions_m.T
     distance_m = np.linalg.norm(positions_m, axis=1)
-    excess = BOUNDED.excess((), distance_m, np.arctan2(up, np.hypot(east, north)), np.arctan2(east, north))
+    excess = channel.excess((), distance_m, np.arctan2(up, np.hypot(east, north)), np.arctan2(east, north))
     assert np.all((low * (1.0 - 1e-12) <= excess) & (excess <= high * (1.0 + 1e-12)))
 
 
