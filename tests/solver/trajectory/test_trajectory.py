@@ -146,6 +146,17 @@ def test_the_attitude_is_continuous_where_the_flight_is() -> None:
     assert np.all(turned < math.pi / 2)
 
 
+@pytest.mark.parametrize("maximise", _AIMS)
+def test_a_time_limit_that_is_over_at_once_leaves_a_flight_and_a_bound(maximise: str) -> None:
+    """Both weak, perhaps, and neither wrong; what is too late to compare is left out."""
+    found = nullpose.solve_trajectory(scene(), maximise, time_limit_s=1e-6, window_s=3.0)
+    assert np.max(found.speeds_m_s) <= 4.0 * (1.0 + 1e-9)
+    axes = np.array([pose.antenna_axis for pose in found.poses])
+    assert score(found, found.positions_m, axes) == pytest.approx(found.value, abs=1e-9)
+    assert found.value <= found.upper_bound + 1e-9
+    assert found.baselines["window"] is None
+
+
 def test_a_flight_that_sees_ahead_keeps_to_the_speed() -> None:
     """It knows less, and gets no more."""
     found = nullpose.solve_trajectory(scene(), "mean-db", gap_db=100.0, window_s=3.0)

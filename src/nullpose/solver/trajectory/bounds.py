@@ -56,7 +56,7 @@ def clairvoyant(course: Course, gap: float, go_on: Callable[[int], None], deadli
     """
     outcomes: list[Outcome] = []
     for family in course.families:
-        left_s = max(0.02, (deadline - limit_clock()) / (len(course.families) - len(outcomes)))
+        left_s = max(1e-3, (deadline - limit_clock()) / (len(course.families) - len(outcomes)))
         options = SolveOptions(gap=min(_OPTIMUM_GAP, math.expm1(_SHARE * gap)), time_limit_s=left_s)
         try:
             outcomes.append(solve_and_prove(family, [course.field], options))

@@ -16,6 +16,7 @@ from scipy.linalg import LinAlgError, solveh_banded
 from nullpose.objectives import FloatArray
 from nullpose.problem.family import Family
 from nullpose.problem.records import Domain
+from nullpose.solver.compiling import limit_clock
 from nullpose.solver.trajectory.course import Course
 from nullpose.solver.trajectory.segments import half_spaces
 
@@ -68,12 +69,12 @@ class Climb:
         self.points_m = np.stack([family.ratios.points_m for family in course.families])
         self.domains: list[Domain] = []
 
-    def run(self, mu_start: float, mu_end: float) -> FloatArray:
-        """Climb until the barrier's weight has fallen to its end; return the poses."""
+    def run(self, mu_start: float, mu_end: float, deadline: float = math.inf) -> FloatArray:
+        """Climb until the barrier's weight has fallen to its end, or to a deadline; return the poses."""
         self.mu = mu_start
         while True:
             self._to_stationary()
-            if self.mu <= mu_end:
+            if self.mu <= mu_end or limit_clock() > deadline:
                 return self.poses
             self.mu = max(mu_end, _FALL * self.mu)
 

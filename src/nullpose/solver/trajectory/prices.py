@@ -124,6 +124,8 @@ class PriceBound:
 
     def run(self) -> None:
         """Tell bounds on the mean, as near as time and gap let them come."""
+        if limit_clock() > self.deadline:
+            return
         cap, root = float(np.mean(self.caps)), self._root()
         if not (np.all(np.isfinite(root.low_m)) and np.all(np.isfinite(root.high_m))):
             return  # far away nothing is excluded
@@ -278,6 +280,8 @@ class PriceBound:
         fixed = family.ratios, domain, self.course.field.arrays
         kernel, queue, done, met = entry_of(branch.branch), Queue(row[None]), 0, None
         while queue.top and best + gap < min(most, _LARGEST):
+            if limit_clock() > self.deadline:
+                return most + float(tilt @ flown_m), best_m
             level, value = (math.exp(x) - self.offset for x in (best + gap, best + _NOTED * gap))
             done += queue.work(partial(kernel, *fixed, level, Goal(value, row, _SPARE, price)), _BOXES)
             queue.filled = 0

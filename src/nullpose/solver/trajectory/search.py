@@ -8,6 +8,7 @@ import numpy as np
 
 from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
+from nullpose.solver.compiling import limit_clock
 from nullpose.solver.trajectory.climb import Climb
 from nullpose.solver.trajectory.course import Course, likely_poses
 from nullpose.solver.trajectory.lattice import INSIDE, Lattice
@@ -55,18 +56,19 @@ def climbed(course: Course, positions_m: FloatArray, mu: float) -> Flight:
     return flight_of(course, climb.run(mu, _END[course.aim.is_worst]), climb)
 
 
-def best_flight(course: Course, places_m: FloatArray) -> tuple[Flight, Lattice]:
+def best_flight(course: Course, places_m: FloatArray, deadline: float) -> tuple[Flight, Lattice]:
     """Search for the best trajectory: paths over a lattice, and climbs from them.
 
     Args:
         course: the problem.
         places_m: (t, 3) the best position at each instant, if the vehicle could be anywhere.
+        deadline: on ``limit_clock``, after which no climb begins but the first.
 
     Raises:
         SolveError: none was found.
     """
     lattice, is_worst = Lattice.around(course, places_m), course.aim.is_worst
-    paths = [lattice.best_path(worst, strides) for worst in (True, False) for strides in _STRIDES]
+    paths = [lattice.best_path(worst, strides) for worst in (is_worst, not is_worst) for strides in _STRIDES]
     slower = replace(course, speed_max_m_s=INSIDE * course.speed_max_m_s)
     paths.append(greedy(slower, places_m).poses[:, :3])
     climbs = [
@@ -75,10 +77,14 @@ def best_flight(course: Course, places_m: FloatArray) -> tuple[Flight, Lattice]:
         if is_allowed(course, poses[:, :3])
         for mu in _BARRIERS[is_worst]
     ]
-    rough = [(climb, climb.run(mu, _ROUGH)) for climb, mu in climbs]
+    rough = [
+        (climb, climb.run(mu, _ROUGH, deadline))
+        for i, (climb, mu) in enumerate(climbs)
+        if i == 0 or limit_clock() < deadline
+    ]
     found = [(course.aim.score(course.logs(poses)), i) for i, (_, poses) in enumerate(rough)]
     finished = [
-        flight_of(course, rough[i][0].run(_ROUGH, _END[is_worst]), rough[i][0])
+        flight_of(course, rough[i][0].run(_ROUGH, _END[is_worst], deadline), rough[i][0])
         for _, i in sorted(found, reverse=True)[:_FINISHED]
     ]
     best = max(finished, key=lambda each: each.score, default=None)
@@ -90,8 +96,14 @@ def best_flight(course: Course, places_m: FloatArray) -> tuple[Flight, Lattice]:
     return best, lattice
 
 
-def hovering(course: Course, lattice: Lattice) -> Flight | None:
-    """Return the best flight that stays in one place and turns; None where none was found."""
+def hovering(course: Course, lattice: Lattice, deadline: float) -> Flight | None:
+    """Return the best flight that stays in one place and turns; None where none was found.
+
+    Args:
+        course: the problem.
+        lattice: for the place to climb from.
+        deadline: on ``limit_clock``, which ends the climb.
+    """
     if any(each is not None for each in course.ends_m):
         return None
     held = replace(course, speed_max_m_s=_AT_REST_M_S)
@@ -100,7 +112,7 @@ def hovering(course: Course, lattice: Lattice) -> Flight | None:
     if not is_clear(course, poses[:, :3]):
         return None
     is_worst = course.aim.is_worst
-    poses = Climb(held, poses).run(_BARRIERS[is_worst][0], _END[is_worst])
+    poses = Climb(held, poses).run(_BARRIERS[is_worst][0], _END[is_worst], deadline)
     return flight_of(course, _posed(course, np.tile(poses[:, :3].mean(axis=0), (len(poses), 1))))
 
 
@@ -123,16 +135,19 @@ def greedy(course: Course, places_m: FloatArray) -> Flight:
     return flight_of(course, _posed(course, np.array(flown)))
 
 
-def seeing_ahead(course: Course, window_s: float, start: Flight) -> Flight:
-    """Return the flight that plans anew at each instant, for what it sees of the time to come.
+def seeing_ahead(course: Course, window_s: float, start: Flight, deadline: float) -> Flight | None:
+    """Return the flight that plans anew at each instant, for what it sees of the time to come; None if late.
 
     Args:
         course: the problem.
         window_s: how far ahead motions are known.
         start: a flight of which the first pose is the start.
+        deadline: on ``limit_clock``.
     """
     poses = inside(course, np.tile(start.poses[0, :3], (len(course.times_s), 1)))
     for t in range(len(poses) - 1):
+        if limit_clock() > deadline:
+            return None
         last = int(np.searchsorted(course.times_s, course.times_s[t] + window_s, side="right"))
         part = course.part(t, max(last, t + 2), poses[t, :3])
         ahead = inside(part, np.tile(poses[t, :3], (len(part.times_s), 1)))

@@ -94,17 +94,24 @@ class _Run:
         self.gap_db, self.reason = gap_db, ""
         self.gap = gap_db / self.in_unit(1.0)
 
+    @property
+    def half_time(self) -> float:
+        """Half-way from now to the deadline: what comes afterwards takes time, too."""
+        now = limit_clock()
+        return now + 0.5 * (self.deadline - now)
+
     def in_unit(self, score: float) -> float:
         return from_nats(self.course.quantity, self.course.aim, score)
 
     def result(self, scenario: Scenario, window_s: float | None, began: float) -> Trajectory:
         course, count = self.course, len(self.course.times_s)
-        best = clairvoyant(course, self.gap, lambda done: self.tell("instants", done / count), self.deadline)
+        best = clairvoyant(course, self.gap, lambda done: self.tell("instants", done / count), self.half_time)
         places_m = best.poses[:, :3]
-        flight, lattice = best_flight(course, places_m)
-        others = {"hover": hovering(course, lattice), "greedy": greedy(course, places_m), "window": None}
+        flight, lattice = best_flight(course, places_m, self.half_time)
+        hover = hovering(course, lattice, self.half_time)
+        others = {"hover": hover, "greedy": greedy(course, places_m), "window": None}
         if window_s is not None:
-            others["window"] = seeing_ahead(course, window_s, flight)
+            others["window"] = seeing_ahead(course, window_s, flight, self.half_time)
         # one that does not get to its end, or waits where a point comes by, is no flight
         others = {
             name: each if each is not None and is_allowed(course, each.poses[:, :3]) else None
