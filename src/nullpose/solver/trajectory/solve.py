@@ -51,7 +51,7 @@ def solve_trajectory(
         maximise: ``worst``, the smallest value over the instants; ``mean-db``, the mean of its decibels;
             ``mean-rate``, the mean of ``log2(1 + ratio)``.
         gap_db: difference of bound and value at which the proof is done, dB or bits/s/Hz.
-        time_limit_s: seconds after which the proof stops with the bound reached.
+        time_limit_s: seconds after which search and proof stop with what they have reached.
         window_s: how far ahead the flight sees that is compared; without it there is none.
         on_progress: called now and then with what is done and the share of it, or the gap so far.
 
