@@ -113,6 +113,7 @@ def test_the_first_answer_waits_for_no_compiler(start: Start, tmp_path: Path) ->
         assert other[path] == (pytest.approx(value, rel=1e-9) if is_number else value), path
 
 
+@pytest.mark.grid
 def test_the_terminal_that_closes_ends_no_compilation(start: Start, tmp_path: Path) -> None:
     """What hangs up the program and all of its group leaves the kernels to be compiled."""
     before = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup has it ignored, and so all that it starts
@@ -146,6 +147,7 @@ def test_ctrl_c_ends_the_compilation_too(start: Start, tmp_path: Path) -> None:
     until(lambda: not with_folder(tmp_path / "kernels"))
 
 
+@pytest.mark.grid
 def test_a_second_command_starts_no_second_compilation(start: Start, tmp_path: Path) -> None:
     """While one compiles, another has Python prove its answer to the end, but for a limit that it states."""
     import fcntl

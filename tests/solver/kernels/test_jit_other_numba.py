@@ -57,6 +57,7 @@ def lines_of(program: str, folder: Path, *arguments: str) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.grid
 def test_kernels_are_compiled_with_another_numba(tmp_path: Path) -> None:
     """Same distances from what the airspace excludes, and ways out."""
     path = str(ROOT / "examples" / "no-fly.toml")

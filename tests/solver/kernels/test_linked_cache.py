@@ -102,6 +102,7 @@ def test_what_is_made_of_other_sources_is_not_run(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.grid
 def test_a_folder_without_room_is_said_once(tmp_path: Path) -> None:
     """Kernels run all the same, and standard error has one line that says why they are not kept."""
     done = run(NO_ROOM + ONCE, tmp_path)
@@ -145,6 +146,7 @@ with compiler.in_use():
 """
 
 
+@pytest.mark.grid
 def test_a_folder_without_locks_keeps_kernels(tmp_path: Path) -> None:
     """Some network folders have no locks: kernels are compiled and kept there, and nothing is said."""
     done = run(NO_LOCKS, tmp_path)
@@ -251,6 +253,7 @@ def test_machine_code_takes_over(tmp_path: Path) -> None:
     assert (done.stdout, done.stderr) == ("20000000.0 20000000.0 True\n", "")
 
 
+@pytest.mark.grid
 def test_a_limit_begins_with_the_last_kernel(tmp_path: Path) -> None:
     """The clock stands still while kernels are compiled, and not after that, whoever looks or does not."""
     (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")

@@ -74,6 +74,7 @@ def test_the_rows_do_not_depend_on_who_makes_them(farm: Any, spec: Spec, tmp_pat
     assert told[-1].seconds_left == 0.0
 
 
+@pytest.mark.grid
 def test_workers_may_come_late(farm: Any, quick: Spec, tmp_path: Path) -> None:
     """Without a worker the run waits for one, and says so."""
     farm.scheduler()
@@ -235,6 +236,7 @@ def test_a_scheduler_that_goes_away(
     pd.testing.assert_frame_equal(rows(out), whole)
 
 
+@pytest.mark.grid
 def test_workers_with_another_nullpose(farm: Any, spec_file: SpecFile, tmp_path: Path) -> None:
     """They are refused before any work, with both versions."""
     other = tmp_path / "other.py"
@@ -271,7 +273,7 @@ def test_a_script_without_a_guard(farm: Any, spec_file: SpecFile, tmp_path: Path
 @pytest.mark.parametrize(
     ("moment", "to_group"),
     and_slow(
-        [("at-work", False), ("twice", True)],
+        [pytest.param("at-work", False, marks=pytest.mark.grid), ("twice", True)],
         [("start-up", True), ("start-up", False), ("at-work", True), ("twice", False)],
     ),
 )
