@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from benchmarks.soundness.features import make_feature_scene
-from sizes import and_slow
+from sizes import and_slow, chosen
 from tests.certificate.plain import accepted, cut_into_cells, put_together, rejected, with_leaves
 
 from nullpose.certificate import Certificate, verify
@@ -61,7 +61,8 @@ def test_proofs_of_wider_bands_are_proofs_of_narrower_ones(flown: Callable) -> N
 
 
 @pytest.mark.parametrize(
-    ("name", "factor"), [("hexarotor", 0.0), ("low", -1.0), ("belt", 100.0), ("cone", 0.0), ("cone", -1.0)]
+    ("name", "factor"),
+    chosen([("hexarotor", 0.0), ("low", -1.0), ("belt", 100.0), ("cone", 0.0), ("cone", -1.0)], [0, 1, 2]),
 )
 def test_multipliers_of_the_band_are_needed(name: str, factor: float, flown: Callable) -> None:
     """Without them, or with the other sign, the same leaves fail."""

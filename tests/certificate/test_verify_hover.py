@@ -162,6 +162,7 @@ def test_a_bound_below_the_best_pose_is_rejected(sound: Certificate) -> None:
         assert "is not excluded" in rejected(forged) or "root" in rejected(forged)
 
 
+@pytest.mark.grid  # a rejection that takes the verifier five seconds
 def test_another_track_is_another_claim(sound: Certificate) -> None:
     """The digest tells; with a new one the value does, and with a new value the leaves, where poses gain."""
     worst = int(np.argmin(values_of(sound)))
