@@ -50,7 +50,7 @@ _FLIGHTS = MappingProxyType(
         "clairvoyant": "clairvoyant bound: no speed limit",
     }
 )
-_SHOWN = 15
+_SHOWN, _NOTABLE = 15, 0.5  # rows of instants, and how far below the worst of them a sample is told first
 
 
 def file_names(scenario: Scenario) -> list[str]:
@@ -100,9 +100,11 @@ def trajectory_view(flight: Trajectory, samples: FloatArray) -> View:
         f"the bound is of {'any flight in continuous time' if is_worst else 'the mean of the instants only'}",
         f"{len(flight.poses)} instants; {flight.stats.wall_s:.2g} s",
     )
+    lowest, loss = _lowest_sample(flight, samples)
+    warning = [f"between the instants it falls to {lowest} (estimate)"] if loss > _NOTABLE else []
     step = -(-len(flight.poses) // _SHOWN)
     return document(
-        head(flight.scenario.name, "Trajectory", f"{words} {flight.value:z.4f} {unit}", lines),
+        head(flight.scenario.name, "Trajectory", f"{words} {flight.value:z.4f} {unit}", (*warning, *lines)),
         table("What planning is worth", _worth(flight)),
         pairs("Motion", _motion(flight, samples)),
         table("Instants", _instants(flight)[::step]),
@@ -124,19 +126,26 @@ def _worth(flight: Trajectory) -> list[dict[str, str]]:
 
 
 def _motion(flight: Trajectory, samples: FloatArray) -> list[tuple[str, str | None]]:
-    quantity, airframe = flight.quantity, flight.scenario.airframe
-    lowest, at_instants = (quantity.in_unit(float(np.min(each))) for each in (samples[1], flight.values))
-    place = f"{lowest:z.4f} {quantity.unit} at {samples[0, np.argmin(samples[1])]:.4g} s"
-    loss = f"{at_instants - lowest:.2g} {quantity.unit} below the worst instant; a shorter time.step_s helps"
+    airframe = flight.scenario.airframe
+    lowest, loss = _lowest_sample(flight, samples)
     return [
         (
             "largest speed",
             f"{np.max(flight.speeds_m_s):.4g} m/s, limit {airframe and airframe.speed_max_m_s:g} m/s",
         ),
         ("largest turn rate", f"{np.degrees(np.max(flight.turn_rates_rad_s)):.3g} deg/s, without a limit"),
-        ("between instants", f"lowest {place}, an estimate by {PARTS} samples a step"),
-        ("", loss if lowest < at_instants else None),
+        ("between instants", f"lowest {lowest}, an estimate by {PARTS} samples a step"),
+        ("", f"{loss:.2g} {flight.quantity.unit} below the worst instant" if loss > 0.0 else None),
     ]
+
+
+def _lowest_sample(flight: Trajectory, samples: FloatArray) -> tuple[str, float]:
+    """Return the lowest sample in words, and how far it is below the worst instant, in its unit."""
+    lowest, at_instants = (
+        flight.quantity.in_unit(float(np.min(each))) for each in (samples[1], flight.values)
+    )
+    place = f"{lowest:z.4f} {flight.quantity.unit} at {samples[0, np.argmin(samples[1])]:.4g} s"
+    return place, at_instants - lowest
 
 
 def _instants(flight: Trajectory) -> list[dict[str, str]]:

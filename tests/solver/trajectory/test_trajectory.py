@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -144,6 +145,47 @@ def test_the_attitude_is_continuous_where_the_flight_is() -> None:
     turned = np.arccos(np.clip(np.abs(np.sum(axes[1:] * axes[:-1], axis=1)), 0.0, 1.0))
     assert np.all(found.turn_rates_rad_s <= turned + 1e-6)
     assert np.all(turned < math.pi / 2)
+
+
+def test_a_vehicle_turns_no_more_than_its_dipole() -> None:
+    """A flat dipole on a vehicle of little tilt goes round: the body goes round with it, and not back."""
+    angles = np.linspace(0.0, 2.0 * math.pi, 13)
+    track = np.column_stack(
+        [np.arange(13.0), 30.0 * np.cos(angles), 25.0 + 30.0 * np.sin(angles), 0 * angles + 4]
+    )
+    jammer = {"position_m": track[0, 1:].tolist(), "track": track.tolist(), "power_w": 100.0}
+    airframe = {"tilt_max_deg": 20.0, "mount_deg": 90.0, "speed_max_m_s": 3.0}
+    found = nullpose.solve_trajectory(
+        scene(instants=13, jammers=[jammer], airframe=airframe), time_limit_s=2.0
+    )
+    axes = np.array([pose.antenna_axis for pose in found.poses])
+    along = np.clip(np.abs(np.sum(axes[1:] * axes[:-1], axis=1)), 0.0, 1.0)
+    assert np.all(found.turn_rates_rad_s <= np.arccos(along) + 0.1)
+    assert np.max(np.abs(np.diff(np.unwrap([pose.yaw_rad for pose in found.poses])))) < math.pi / 2
+
+
+@pytest.mark.parametrize("speed_m_s", [1e-3, 5.0])
+def test_a_start_on_the_border_of_a_zone_is_no_trap(speed_m_s: float) -> None:
+    """The value is that of staying there or better, and a drone that hardly moves has a trajectory, too."""
+    zone = {"centre_m": [20.0, 0.0], "radius_m": 10.0}
+    tables = {
+        "airspace": {"altitude_m": [8.0, 30.0], "no_fly": [zone]},
+        "airframe": {"preset": "omnidirectional", "speed_max_m_s": speed_m_s, "start_m": [10.0, 0.0, 9.0]},
+    }
+    found = nullpose.solve_trajectory(scene(**tables), time_limit_s=3.0)
+    hover = found.baselines["hover"]
+    assert hover is not None
+    assert hover <= found.value <= found.upper_bound + 1e-9
+    if speed_m_s > 1.0:
+        assert found.value > hover + 0.5
+
+
+def test_hovering_is_compared_with_a_good_place() -> None:
+    """The example's best place was found by a search over all places and instants by itself."""
+    example = nullpose.load(Path(__file__).parents[3] / "examples" / "moving_jammer.toml")
+    hover = nullpose.solve_trajectory(example, gap_db=100.0).baselines["hover"]
+    assert hover is not None
+    assert hover == pytest.approx(-0.64, abs=0.02)
 
 
 @pytest.mark.parametrize("maximise", _AIMS)

@@ -56,9 +56,10 @@ class Climb:
     Args:
         course: the problem.
         poses: (t, 6) positions and axes to begin with, strictly inside of what is allowed.
+        turns_only: whether the positions stay as they are.
     """
 
-    def __init__(self, course: Course, poses: FloatArray) -> None:
+    def __init__(self, course: Course, poses: FloatArray, *, turns_only: bool = False) -> None:
         from nullpose.solver.kernels.compiler.jit import entry_of
         from nullpose.solver.kernels.search import flight
         from nullpose.solver.kernels.search.local_coordinates import move
@@ -68,6 +69,10 @@ class Climb:
         self.move, self.axes = entry_of(move), course.field.arrays
         self.points_m = np.stack([family.ratios.points_m for family in course.families])
         self.domains: list[Domain] = []
+        ends = (0, course.ends_m[0]), (len(poses) - 1, course.ends_m[1])
+        self.held = {t: place_m for t, place_m in ends if place_m is not None}
+        if turns_only:
+            self.held = dict(enumerate(poses[:, :3]))
 
     def run(self, mu_start: float, mu_end: float, deadline: float = math.inf) -> FloatArray:
         """Climb until the barrier's weight has fallen to its end, or to a deadline; return the poses."""
@@ -119,19 +124,14 @@ class Climb:
             domain, places_m[:-1], places_m[1:], self.points_m[:-1], self.points_m[1:], radius_m
         )
         near, self.domains = spaces.slacks_m < _NEAR_M, []
-        held = {
-            t: (end_m, end_m)
-            for t, end_m in zip((0, len(places_m) - 1), self.course.ends_m, strict=True)
-            if end_m is not None
-        }
         for t in range(len(places_m)):
             rows = [
                 np.column_stack([spaces.normals[s, near[s]], offsets[s, near[s]]])
                 for s, offsets in ((t - 1, spaces.ends), (t, spaces.starts))
-                if 0 <= s < len(near)
+                if 0 <= s < len(near) and t not in self.held  # which may be on a border
             ]
-            sides = np.insert(np.vstack(rows), 0, 0.0, axis=1)
-            low_m, high_m = held.get(t, (domain.low_m, domain.high_m))
+            sides = np.insert(np.vstack([np.empty((0, 4)), *rows]), 0, 0.0, axis=1)
+            low_m, high_m = self.held.get(t, domain.low_m), self.held.get(t, domain.high_m)
             # pieces have one side each; balls and zones are among them
             self.domains.append(
                 Domain(low_m, high_m, np.zeros((0, 3)), radius_m, np.arange(len(sides) + 1), sides)

@@ -88,6 +88,10 @@ class Course:
         if airframe is None or airframe.speed_max_m_s is None:
             raise UsageError("airframe.speed_max_m_s: missing; a trajectory needs the largest speed, in m/s")
         require_usage(
+            airframe.speed_max_m_s > 0.0,
+            "airframe.speed_max_m_s: given 0; allowed: more than 0; solve --hover has the pose that stays",
+        )
+        require_usage(
             len(times_s) <= _MOST_INSTANTS,
             f"time: given {len(times_s):,} instants for a trajectory, which take about "
             f"{_INSTANT_MB * len(times_s):,.0f} MB; allowed: {_MOST_INSTANTS:,}; raise step_s",

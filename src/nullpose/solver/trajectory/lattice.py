@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from nullpose.objectives import FloatArray, IntArray
+from nullpose.solver.compiling import limit_clock
 from nullpose.solver.trajectory.course import Course, likely_poses
 from nullpose.solver.trajectory.segments import half_spaces
 
@@ -17,7 +20,8 @@ INSIDE = 0.98
 _POINTS = 700  # of the lattice, about
 _FINEST_M = 4.0
 _LONGEST = 8.0  # finest steps beyond the reach of an instant that a stride may have
-_CLEAR_M = 1e-3
+_CLEAR_M, _ON_BORDER_M = 1e-3, 1e-9
+_PLACES, _APART, _FINE_M = 8, 1.5, 0.3  # to hover at: how many, how many steps apart, and how fine
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +58,7 @@ class Lattice:
         for row, end_m in ((0, course.ends_m[0]), (-1, course.ends_m[1])):
             if end_m is not None:
                 gains[row, np.linalg.norm(points_m - end_m, axis=1) > _CLEAR_M] = -np.inf
-        return cls(course, points_m, gains, step_m, _ways_m(course, points_m))
+        return cls(course, points_m, gains, step_m, _ways_m(course, points_m, len(ends_m)))
 
     def best_path(self, is_worst: bool, strides: float) -> FloatArray:
         """Find the path of the largest sum of gains, or of the largest least gain: positions, (t, 3).
@@ -80,10 +84,38 @@ class Lattice:
         stops_m, times_s = self.points_m[chosen[::-1]], self.course.times_s
         return np.stack([np.interp(times_s, times_s[stages], axis) for axis in stops_m.T], axis=-1)
 
-    def best_place(self, is_worst: bool) -> FloatArray:
-        """Return the position of the largest sum of gains, or of the largest least gain, (3,)."""
-        values = np.min(self.gains, axis=0) if is_worst else np.sum(self.gains, axis=0)
-        return np.asarray(self.points_m[np.argmax(values)])
+    def best_places(self, is_worst: bool, deadline: float) -> FloatArray:
+        """Search for places to hover at, from the best of the lattice, (n, 3), the best first.
+
+        Each is moved to the best of its neighbours, in a grid that is turned anew, half as far where none is
+        better.
+
+        Args:
+            is_worst: whether the least gain of all instants counts, or their sum.
+            deadline: on ``limit_clock``.
+        """
+        course, random = self.course, np.random.default_rng(0)
+        fold = np.min if is_worst else np.sum
+        values, chosen = fold(self.gains, axis=0), np.empty((0, 3))
+        for place_m in self.points_m[np.argsort(-values, kind="stable")]:
+            if np.all(np.linalg.norm(chosen - place_m, axis=1) > _APART * self.step_m):
+                chosen = np.vstack([chosen, place_m])
+            if len(chosen) == _PLACES:
+                break
+        domain, grid = course.families[0].domain, np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
+        steps_m, best = np.full(len(chosen), 0.5 * self.step_m), np.full(len(chosen), -np.inf)
+        while np.max(steps_m) > _FINE_M and limit_clock() < deadline:
+            turned = grid @ Rotation.random(rng=random).as_matrix()
+            around_m = chosen[:, None] + steps_m[:, None, None] * turned
+            around_m = np.clip(around_m, domain.low_m, domain.high_m).reshape(-1, 3)
+            gains = [_gains_at(course, t, around_m) for t in range(len(course.times_s))]
+            totals = fold(gains, axis=0).reshape(len(chosen), -1)
+            top = np.argmax(totals, axis=1)
+            is_better = np.max(totals, axis=1) > best
+            chosen[is_better] = around_m.reshape(len(chosen), -1, 3)[is_better, top[is_better]]
+            steps_m = np.where(is_better & (top != len(grid) // 2), steps_m, 0.5 * steps_m)
+            best = np.maximum(best, np.max(totals, axis=1))
+        return chosen[np.argsort(-best, kind="stable")]
 
     def _stages(self, strides: float) -> tuple[IntArray, NDArray[np.bool_]]:
         """Choose instants so far apart that a path may turn; tell which positions are in reach, (m, m)."""
@@ -109,13 +141,15 @@ def _gains_at(course: Course, t: int, points_m: FloatArray) -> FloatArray:
     return course.aim.gains(likely_poses(course, t, points_m)[1])
 
 
-def _ways_m(course: Course, points_m: FloatArray) -> FloatArray:
+def _ways_m(course: Course, points_m: FloatArray, ends: int) -> FloatArray:
+    """Return the lengths of straight ways, (m, m); the last points are ends, which may lie on a border."""
     apart_m = np.linalg.norm(points_m[:, None] - points_m, axis=2)
     domain = course.families[0].domain
     if len(domain.piece_start) > 1:
-        starts, ends = np.nonzero(apart_m <= float(np.max(course.reach_m)) + _LONGEST * _FINEST_M)
+        starts, ends_of = np.nonzero(apart_m <= float(np.max(course.reach_m)) + _LONGEST * _FINEST_M)
         none = np.empty((len(starts), 0, 3))
-        spaces = half_spaces(domain, points_m[starts], points_m[ends], none, none, 0.0)
-        clear = np.all(spaces.slacks_m > _CLEAR_M, axis=1)
-        apart_m[starts[~clear], ends[~clear]] = np.inf
+        spaces = half_spaces(domain, points_m[starts], points_m[ends_of], none, none, 0.0)
+        inner = np.maximum(starts, ends_of) < len(points_m) - ends
+        clear = np.all(spaces.slacks_m > np.where(inner, _CLEAR_M, -_ON_BORDER_M)[:, None], axis=1)
+        apart_m[starts[~clear], ends_of[~clear]] = np.inf
     return np.asarray(apart_m)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nullpose.errors import SolveError
 from nullpose.objectives import FloatArray
 from nullpose.solver.compiling import limit_clock
 from nullpose.solver.trajectory.climb import Climb
@@ -56,7 +55,7 @@ def climbed(course: Course, positions_m: FloatArray, mu: float) -> Flight:
     return flight_of(course, climb.run(mu, _END[course.aim.is_worst]), climb)
 
 
-def best_flight(course: Course, places_m: FloatArray, deadline: float) -> tuple[Flight, Lattice]:
+def best_flight(course: Course, places_m: FloatArray, deadline: float) -> tuple[Flight | None, Lattice]:
     """Search for the best trajectory: paths over a lattice, and climbs from them.
 
     Args:
@@ -64,8 +63,8 @@ def best_flight(course: Course, places_m: FloatArray, deadline: float) -> tuple[
         places_m: (t, 3) the best position at each instant, if the vehicle could be anywhere.
         deadline: on ``limit_clock``, after which no climb begins but the first.
 
-    Raises:
-        SolveError: none was found.
+    Returns:
+        The trajectory, if one was found, and the lattice.
     """
     lattice, is_worst = Lattice.around(course, places_m), course.aim.is_worst
     paths = [lattice.best_path(worst, strides) for worst in (is_worst, not is_worst) for strides in _STRIDES]
@@ -87,33 +86,33 @@ def best_flight(course: Course, places_m: FloatArray, deadline: float) -> tuple[
         flight_of(course, rough[i][0].run(_ROUGH, _END[is_worst], deadline), rough[i][0])
         for _, i in sorted(found, reverse=True)[:_FINISHED]
     ]
-    best = max(finished, key=lambda each: each.score, default=None)
-    if best is None or not best.score > -np.inf:
-        raise SolveError(
-            "no trajectory was found that keeps to the airspace and the speed; raise "
-            "airframe.speed_max_m_s, or widen the airspace"
-        )
-    return best, lattice
+    return max(finished, key=lambda each: each.score, default=None), lattice
 
 
 def hovering(course: Course, lattice: Lattice, deadline: float) -> Flight | None:
-    """Return the best flight that stays in one place and turns; None where none was found.
+    """Return the best flight found that stays in one place and turns: at the start, if that is given.
 
     Args:
         course: the problem.
-        lattice: for the place to climb from.
-        deadline: on ``limit_clock``, which ends the climb.
+        lattice: where the search begins.
+        deadline: on ``limit_clock``.
     """
-    if any(each is not None for each in course.ends_m):
-        return None
-    held = replace(course, speed_max_m_s=_AT_REST_M_S)
-    place_m = lattice.best_place(course.aim.is_worst)
-    poses = inside(held, np.tile(place_m, (len(course.times_s), 1)))
-    if not is_clear(course, poses[:, :3]):
-        return None
-    is_worst = course.aim.is_worst
-    poses = Climb(held, poses).run(_BARRIERS[is_worst][0], _END[is_worst], deadline)
-    return flight_of(course, _posed(course, np.tile(poses[:, :3].mean(axis=0), (len(poses), 1))))
+    given = [each for each in course.ends_m if each is not None]
+    is_worst, count, best = course.aim.is_worst, len(course.times_s), None
+    places_m = [
+        np.tile(place_m, (count, 1)) for place_m in given[:1] or lattice.best_places(is_worst, deadline)
+    ]
+    if not given:
+        held = replace(course, speed_max_m_s=_AT_REST_M_S)
+        starts = [Climb(held, inside(held, each)) for each in places_m[:_FINISHED] if is_clear(course, each)]
+        ends_m = [climb.run(_BARRIERS[is_worst][0], _END[is_worst], deadline)[:, :3] for climb in starts]
+        places_m += [np.tile(each.mean(axis=0), (count, 1)) for each in ends_m]
+    for each in places_m:
+        if is_allowed(course, each) and (best is None or limit_clock() < deadline):
+            climb = Climb(course, _posed(course, each), turns_only=True)
+            flight = flight_of(course, climb.run(_ROUGH, _END[is_worst], deadline))
+            best = flight if best is None or flight.score > best.score else best
+    return best
 
 
 def greedy(course: Course, places_m: FloatArray) -> Flight:

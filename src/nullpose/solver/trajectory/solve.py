@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from nullpose.errors import checked, require_usage
+from nullpose.errors import SolveError, checked, require_usage
 from nullpose.objectives import FloatArray
 from nullpose.physics import Pose, rotation_world_from_body
-from nullpose.physics.rotation import attitude_of, rotation_about
+from nullpose.physics.rotation import attitude_of, attitude_of_axis, rotation_about
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.compiling import limit_clock, precompile, working_clock
@@ -84,6 +84,9 @@ def solve_trajectory(
     return _Run(course, gap_db, limit_clock() + time_limit_s, tell).result(scenario, window_s, began)
 
 
+_OPPOSITE = -1.0 + 1e-12  # cosine to an axis that the vehicle reaches the other way round, too
+
+
 class _Run:
     """The steps of one solve."""
 
@@ -107,18 +110,27 @@ class _Run:
         course, count = self.course, len(self.course.times_s)
         best = clairvoyant(course, self.gap, lambda done: self.tell("instants", done / count), self.half_time)
         places_m = best.poses[:, :3]
-        flight, lattice = best_flight(course, places_m, self.half_time)
+        found, lattice = best_flight(course, places_m, self.half_time)
         hover = hovering(course, lattice, self.half_time)
         others = {"hover": hover, "greedy": greedy(course, places_m), "window": None}
-        if window_s is not None:
-            others["window"] = seeing_ahead(course, window_s, flight, self.half_time)
+        if window_s is not None and found is not None:
+            others["window"] = seeing_ahead(course, window_s, found, self.half_time)
         # one that does not get to its end, or waits where a point comes by, is no flight
         others = {
             name: each if each is not None and is_allowed(course, each.poses[:, :3]) else None
             for name, each in others.items()
         }
-        better = max([flight, *filter(None, others.values())], key=lambda each: each.score)
-        flight = replace(better, prices=flight.prices, multipliers=flight.multipliers)
+        flights = [each for each in (found, *others.values()) if each is not None and each.score > -np.inf]
+        if not flights:
+            raise SolveError(
+                "no trajectory was found that keeps to the airspace and the speed; raise "
+                "airframe.speed_max_m_s, or widen the airspace"
+            )
+        prices, multipliers = np.zeros((count - 1, 3)), best.multipliers
+        if found is not None and found.prices is not None and found.multipliers is not None:
+            prices, multipliers = found.prices, found.multipliers
+        flight = max(flights, key=lambda each: each.score)
+        flight = replace(flight, prices=prices, multipliers=multipliers)
         top = course.aim.score(best.bounds)
         flight, bound, bound_name = self._bounded(flight, best, top)
         scores = {name: None if each is None else self.in_unit(each.score) for name, each in others.items()}
@@ -159,7 +171,8 @@ class _Run:
         except KeyboardInterrupt:
             self.reason = INTERRUPT
         if bound > flight.score + self.gap and not self.reason:
-            self.reason = "the time limit, or the boxes that it takes"
+            is_late = limit_clock() > self.deadline
+            self.reason = "the time limit" if is_late else "boxes became too many; more time is of no help"
         return flight, bound, name
 
 
@@ -171,7 +184,7 @@ def continuous_poses(course: Course, poses: FloatArray) -> Iterator[Pose]:
     """Turn the vehicle along a flight as little as it can: u and -u are the same antenna, and a spin is free.
 
     Where the tilt is limited and the dipole is not along the body's vertical, each attitude is that of least
-    tilt.
+    tilt for u or -u.
 
     Args:
         course: the problem.
@@ -184,16 +197,30 @@ def continuous_poses(course: Course, poses: FloatArray) -> Iterator[Pose]:
     mount, before = rotation_world_from_body(0.0, mount_rad, 0.0), None
     for scene, pose in zip(course.scenes, poses, strict=True):
         found = Pose.of_airframe(scene, pose[:3], pose[3:])
-        if before is None or not is_free:
-            turn = rotation_world_from_body(found.roll_rad, found.pitch_rad, found.yaw_rad) @ mount
-        else:
-            axis = found.antenna_axis
+        axis = found.antenna_axis
+        if before is None:
+            before = _antenna_frame(found)
+        elif is_free:
             if tilt_max_rad >= math.pi and axis @ before[:, 2] < 0.0:
                 axis = -axis
-            turn = _least_turn(before[:, 2], axis) @ before
-            found = Pose(pose[:3], *attitude_of(turn @ mount.T, tilt_max_rad), mount_rad)
-        before = turn
+            before = _least_turn(before[:, 2], axis) @ before
+            found = Pose(pose[:3], *attitude_of(before @ mount.T, tilt_max_rad), mount_rad)
+        else:
+            other = Pose(
+                pose[:3], *attitude_of_axis(-axis, tilt_max_rad, mount_rad, is_even=False), mount_rad
+            )
+            frames = [_antenna_frame(each) for each in (found, other)]
+            is_other = (
+                other.antenna_axis @ axis < _OPPOSITE and np.sum(before * (frames[1] - frames[0])) > 0.0
+            )
+            found, before = (other, frames[1]) if is_other else (found, frames[0])
         yield found
+
+
+def _antenna_frame(pose: Pose) -> FloatArray:
+    """Return the rotation to the world from the antenna's axes."""
+    body = rotation_world_from_body(pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
+    return np.asarray(body @ rotation_world_from_body(0.0, pose.mount_rad, 0.0))
 
 
 def _least_turn(first: FloatArray, last: FloatArray) -> FloatArray:
