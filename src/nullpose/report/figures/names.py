@@ -40,6 +40,7 @@ def write_name(
     number: str = "",
     is_bold: bool = False,
     is_area: bool = False,
+    colour: str = INK,
 ) -> None:
     """Write a name at its point as it is, no part of it a formula, for ``place_names`` to move.
 
@@ -50,6 +51,7 @@ def write_name(
         number: beside it, or below a long one.
         is_bold: whether it is that of the worst node.
         is_area: whether it is slanted.
+        colour: of the letters.
     """
     words = ("\n" if len(name) > _SHORT else " ").join(filter(None, (textwrap.fill(name, _LETTERS), number)))
     look: Look = {
@@ -65,7 +67,7 @@ def write_name(
         "ha": "center",
         "va": "center",
     }
-    axes.annotate(words, (float(point_m[0]), float(point_m[1])), color=INK, zorder=8, **look)
+    axes.annotate(words, (float(point_m[0]), float(point_m[1])), color=colour, zorder=8, **look)
 
 
 def place_names(axes: Axes) -> None:

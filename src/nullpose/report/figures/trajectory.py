@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -93,8 +94,9 @@ def _draw_plan(figure: Figure, flight: Trajectory) -> None:
     marked = np.unique(np.searchsorted(shares, np.linspace(0.0, shares[-1], _MARKS)))  # of way and time
     axes = figure.add_subplot()
     line, _, dots = _draw_scene(axes, flight, marked)
-    for (_, track_m), index in product((each for each in dots if np.ptp(each[1], axis=0).any()), marked):
-        write_name(axes, f"{flight.times_s[index]:.4g} s", track_m[index])
+    for (dot, track_m), index in product((each for each in dots if np.ptp(each[1], axis=0).any()), marked):
+        colour = to_hex(np.ravel(dot.get_facecolor())[:4].tolist())
+        write_name(axes, f"{flight.times_s[index]:.4g} s", track_m[index], colour=colour)
     figure.colorbar(line, ax=axes, label="Time (s)", shrink=0.85, aspect=30)
 
 
@@ -114,6 +116,7 @@ def _draw_scene(
     line = LineCollection(
         [*np.stack([flown_m[:-1], flown_m[1:]], axis=1)],
         array=flight.times_s[:-1],
+        clim=(0.0, flight.times_s[-1]),
         cmap="viridis",
         linewidths=2.4,
         zorder=5.0,
@@ -135,8 +138,8 @@ def _draw_scene(
                 track_m,
             )
         )
-        seen_m = next((place_m for place_m in track_m if axes.viewLim.contains(*place_m)), track_m[0])
-        write_name(axes, point.name, seen_m, is_bold=True)
+        seen_m = [place_m for place_m in track_m if axes.viewLim.contains(*place_m)] or [track_m[0]]
+        write_name(axes, point.name, seen_m[len(seen_m) // 2], is_bold=True)
     return line, axis, dots
 
 
@@ -168,7 +171,7 @@ def _draw_values(axes: Axes, flight: Trajectory, samples: FloatArray) -> None:
     axes.plot(samples[0], between, color=INK, linewidth=0.8, label="between instants (estimate)")
     axes.plot(flight.times_s, values, ".", color=INK, markersize=5.0, label="the flight at the instants")
     kind = "worst" if flight.maximise.is_worst else "mean"
-    axes.axhline(flight.value, color=INK, linestyle=":", linewidth=1.2, label=f"its {kind}")
+    axes.axhline(flight.value, color=INK, linestyle=":", linewidth=1.2, label=f"{kind} of the flight")
     axes.axhline(
         flight.upper_bound, color=JAMMER, ls="--", linewidth=1.2, label=f"no flight has its {kind} above"
     )
