@@ -68,9 +68,17 @@ def test_attitudes_keep_within_a_tilt(seed: int, tilt_max: float, error: float) 
     roll, pitch, found = attitude_of(stated, tilt_max)
     assert Pose([0.0, 0.0, 8.0], roll, pitch, found).tilt_rad <= tilt_max
     assert tilt_max > 0.0 or (roll, pitch) == (0.0, 0.0)
-    if abs(abs(pitch) - math.pi / 2.0) > 1e-2:  # there roll and yaw turn about one axis
-        moved = Rotation.from_matrix(rotation_world_from_body(roll, pitch, found).T @ stated).magnitude()
-        assert moved <= 200.0 * 10.0**error + 1e-7
+    moved = Rotation.from_matrix(rotation_world_from_body(roll, pitch, found).T @ stated).magnitude()
+    assert moved <= 200.0 * 10.0**error + 1e-7
+
+
+@given(st.floats(-1e-6, 1e-6), ANGLES, ANGLES, st.sampled_from([-QUARTER, QUARTER]))
+def test_attitudes_with_the_nose_up_or_down_are_reproduced(
+    off: float, roll: float, yaw: float, quarter: float
+) -> None:
+    """Where roll and yaw turn about one axis, and near there, the angles found still give the attitude."""
+    stated = rotation_world_from_body(roll, quarter + off, yaw)
+    np.testing.assert_allclose(rotation_world_from_body(*attitude_of(stated)), stated, atol=1e-14)
 
 
 def _axis(angle: float, azimuth: float) -> np.ndarray:

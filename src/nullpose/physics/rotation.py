@@ -77,7 +77,9 @@ def attitude_of(rotation: ArrayLike, tilt_max_rad: float = math.pi) -> tuple[flo
     forward, left = (r[2, :2] * (np.sin(tilt) / level) if level > 0.0 else np.zeros(2)) + 0.0
     pitch = np.arctan2(-forward, np.hypot(left, np.cos(tilt)))
     roll = np.arctan2(left, np.cos(tilt))
-    return float(roll), float(pitch) + 0.0, float(np.arctan2(r[1, 0], r[0, 0]))
+    turn = r @ rotation_world_from_body(roll, pitch, 0.0).T  # about z, also where roll and yaw do the same
+    yaw = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
+    return float(roll), float(pitch) + 0.0, float(yaw)
 
 
 def antenna_axis(

@@ -48,6 +48,11 @@ def score(found: Trajectory, positions_m: np.ndarray, axes: np.ndarray) -> float
     return float(np.mean(to_db(ratios) if found.maximise == "mean-db" else np.log2(1.0 + np.array(ratios))))
 
 
+def value_of_poses(found: Trajectory) -> float:
+    """Evaluate the poses that a trajectory reports."""
+    return score(found, found.positions_m, np.array([pose.antenna_axis for pose in found.poses]))
+
+
 @pytest.fixture(scope="module", params=_AIMS)
 def found(request: pytest.FixtureRequest) -> Trajectory:
     """Solve a small scene for each aim."""
@@ -56,8 +61,7 @@ def found(request: pytest.FixtureRequest) -> Trajectory:
 
 def test_the_value_is_that_of_its_poses_and_below_every_bound(found: Trajectory) -> None:
     """By the physics at every instant."""
-    axes = np.array([pose.antenna_axis for pose in found.poses])
-    assert score(found, found.positions_m, axes) == pytest.approx(found.value, abs=1e-9)
+    assert value_of_poses(found) == pytest.approx(found.value, abs=1e-9)
     hover = found.baselines["hover"]
     assert hover is not None
     assert hover <= found.value + 1e-9 <= found.upper_bound + 2e-9
@@ -87,17 +91,35 @@ def test_no_random_flight_exceeds_the_bound(found: Trajectory, seed: int) -> Non
     assert score(found, wander_m, axes) <= found.upper_bound + 1e-9
 
 
+def test_axes_that_are_level_are_those_of_the_poses() -> None:
+    """A vehicle on its side flies over a node without a jammer; its pitch comes to 90 degrees."""
+    lone = {"nodes": [{"position_m": [9.0, 2.0, 0.0], "power_w": 1.0, "velocity_m_s": [6.0, 7.0, 0.0]}]}
+    found = nullpose.solve_trajectory(scene(**lone, jammers=[]), "mean-db", time_limit_s=2.0)
+    assert value_of_poses(found) == pytest.approx(found.value, abs=1e-9)
+
+
+_URBAN = {"model": "elevation", "environment": "dense-urban", "average": "power"}
+_TILTED = {"tilt_max_deg": 20.0, "mount_deg": 20.0, "speed_max_m_s": 1000.0}
+
+
 @pytest.mark.parametrize("maximise", _AIMS)
-def test_a_vehicle_that_could_be_anywhere_gets_the_best_of_each_instant(maximise: str) -> None:
-    """A speed that is no limit."""
-    found = nullpose.solve_trajectory(scene(speed_m_s=1000.0), maximise, time_limit_s=4.0)
+@pytest.mark.parametrize(
+    "tables", [{}, {"channel": _URBAN}, {"airframe": _TILTED}], ids=["free", "elevation", "tilt"]
+)
+def test_a_vehicle_that_could_be_anywhere_gets_the_best_of_each_instant(
+    maximise: str, tables: dict[str, object]
+) -> None:
+    """A speed that is no limit, wherever the best is: high up, or at an axis that is hard to guess."""
+    found = nullpose.solve_trajectory(scene(1000.0, 5, **tables), maximise, time_limit_s=4.0)
     assert found.baselines["clairvoyant"] == pytest.approx(found.value, abs=0.01)
 
 
-def test_where_nothing_moves_it_is_the_best_pose() -> None:
-    """What stands is a scene of one instant."""
+@pytest.mark.parametrize("tilt_max_deg", [180.0, 10.0])
+def test_where_nothing_moves_it_is_the_best_pose(tilt_max_deg: float) -> None:
+    """What stands is a scene of one instant, with any attitude or few."""
     points = scene().at(0.0).to_dict()
     still = {"jammers": [{**points["jammers"][0], "velocity_m_s": [0.0, 0.0, 0.0]}], "nodes": points["nodes"]}
+    still["airframe"] = {"tilt_max_deg": tilt_max_deg, "mount_deg": 30.0, "speed_max_m_s": 4.0}
     found = nullpose.solve_trajectory(scene(instants=4, **still), time_limit_s=4.0)
     best = nullpose.solve(scene(instants=4, **still).at(0.0))
     assert found.value == pytest.approx(best.objective.value_db, abs=1e-4)
@@ -197,6 +219,17 @@ def test_a_time_limit_that_is_over_at_once_leaves_a_flight_and_a_bound(maximise:
     assert score(found, found.positions_m, axes) == pytest.approx(found.value, abs=1e-9)
     assert found.value <= found.upper_bound + 1e-9
     assert found.baselines["window"] is None
+
+
+@pytest.mark.parametrize("least_db", [-30.0, 0.0])
+def test_every_node_has_what_it_requires_at_every_instant(least_db: float) -> None:
+    """Of a sum of rates, which would rather serve the others."""
+    nodes = [*scene().to_dict()["nodes"], {"position_m": [45.0, 25.0, 0.0], "min_sinr_db": least_db}]
+    nodes[2]["power_w"] = 1.0
+    found = nullpose.solve_trajectory(scene(objective="sum-rate", nodes=nodes), "mean-db", time_limit_s=2.0)
+    for t_s, pose in zip(found.times_s, found.poses, strict=True):
+        links = nullpose.evaluate(found.scenario.at(float(t_s)), pose)
+        assert links[2].sinr_db >= least_db - 1e-9
 
 
 def test_a_flight_that_sees_ahead_keeps_to_the_speed() -> None:

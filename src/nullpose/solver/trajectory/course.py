@@ -10,7 +10,7 @@ import numpy as np
 
 from nullpose.errors import UsageError, require_usage
 from nullpose.objectives import FloatArray, Quantity
-from nullpose.physics import Pose, evaluate, objective_of_links
+from nullpose.physics import Pose, allowed_value
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -132,9 +132,12 @@ class Course:
         return Quantity.of(self.scenes[0])
 
     def logs(self, poses: FloatArray) -> FloatArray:
-        """Evaluate the log ratios of poses, (t, 6) positions and axes, by the physics."""
+        """Evaluate the log ratios of poses, (t, 6) positions and axes, by the physics.
+
+        Minus infinity where a node of a sum or a mean has less than it requires.
+        """
         values = [
-            objective_of_links(scene, evaluate(scene, Pose.of_airframe(scene, pose[:3], pose[3:])))
+            allowed_value(scene, pose[:3], Pose.of_airframe(scene, pose[:3], pose[3:]).antenna_axis)
             for scene, pose in zip(self.scenes, poses, strict=True)
         ]
         with np.errstate(divide="ignore"):

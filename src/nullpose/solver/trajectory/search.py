@@ -55,21 +55,21 @@ def climbed(course: Course, positions_m: FloatArray, mu: float) -> Flight:
     return flight_of(course, climb.run(mu, _END[course.aim.is_worst]), climb)
 
 
-def best_flight(course: Course, places_m: FloatArray, deadline: float) -> tuple[Flight | None, Lattice]:
+def best_flight(course: Course, best_poses: FloatArray, deadline: float) -> tuple[Flight | None, Lattice]:
     """Search for the best trajectory: paths over a lattice, and climbs from them.
 
     Args:
         course: the problem.
-        places_m: (t, 3) the best position at each instant, if the vehicle could be anywhere.
+        best_poses: (t, 6) the best at each instant, if the vehicle could be anywhere.
         deadline: on ``limit_clock``, after which no climb begins but the first.
 
     Returns:
         The trajectory, if one was found, and the lattice.
     """
-    lattice, is_worst = Lattice.around(course, places_m), course.aim.is_worst
+    lattice, is_worst = Lattice.around(course, best_poses[:, :3]), course.aim.is_worst
     paths = [lattice.best_path(worst, strides) for worst in (is_worst, not is_worst) for strides in _STRIDES]
     slower = replace(course, speed_max_m_s=INSIDE * course.speed_max_m_s)
-    paths.append(greedy(slower, places_m).poses[:, :3])
+    paths.append(greedy(slower, best_poses).poses[:, :3])
     climbs = [
         (Climb(course, poses), mu)
         for poses in (inside(course, path) for path in _distinct(paths))
@@ -115,12 +115,12 @@ def hovering(course: Course, lattice: Lattice, deadline: float) -> Flight | None
     return best
 
 
-def greedy(course: Course, places_m: FloatArray) -> Flight:
-    """Return the flight towards the best position of each instant, (t, 3), as far as the speed lets it.
+def greedy(course: Course, best_poses: FloatArray) -> Flight:
+    """Return the flight towards the best pose of each instant, (t, 6), as far as the speed lets it.
 
     Where something is in the way it waits.
     """
-    start_m, end_m = course.ends_m
+    (start_m, end_m), places_m = course.ends_m, best_poses[:, :3]
     flown = [places_m[0] if start_m is None else start_m]
     left_m = np.append(np.cumsum(course.reach_m[::-1])[::-1], 0.0)
     for t, reach_m in enumerate(course.reach_m):
@@ -131,7 +131,9 @@ def greedy(course: Course, places_m: FloatArray) -> Flight:
         moved = flown[-1] + min(1.0, reach_m / max(1e-12, float(np.linalg.norm(way_m)))) * way_m
         pair = np.array([flown[-1], moved])
         flown.append(moved if is_clear(course, pair, t) else flown[-1])
-    return flight_of(course, _posed(course, np.array(flown)))
+    poses = _posed(course, np.array(flown))
+    is_there = np.linalg.norm(poses[:, :3] - places_m, axis=1) < _ROUNDING
+    return flight_of(course, np.where(is_there[:, None], best_poses, poses))
 
 
 def seeing_ahead(course: Course, window_s: float, start: Flight, deadline: float) -> Flight | None:

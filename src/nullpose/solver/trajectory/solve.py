@@ -109,15 +109,14 @@ class _Run:
     def result(self, scenario: Scenario, window_s: float | None, began: float) -> Trajectory:
         course, count = self.course, len(self.course.times_s)
         best = clairvoyant(course, self.gap, lambda done: self.tell("instants", done / count), self.half_time)
-        places_m = best.poses[:, :3]
-        found, lattice = best_flight(course, places_m, self.half_time)
+        found, lattice = best_flight(course, best.poses, self.half_time)
         hover = hovering(course, lattice, self.half_time)
-        others = {"hover": hover, "greedy": greedy(course, places_m), "window": None}
+        others = {"hover": hover, "greedy": greedy(course, best.poses), "window": None}
         if window_s is not None and found is not None:
             others["window"] = seeing_ahead(course, window_s, found, self.half_time)
-        # one that does not get to its end, or waits where a point comes by, is no flight
+        # not one that misses its end or what a node requires, or waits where a point comes by
         others = {
-            name: each if each is not None and is_allowed(course, each.poses[:, :3]) else None
+            name: each if each and each.score > -math.inf and is_allowed(course, each.poses[:, :3]) else None
             for name, each in others.items()
         }
         flights = [each for each in (found, *others.values()) if each is not None and each.score > -np.inf]
