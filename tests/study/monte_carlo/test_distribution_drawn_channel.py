@@ -11,6 +11,7 @@ from scipy import stats
 from nullpose import ScenarioError
 from nullpose.scenario import Channel
 from nullpose.study.monte_carlo import StudySpec, draw_scene, scene_at
+from nullpose.study.monte_carlo.distribution import Distribution
 
 Spec = Callable[..., StudySpec]
 
@@ -22,6 +23,21 @@ TOWNS = {"model": "elevation", "environment": {"choice": ["suburban", "urban"]},
 def _channels(spec: Spec, count: int, **keys: Any) -> list[Any]:
     study = spec(scenes=10**6, scene__channel=keys)
     return [draw_scene(study, index).channel for index in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("stated", "mean", "deviation"),
+    [
+        ({"normal": [3.0, 0.5]}, 3.0, 0.5),
+        ({"uniform": [1.0, 4.0]}, 2.5, 3.0 / 12.0**0.5),
+        ({"log_uniform": [1.0, 100.0]}, 21.498, 24.970),
+        ({"choice": [1.0, 5.0]}, 3.0, 2.0),
+    ],
+)
+def test_draws_have_the_moments_of_what_is_stated(stated: dict, mean: float, deviation: float) -> None:
+    """Mean and standard deviation of many draws."""
+    drawn = Distribution(**stated).draw(np.random.default_rng(1), 40_000)
+    assert [drawn.mean(), drawn.std()] == pytest.approx([mean, deviation], rel=2e-2)
 
 
 @given(index=st.integers(0, 10**6))
