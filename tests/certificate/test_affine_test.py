@@ -38,11 +38,16 @@ FIELD = st.sampled_from(FIELDS[:3])
 
 
 def exact_link(
-    field: AxisField, point: np.ndarray, p: Exact, leak: float = 0.0, dipole: np.ndarray = NO_DIPOLE
+    field: AxisField,
+    point: np.ndarray,
+    p: Exact,
+    leak: float = 0.0,
+    dipole: np.ndarray = NO_DIPOLE,
+    through: float = 0.0,
 ) -> Fraction:
     """Return a link's gain over ``|r|^2`` at a position with the field's axis, exactly."""
     axis = exact(field.offset) + exact(field.matrix) @ p
-    return link(exact(point), p, axis, Fraction(leak), exact(dipole[0]))
+    return link(exact(point), p, axis, Fraction(leak), exact(dipole[0]), Fraction(through))
 
 
 def ends(x: Interval) -> tuple[Fraction, Fraction]:
@@ -57,20 +62,27 @@ def times(x: Interval, factor: Fraction) -> tuple[Fraction, Fraction]:
 
 
 @pytest.mark.parametrize("field", FIELDS)
-@given(leak=st.sampled_from([0.0, 0.01]), dipole=st.sampled_from(DIPOLES), seed=seeds)
-def test_expansions_enclose_the_links(field: AxisField, leak: float, dipole: np.ndarray, seed: int) -> None:
+@given(
+    leak=st.sampled_from([0.0, 0.01]),
+    dipole=st.sampled_from(DIPOLES),
+    through=st.sampled_from([0.0, 0.3]),
+    seed=seeds,
+)
+def test_expansions_enclose_the_links(
+    field: AxisField, leak: float, dipole: np.ndarray, through: float, seed: int
+) -> None:
     """The exact link at any position of a box lies within value, slopes and second derivatives."""
     rng = np.random.default_rng(seed)
     boxes, j = one_box(rng), int(rng.integers(4))
-    jet = link_over(field, boxes, POINTS[j][None], leak, dipole)
+    jet = link_over(field, boxes, POINTS[j][None], leak, dipole, np.array([through]))
     (value, slopes, _), (ranged, _, hessian) = jet.at, jet.over
     if not np.all(np.isfinite(hessian.low) & np.isfinite(hessian.high)):
         return
     centre, half = exact(boxes.centre[0]), exact(boxes.half[0])
-    assert ends(value)[0] <= exact_link(field, POINTS[j], centre, leak, dipole) <= ends(value)[1]
+    assert ends(value)[0] <= exact_link(field, POINTS[j], centre, leak, dipole, through) <= ends(value)[1]
     for shares in rng.integers(-8, 9, (4, 3)):
         x = [Fraction(int(s), 8) * h for s, h in zip(shares, half, strict=True)]
-        there = exact_link(field, POINTS[j], centre + np.array(x), leak, dipole)
+        there = exact_link(field, POINTS[j], centre + np.array(x), leak, dipole, through)
         terms = [ends(value)] + [times(slopes[i], d) for i, d in enumerate(x)]
         for entry, (i, k) in enumerate(SIX):
             terms.append(times(hessian[entry], x[i] * x[k] * (Fraction(1, 2) if i == k else 1)))
@@ -87,7 +99,8 @@ def test_expansions_bound_the_links_of_channels(
     rng = np.random.default_rng(seed)
     family, boxes, dipole = random_family(rng, 1, 1, channel=channel), one_box(rng), DIPOLES[seed % 3]
     gain = excess(family.ratios, boxes, np.zeros(1, dtype=np.int64), is_above)
-    jet = link_over(field, boxes, family.ratios.points_m[:1], family.ratios.leak, dipole, gain)
+    ratios = family.ratios
+    jet = link_over(field, boxes, ratios.points_m[:1], ratios.leak, dipole, np.zeros(1), gain)
     bends = jet.over.bends
     assume(np.all(np.isfinite(bends.low) & np.isfinite(bends.high)))
     x = rng.uniform(-1.0, 1.0, (50, 3)) * boxes.half[0]

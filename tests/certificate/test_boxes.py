@@ -71,11 +71,12 @@ def test_distances_are_bounds(seed: int, scale: float) -> None:
     near2 = sum(max(a - x, x - b, Fraction(0)) ** 2 for a, b, x in zip(low, high, q, strict=True))
     far2 = sum(max(abs(a - x), abs(b - x)) ** 2 for a, b, x in zip(low, high, q, strict=True))
     half2 = sum(((b - a) / 2) ** 2 for a, b in zip(low, high, strict=True))
-    assert float(boxes.nearest2(point)[0]) <= near2
-    assert float(boxes.farthest2(point)[0]) >= far2
+    distance2 = boxes.distance2(point[None])
+    assert float(distance2.low[0]) <= near2
+    assert float(distance2.high[0]) >= far2
     assert float(boxes.half2.low[0]) <= half2 <= float(boxes.half2.high[0])
-    assert float(boxes.farthest2(point)[0]) <= float(far2) * (1.0 + 1e-13)
-    assert float(boxes.nearest2(point)[0]) >= float(near2) - 1e-13 * float(far2)
+    assert float(distance2.high[0]) <= float(far2) * (1.0 + 1e-13)
+    assert float(distance2.low[0]) >= float(near2) - 1e-13 * float(far2)
 
 
 def test_mixes_fill_slots() -> None:

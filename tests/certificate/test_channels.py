@@ -61,7 +61,7 @@ def test_amplitudes_enclose_the_models(is_above: bool, channel: LinkChannel | No
     steps, places = samples_of(rng, boxes)
     h, at_centre = (np.sqrt(excess_over(family, p)[..., 0]) for p in (places, boxes.centre))
     size = np.linalg.norm(steps, axis=2)
-    value, (most, slope, bend) = at.high, sizes.high
+    value, (most, slope, bend) = at.high, (each.high for each in sizes)
     ends = (slope == 0.0) & (bend == 0.0)
     sign = 1.0 if is_above else -1.0
     bound = (value if is_above else at.low)[:, None]

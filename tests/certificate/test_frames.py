@@ -18,7 +18,7 @@ from tests.certificate.plain import (
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
 from nullpose.certificate.forms import COLUMN, ROW
-from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
+from nullpose.certificate.frames import Frames, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval
 from nullpose.channel import LinkChannel
 from nullpose.problem.family import Family
@@ -45,7 +45,7 @@ def test_expansions_enclose_the_forms(
     for j in range(len(family.ratios.points_m)):
         form, bend, _ = expansion(family.ratios, frames, boxes, np.array([j]), is_above)
         anchored = turning and j == frames.anchor[0] and not is_above
-        around = full(anchor_shape(family.ratios, frames)) if anchored else gram
+        around = full(frames.shape) if anchored else gram
         for x in steps:
             p = boxes.centre[0] + x
             way = (
@@ -54,7 +54,7 @@ def test_expansions_enclose_the_forms(
             )
             link = link_matrix(family.ratios.points_m[j] - p, family.ratios.leak) * excess_over(family, p)[j]
             turned = way.T @ link @ way
-            error = turned - full(form.value) - sum(h * full(form.slopes[:, i]) for i, h in enumerate(x))
+            error = turned - full(form[:, 0]) - sum(h * full(form[:, 1 + i]) for i, h in enumerate(x))
             error = error if is_above else -error
             slack = 1e-12 * np.abs(turned).max()
             assert np.linalg.eigvalsh(error - bend.high[0] * 0.5 * float(x @ x) * around)[-1] <= slack
@@ -69,7 +69,7 @@ def test_the_form_at_the_centre_is_exact(seed: int) -> None:
     basis = frames.basis.middle()[:, :, 0]
     assert basis.T @ basis == pytest.approx(np.eye(3), abs=1e-14)
     for j in range(4):
-        form = expansion(family.ratios, frames, boxes, np.array([j]), True)[0].value
+        form = expansion(family.ratios, frames, boxes, np.array([j]), True)[0][:, 0]
         exact = basis.T @ link_matrix(family.ratios.points_m[j] - boxes.centre[0], family.ratios.leak) @ basis
         slack = 1e-14 * np.abs(exact).max()
         assert np.all(form.low[:, 0] - slack <= exact[ROW, COLUMN])
@@ -86,7 +86,7 @@ def test_turning_rates_are_derivatives(seed: int) -> None:
     q = rng.normal(size=(3, 3))
     q = q + q.T
     centre, step, basis = boxes.centre[0], 1e-4, frames.basis.middle()[:, :, 0]
-    slopes = constant(frames, Interval(q[ROW, COLUMN][:, None])).slopes
+    _, slopes = constant(frames, Interval(q[ROW, COLUMN][:, None]))
     for e in range(3):
         anchor_m, way = family.ratios.points_m[frames.anchor[0]], step * np.eye(3)[e]
         ends = [carried(frames.turning[0], anchor_m, centre, centre + s * way) for s in (-1.0, 1.0)]

@@ -19,7 +19,7 @@ from tests.certificate.plain import (
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD
-from nullpose.certificate.forms import COLUMN, ROW, Linear, negative_definite
+from nullpose.certificate.forms import COLUMN, ROW, negative_definite
 from nullpose.certificate.frames import expansion, frames_of
 from nullpose.certificate.free_test import free_holds, sharper, with_constants
 from nullpose.certificate.interval import Interval
@@ -121,7 +121,7 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
     point, test = int(rng.integers(4)), TOWARDS if turning else WORLD
     leaves = make_leaves(1, test=test, point=point, cell=cell, sides=sides, band=ends)
     frames = frames_of(family.ratios, leaves, boxes)
-    nothing = Linear(Interval(np.zeros((6, 1))), Interval(np.zeros((6, 3, 1))))
+    nothing = Interval(np.zeros((6, 4, 1)))
     total = with_constants(nothing, AxisField.within(*band), leaves, boxes, frames)
     spreads = [sides[0, i] * np.sqrt(2.0) * np.linalg.norm(dense_side(cell, i)) for i in range(2)]
     bend = (1.0 + np.sqrt(2.0)) * (sum(spreads) + abs(ends[0])) / frames.rho_least.low[0] ** 2
@@ -137,7 +137,7 @@ def test_constant_forms_are_enclosed(turning: bool, seed: int) -> None:
         centre = boxes.centre[0]
         turn = carried(frames.turning[0], family.ratios.points_m[point], centre, centre + x)
         turn = turn @ frames.basis.middle()[:, :, 0]
-        bound = full(total.value) + sum(h * full(total.slopes[:, i]) for i, h in enumerate(x))
+        bound = full(total[:, 0]) + sum(h * full(total[:, 1 + i]) for i, h in enumerate(x))
         error = turn.T @ constant @ turn - bound
         slack = 1e-11 * (1.0 + np.abs(bound).max())
         assert np.linalg.eigvalsh(error).max() <= slack
@@ -161,15 +161,15 @@ def test_the_remainder_near_a_null_is_a_bound(turning: bool, channel: LinkChanne
         vector = np.linalg.solve(frames.basis.middle()[:, :, 0], near_null / np.linalg.norm(near_null))
         form, down, bend = expansion(family.ratios, frames, boxes, np.array([point]), False)
         plain = down * boxes.half2 * 0.5
-        share, rest = sharper(form.value, vector[:, None], boxes, frames, np.array([point]), bend, plain)
+        share, rest = sharper(form[:, 0], vector[:, None], boxes, frames, np.array([point]), bend, plain)
         used += share[0] > 0.0
         assert 0.0 <= share[0] < 1.0
-        here = vector @ full(form.value) @ vector
+        here = vector @ full(form[:, 0]) @ vector
         assert share[0] * here + rest.high[0] <= plain.high[0] * (1.0 + 1e-12)
         corners = rng.choice([-1.0, 1.0], (20, 3)) * rng.choice([1.0, rng.uniform()], (20, 1))
         for x in corners * half:
             turn = carried(frames.turning[0], anchor_m, centre, centre + x) @ frames.basis.middle()[:, :, 0]
-            bound = full(form.value) + sum(h * full(form.slopes[:, i]) for i, h in enumerate(x))
+            bound = full(form[:, 0]) + sum(h * full(form[:, 1 + i]) for i, h in enumerate(x))
             exact = turn.T @ link_matrix(point_m - centre - x, family.ratios.leak) @ turn
             exact = exact * excess_over(family, centre + x)[point]
             excess = np.linalg.eigvalsh(exact - (1.0 - share[0]) * bound)[0] + rest.high[0]

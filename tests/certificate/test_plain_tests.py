@@ -5,7 +5,7 @@ from hypothesis import given
 from tests.certificate.plain import boxes_at, dense_ratios, make_leaves, random_family, seeds
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.plain_tests import far_holds, kept_out_holds, root_holds
+from nullpose.certificate.plain_tests import far_holds, kept_out, root_holds
 from nullpose.problem.axis_field import AxisField
 
 
@@ -65,14 +65,14 @@ def test_kept_out_is_inside_the_ball(seed: int) -> None:
     ball = rng.integers(4, size=40)
     away = np.abs(family.domain.keep_out_points_m[ball] - boxes.centre) + boxes.half
     farthest = np.linalg.norm(away, axis=1)
-    holds = kept_out_holds(family, AxisField.free(), make_leaves(40, point=ball), boxes)
+    holds = kept_out(family, ball, boxes)
     assert np.array_equal(holds, farthest < 25.0)
     larger = family.changed(keep_out_m=float(farthest[0]) * (1.0 + 1e-12))
     smaller = family.changed(keep_out_m=float(farthest[0]) * (1.0 - 1e-12))
-    assert kept_out_holds(larger, AxisField.free(), make_leaves(40, point=ball), boxes)[0]
-    assert not kept_out_holds(smaller, AxisField.free(), make_leaves(40, point=ball), boxes)[0]
+    assert kept_out(larger, ball, boxes)[0]
+    assert not kept_out(smaller, ball, boxes)[0]
     none = family.changed(keep_out_points_m=np.zeros((0, 3)))
-    assert not np.any(kept_out_holds(none, AxisField.free(), make_leaves(40, point=ball), boxes))
+    assert not np.any(kept_out(none, ball, boxes))
 
 
 @given(seed=seeds)

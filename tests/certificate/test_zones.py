@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from tests.certificate.plain import boxes_at, seeds
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.interval import dot
-from nullpose.certificate.zones import Constraint, forbidden, zone_alternatives
+from nullpose.certificate.taylor import Taylor
+from nullpose.certificate.zones import forbidden, zone_alternatives
 from nullpose.errors import ScenarioError
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -58,10 +58,10 @@ def some_boxes(rng: np.random.Generator, family: Family, count: int) -> Boxes:
     return boxes_at(centre, half)
 
 
-def value_at(bound: Constraint, i: int, shift: np.ndarray) -> float:
-    """Return an upper bound on a constraint at a position of the i-th of its boxes."""
-    value = bound.value[i] + dot(bound.slopes[:, i], shift)
-    return float(value.high) + float(bound.bend[:, i] @ shift**2)
+def value_at(bound: Taylor, i: int, shift: np.ndarray) -> float:
+    """Return an upper bound on a function at a position of the i-th of its boxes."""
+    value, slopes, bends = (part.high[..., min(i, part.high.shape[-1] - 1)] for part in bound.at)
+    return float(value + slopes @ shift + 0.5 * bends[:3] @ shift**2)
 
 
 @settings(max_examples=40)

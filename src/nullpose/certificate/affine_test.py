@@ -14,7 +14,7 @@ from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import excess
 from nullpose.certificate.forms import COLUMN, COUNTED, IDENTITIES, ROW, adjugate, definite, matrices, squares
 from nullpose.certificate.interval import Interval
-from nullpose.certificate.taylor import Taylor, chosen, coordinates, cross, inverse
+from nullpose.certificate.taylor import Taylor, chosen, cross, inverse
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
@@ -30,6 +30,7 @@ def link(
     points: FloatArray,
     leak: float,
     axes: FloatArray,
+    through: FloatArray,
     gain: Taylor | None = None,
 ) -> Taylor:
     """Return a link over boxes.
@@ -40,9 +41,10 @@ def link(
         points: (b, 3) the ground point of each.
         leak: the antenna's gain along its axis.
         axes: (b, 3) the axes of the dipoles there, zero where there is none.
+        through: (b,) the shares with which the dipoles receive as an isotropic antenna does.
         gain: the excess gains of their channels.
     """
-    p = coordinates(Interval(boxes.centre.T), boxes.hull)
+    p = boxes.position
     r = points.T - p
     o, m = field.offset[:, None], field.matrix
     u = p[0] * m[:, [0]] + p[1] * m[:, [1]] + p[2] * m[:, [2]] + o
@@ -56,7 +58,8 @@ def link(
         of_dipole = (across * beside).total().squared() * near / square
         if leak > 0.0:
             of_dipole = of_dipole * (1.0 - Interval(leak)) + beside.squared().total() * leak
-        f = chosen(has, of_dipole * near * near, f)
+        of_dipole = of_dipole * near * near * (1.0 - Interval(through)) + f * through
+        f = chosen(has, of_dipole, f)
     f = f.within(0.0, near.over.value)  # the gain is at most 1
     return f if gain is None else f * gain
 
@@ -70,21 +73,21 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         leaves: of the boxes, with multipliers and level.
         boxes: to be tested.
     """
-    ratios, identity, terms = weighted_sum(family.ratios, leaves)
-    dipoles = ratios.ground_axes if len(ratios.ground_axes) else np.zeros_like(ratios.points_m)
-    total = coordinates(Interval(boxes.centre.T), boxes.hull)[0].alike(identity)
+    ratios, (identity, terms) = family.ratios, weighted_sum(family.ratios, leaves)
+    plain = np.zeros_like(ratios.points_m), np.ones(len(ratios.points_m))
+    axes, leaks = (ratios.ground_axes, ratios.ground_leaks) if len(ratios.ground_axes) else plain
+    total = boxes.position[0].alike(identity)
     for point, scale, sign in terms:
         gain = excess(ratios, boxes, point, sign > 0.0)
-        f = link(field, boxes, ratios.points_m[point], ratios.leak, dipoles[point], gain)
+        f = link(field, boxes, ratios.points_m[point], ratios.leak, axes[point], leaks[point], gain)
         total = total + f * (scale * sign)
-
     at, over = total.at, total.over
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
         middle, steep, bent = at.value[rows], at.slopes[:, rows], over.bends[:, rows]
         for nu, bound in constraints:
-            middle, steep = middle + bound.value * nu, steep + bound.slopes * nu
-            bent = bent + (2.0 * nu * bound.bend)[ROW] * IDENTITIES
+            middle, steep = middle + bound.at.value * nu, steep + bound.at.slopes * nu
+            bent = bent + bound.over.bends * nu
         return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
     holds = negative_where_allowed(family.domain, leaves, boxes, test, at.slopes.middle)

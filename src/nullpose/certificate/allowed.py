@@ -10,14 +10,14 @@ import numpy as np
 
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import Leaves
-from nullpose.certificate.interval import Interval
-from nullpose.certificate.zones import Constraint, zone_alternatives
+from nullpose.certificate.taylor import Taylor
+from nullpose.certificate.zones import beyond, zone_alternatives
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.records import Domain
 
-# Constraints with a multiplier, not negative, for each box.
-Weighted: TypeAlias = list[tuple[FloatArray, Constraint]]
+Weighted: TypeAlias = list[tuple[FloatArray, Taylor]]
+"""Functions that are not negative where a position is allowed, with a multiplier, likewise, for each box."""
 
 
 def negative_where_allowed(
@@ -46,8 +46,8 @@ def negative_where_allowed(
     weight = np.where(of_ball, leaves.ball_multiplier, 0.0)
     weighted: Weighted = []
     if np.any(weight > 0.0):
-        away = Interval(boxes.centre) - domain.keep_out_points_m[np.where(of_ball, leaves.ball, 0)]
-        weighted = [(weight, Constraint.outside(away.T, domain.keep_out_m, np.ones(3)))]
+        centre_m = domain.keep_out_points_m[np.where(of_ball, leaves.ball, 0)].T
+        weighted = [(weight, beyond(boxes.position, centre_m, domain.keep_out_m))]
     holds = test(rows, weighted)
     if not len(left := rows[(leaves.ball >= balls) & ~holds]):
         return holds
@@ -62,20 +62,14 @@ def negative_where_allowed(
     return holds
 
 
-def _guesses(constraints: tuple[Constraint, ...], gradient: FloatArray) -> Iterator[FloatArray]:
-    """Yield multipliers, (c, b), with which the constraints' gradients cancel one, as far as they can."""
-    if not constraints:
-        return
-    normals = np.stack([bound.slopes.middle() for bound in constraints])
-    gram = np.einsum("ikb,jkb->ijb", normals, normals)
-    pull = -np.einsum("ikb,kb->ib", normals, gradient)
-    alone = _usable(pull / np.einsum("iib->ib", gram))
-    yield from (alone * chosen[:, None] for chosen in np.eye(len(alone)))
-    if len(alone) == 2:
-        det = gram[0, 0] * gram[1, 1] - gram[0, 1] ** 2
-        yield _usable((pull * gram[[1, 0], [1, 0]] - pull[::-1] * gram[0, 1]) / det)
+def _guesses(constraints: tuple[Taylor, ...], gradient: FloatArray) -> Iterator[FloatArray]:
+    """Yield multipliers, (c, b), with which the constraints' gradients cancel one, as far as they can.
 
-
-def _usable(multiplier: FloatArray) -> FloatArray:
-    """Return multipliers with zero in place of what is negative or undefined."""
-    return np.where(np.isfinite(multiplier), np.maximum(multiplier, 0.0), 0.0)
+    By least squares, each constraint alone and then all together.
+    """
+    some = np.unique([*np.eye(len(constraints)), np.ones(len(constraints))], axis=0)
+    for used in some if constraints else ():
+        normals = np.stack([np.broadcast_to(g.at.slopes.middle(), gradient.shape) for g in constraints])
+        inverse = np.linalg.pinv(np.moveaxis(normals * used[:, None, None], -1, 0))
+        pull = -np.einsum("bkc,kb->cb", inverse, gradient)
+        yield np.nan_to_num(np.maximum(pull, 0.0), nan=0.0, posinf=0.0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from nullpose.certificate.certificate import PROFILE, Leaves
 from nullpose.certificate.interval import Interval
+from nullpose.certificate.taylor import Taylor, coordinates
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 
@@ -38,20 +39,18 @@ class Boxes:
         """All positions of each, (3, b)."""
         return (Interval(self.centre) + Interval(-self.half, self.half)).T
 
-    def nearest2(self, points: FloatArray) -> FloatArray:
-        """Bound from below the squared distance from points, (b, 3) or (3,), to the boxes."""
-        away = Interval(points) - self.centre
-        gap = np.maximum(np.maximum(away.low, -away.high) - self.half, 0.0)
-        return Interval(np.maximum(np.nextafter(gap, -np.inf), 0.0)).squared().T.total().low
+    @property
+    def position(self) -> Taylor:
+        """The position itself, (3, b), as a Taylor number."""
+        return coordinates(Interval(self.centre.T), self.hull)
+
+    def distance2(self, points: FloatArray) -> Interval:
+        """Enclose the squared distances from points, (b, 3) or (1, 3), to all positions of the boxes."""
+        return (Interval(points.T) - self.hull).squared().total()
 
     def nearest(self, points: FloatArray) -> Interval:
         """Bound from below the distance from points, (b, 3), to the boxes, as exact numbers."""
-        return Interval(Interval(self.nearest2(points)).sqrt().low)
-
-    def farthest2(self, points: FloatArray) -> FloatArray:
-        """Bound from above the squared distance from points, (b, 3) or (3,), to all of the boxes."""
-        reach = Interval((Interval(points) - self.centre).magnitude()) + self.half
-        return reach.squared().T.total().high
+        return Interval(self.distance2(points).sqrt().low)
 
     @property
     def half2(self) -> Interval:
@@ -115,7 +114,7 @@ def uncovered(leaves: Leaves) -> str:
     faces, depths, indices = leaves.face, leaves.depths, leaves.indices
     depths[faces < 0, 3:] = 0  # without a cell it is whole
     if is_profile := bool(np.all(leaves.test == PROFILE)):
-        faces = leaves.chart + 3 * (leaves.point + 1)
+        faces = leaves.face + 3 * (leaves.point + 1)
     # of each leaf that is left: its number, its region, and that one's depths and face, -1 for all of them
     leaf, region, depth = np.arange(len(leaves)), np.zeros(len(leaves), dtype=np.int64), np.zeros_like(depths)
     on_face = np.full(len(leaves), -1)

@@ -82,12 +82,7 @@ class Leaves:
 
     @property
     def face(self) -> IntArray:
-        """The face of the cube of axes, (l,), -1 for every axis."""
-        return self.cell[:, 0]
-
-    @property
-    def chart(self) -> IntArray:
-        """The chart of leaves of rotationally symmetric antennas, (l,)."""
+        """The face of the cube of axes, (l,), -1 for every axis; the chart for ``PROFILE``."""
         return self.cell[:, 0]
 
     @property

@@ -120,7 +120,7 @@ def _sight(points_m: FloatArray, boxes: Boxes, rows: FloatArray) -> tuple[Taylor
 
     The last two are zero where no channel depends on them.
     """
-    q = coordinates(Interval(boxes.centre.T), boxes.hull) - points_m.T
+    q = boxes.position - points_m.T
     distance, none = q.squared().total().of(root), Interval(np.zeros(len(boxes)))
     if not np.any(mask := rows[0] == BY_ELEVATION):
         return distance, q.alike(none), none
@@ -150,12 +150,12 @@ def elevation(q: Taylor) -> tuple[Taylor, Interval]:
 @np.errstate(over="ignore", invalid="ignore")  # directly over a point nothing is known: infinity less that
 def amplitude(
     ratios: Ratios, boxes: Boxes, point: IntArray, is_above: bool
-) -> tuple[Interval, Interval, Interval]:
+) -> tuple[Interval, Interval, list[Interval]]:
     """Bound the amplitude of one point over each box, the root of its excess gain.
 
     An end of the range stands for all of it, with no slope, where that leaves out less.
-    Returns its value at the centres, (b,), its gradient there, (3, b), and bounds, (3, b), on it and on its
-    first two derivatives along any unit direction.
+    Returns its value at the centres, (b,), its gradient there, (3, b), and bounds, (b,) each, on it and on
+    its first two derivatives along any unit direction.
 
     Args:
         ratios: with its channels.
@@ -163,6 +163,9 @@ def amplitude(
         point: (b,).
         is_above: whether the link is to be bounded from above, else from below.
     """
+    if not len(ratios.channels):
+        one, none = Interval(np.ones(1)), Interval(np.zeros((3, 1)))
+        return one, none, [one, none[0], none[0]]
     rows = ratios.channels[point].T
     distance, angle, tangent = _sight(ratios.points_m[point], boxes, rows)
     at, d = stack([distance.at.value, angle.at.value]), distance.over.value
@@ -172,8 +175,7 @@ def amplitude(
     value, slopes, bends = h.over
     out, up = slopes[0], slopes[1] / d
     outwards, turned, mixed = bends[0], (bends[1] / d + out) / d, (bends[2] - up) / d
-    total, apart = (Interval(x.magnitude()) for x in (outwards + turned, outwards - turned))
-    block = (total + (apart.squared() + mixed.squared() * 4.0).sqrt()) * 0.5
+    block = Interval(np.maximum(outwards.magnitude(), turned.magnitude())) + mixed.magnitude()
     bend = Interval(np.maximum(block.high, ((out - up * tangent) / d).magnitude()))
     slope = (out.squared() + up.squared()).sqrt()
     gradient = distance.at.slopes * h.at.slopes[0] + angle.at.slopes * h.at.slopes[1]
@@ -183,7 +185,7 @@ def amplitude(
     left_out = square * (b1 * b1 + b0 * (2.0 * b1 + h2) * closeness)
     by_end = np.abs(end**2 - h.at.value.middle() ** 2) * closeness**2 + 3.0 * square * end**2 * closeness**4
     use = left_out < by_end
-    sizes = stack([where(use, size, alone) for size, alone in ((h0, end), (h1, 0.0), (h2, 0.0))])
+    sizes = [where(use, size, alone) for size, alone in ((h0, end), (h1, 0.0), (h2, 0.0))]
     return where(use, h.at.value, end), where(use, gradient, 0.0), sizes
 
 

@@ -11,10 +11,11 @@ import numpy as np
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import excess_end
-from nullpose.certificate.forms import COLUMN, IDENTITIES, IDENTITY, ROW, Linear, outer, squares, top_vectors
-from nullpose.certificate.interval import Interval, stack, swapped, where
+from nullpose.certificate.forms import COLUMN, IDENTITIES, IDENTITY, ROW, linear, outer, squares, top_vectors
+from nullpose.certificate.frames import UNIT
+from nullpose.certificate.interval import Interval, stack, where
 from nullpose.certificate.shear import AxisShear, link_vector, offset_to, shear_of
-from nullpose.certificate.taylor import Taylor, chosen, cross
+from nullpose.certificate.taylor import Taylor, cross
 from nullpose.certificate.weighted_sum import weighted_sum
 from nullpose.objectives.ratios import Ratios
 from nullpose.physics.types import FloatArray
@@ -24,7 +25,9 @@ _SHARE = 0.1
 _TINY = 1e-290
 
 
-def dipole_sum(ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval) -> tuple[Linear, AxisShear]:
+def dipole_sum(
+    ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval
+) -> tuple[Interval, AxisShear]:
     """Bound the sum of a leaf from above over its box, linear in the position, in coordinates that turn.
 
     Args:
@@ -33,23 +36,30 @@ def dipole_sum(ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval)
         boxes: of the leaves.
         constant: forms, (6, b), that are not negative in the cells and the band.
     """
-    shear = shear_of(ratios, leaves, boxes)
-    ratios, identity, terms = weighted_sum(ratios, leaves)
+    shear, (identity, terms) = shear_of(ratios, leaves, boxes), weighted_sum(ratios, leaves)
     whole = shear.identity()
     rest, leaking = whole.alike(Interval(np.zeros((6, len(boxes))))), whole[0].alike(identity)
     links: list[tuple[Taylor, Interval, Interval, float]] = []
     for point, plain, sign in terms:
         scale = plain * excess_end(ratios, boxes, point, sign > 0.0)
         r, near = offset_to(ratios.points_m[point], boxes)
-        axes = ratios.ground_axes[point]
+        axes, through = ratios.ground_axes[point], ratios.ground_leaks[point]
         if ratios.leak > 0.0:
-            leaking = leaking + _gain(r, near, axes) * (scale * (sign * ratios.leak))
-        share = scale * (1.0 - Interval(ratios.leak))
+            leaking = leaking + _gain(r, near, axes, through) * (scale * (sign * ratios.leak))
+        scale = scale * (1.0 - Interval(ratios.leak))
         anchored = shear.on & (point == shear.anchor) & (sign < 0.0)
-        if np.any(anchored):
-            rest = rest + shear.anchored * where(anchored, share * sign, 0.0)
-        share = where(anchored, 0.0, share)
-        links += [(*shear.seen(a, near.over.value), share, sign) for a in _vectors(r, near, axes)]
+        # an isotropic antenna is three dipoles across each other, and a dipole that leaks is one in part
+        for counts, still, share, vectors in (
+            (through < 1.0, anchored & (through < 1.0), 1.0 - Interval(through), [axes]),
+            (through > 0.0, anchored & (through == 1.0), Interval(through), [UNIT[i].T for i in range(3)]),
+        ):
+            part = where(counts, scale * share, 0.0)
+            if np.any(still):
+                rest = rest + shear.anchored * where(still, part * sign, 0.0)
+            part = where(still, 0.0, part)
+            for v in vectors if np.any(part.high > 0.0) else ():
+                a = link_vector(r.at_centres(), near.at_centres(), v)
+                links.append((*shear.seen(a, near.over.value), part, sign))
     # E^T E, which the identity leaves out, is not negative, and at most the square of E
     square = shear.most[0].squared() * np.maximum(leaking.over.value.high, 0.0)
     rest = rest + whole * leaking + shear.gram * square.most()
@@ -62,21 +72,14 @@ def dipole_sum(ratios: Ratios, leaves: Leaves, boxes: Boxes, constant: Interval)
     return sum(squared, total), shear
 
 
-def _gain(r: Taylor, near: Taylor, axes: FloatArray) -> Taylor:
-    """State a point's own gain over ``|r|^2``: ``|v x r|^2 / |r|^4`` of a dipole along v."""
+def _gain(r: Taylor, near: Taylor, axes: FloatArray, through: FloatArray) -> Taylor:
+    """State a point's own gain over ``|r|^2``, ``|v x r|^2 / |r|^4`` of a dipole along v where it has one."""
     square = near.squared()
     of_dipole = cross(r, Interval(axes.T)).squared().total() * square * square
-    return chosen(np.any(axes != 0.0, axis=1), of_dipole, square)
+    return of_dipole * (1.0 - Interval(through)) + square * through
 
 
-def _vectors(r: Taylor, near: Taylor, axes: FloatArray) -> list[Taylor]:
-    """State the link vectors of a point at the centres: one of a dipole, or three of which two are 0 then."""
-    has = np.any(axes != 0.0, axis=1)[:, None]
-    each = [np.where(has, axes if i == 0 else 0.0, np.eye(3)[i]) for i in range(1 if np.all(has) else 3)]
-    return [link_vector(r.at_centres(), near.at_centres(), v) for v in each]
-
-
-def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Linear:
+def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Interval:
     """Return an upper bound on forms over boxes, (6, b), linear in the position.
 
     What is not linear changes an entry off the diagonal by at most r from the middle, and
@@ -87,11 +90,8 @@ def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Linear:
         sizes: (3, b) about how large a sum's diagonal is at the centres: it bears a share of that.
         top: (3, b) where it counts.
     """
-    most = np.nextafter(
-        np.where(IDENTITY > 0.0, 0.5, 1.0)[:, None] * form.half[ROW] * form.half[COLUMN], np.inf
-    )
-    ends = Interval(np.where(IDENTITY > 0.0, 0.0, -1.0)[:, None] * most, most)
-    bent = swapped(form.over.bends * ends).total()
+    products = squares(Interval(-form.half, form.half)) * np.where(IDENTITY > 0.0, 0.5, 1.0)[:, None]
+    bent = (form.over.bends * products).T.total()
     middle, radius = bent.middle(), Interval(bent.radius()[3:])
     i, j = ROW[3:], COLUMN[3:]
     larger = sizes[i] >= sizes[j]
@@ -100,13 +100,13 @@ def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Linear:
     e = np.fmin(e, radius.high / np.maximum(seen, 1e-300)) + _TINY
     share, rest = Interval(e), (radius.squared() / e).most()
     first, second = where(larger, share, rest), where(larger, rest, share)
-    diagonal = [Interval(bent.high[0]) + first[0] + first[1], Interval(bent.high[1]) + second[0] + first[2]]
-    diagonal.append(Interval(bent.high[2]) + second[1] + second[2])
+    pairs = (first[0], first[1]), (second[0], first[2]), (second[1], second[2])
+    diagonal = [bent[k].most() + one + other for k, (one, other) in enumerate(pairs)]
     value = form.at.value + stack(diagonal + [Interval(entry) for entry in middle[3:]])
-    return Linear(value, form.at.slopes)
+    return linear(value, form.at.slopes)
 
 
-def square_over(vector: Taylor, third: Interval, top: FloatArray, scale: Interval, sign: float) -> Linear:
+def square_over(vector: Taylor, third: Interval, top: FloatArray, scale: Interval, sign: float) -> Interval:
     """Return an upper bound on ``sign * scale * c c^T`` over boxes, linear in the position.
 
     With c's linear part p and the rest s, ``(p + s)^2`` is at most ``(1 + eta) p^2 + (1 + 1 / eta) s^2`` and
@@ -136,7 +136,7 @@ def square_over(vector: Taylor, third: Interval, top: FloatArray, scale: Interva
         weight = _weights(steep, top)
         rest = rest + _spread(steep, weight) * (near * Interval(weight).total())
     slopes = outer(at.slopes, value[:, None])
-    return Linear(squares(value) * (near * sign) + rest, slopes * (near * sign))
+    return linear(squares(value) * (near * sign) + rest, slopes * (near * sign))
 
 
 def _weights(vectors: Interval, top: FloatArray) -> FloatArray:
@@ -148,4 +148,4 @@ def _weights(vectors: Interval, top: FloatArray) -> FloatArray:
 
 def _spread(vectors: Interval, weight: FloatArray) -> Interval:
     """Return ``sum_s d_s d_s^T / weight_s``, (6, b)."""
-    return swapped(squares(vectors) * (1.0 / Interval(weight))).total()
+    return (squares(vectors) * (1.0 / Interval(weight))).T.total()

@@ -130,18 +130,14 @@ def certificate_text(certificate: Certificate) -> str:
     return _lines(data, 0) + "\n"
 
 
-def _lines(value: object, depth: int) -> str:
+def _lines(value: Any, depth: int) -> str:
     """Return JSON with the outer tables spread over lines and everything else on one line each."""
-    if isinstance(value, dict):
-        parts = [f"{json.dumps(key)}: {_lines(item, depth + 1)}" for key, item in value.items()]
-        brackets = "{}"
-    elif isinstance(value, list) and value and isinstance(value[0], dict):
-        parts, brackets = [_lines(item, depth + 1) for item in value], "[]"
-    else:
-        parts = []
-    if not parts or depth > _DEEPEST:
+    is_table, is_list = isinstance(value, dict), isinstance(value, list)
+    if not value or depth > _DEEPEST or not (is_table or (is_list and isinstance(value[0], dict))):
         return json.dumps(value, separators=(",", ":"), allow_nan=False)
-    pad = "\n" + " " * depth
+    items = [(f"{json.dumps(key)}: ", value[key]) for key in value] if is_table else [("", x) for x in value]
+    parts = [key + _lines(item, depth + 1) for key, item in items]
+    brackets, pad = "{}" if is_table else "[]", "\n" + " " * depth
     return brackets[0] + pad + " " + f",{pad} ".join(parts) + pad + brackets[1]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -76,44 +75,29 @@ def gram(basis: Interval) -> Interval:
     return dot(basis[:, ROW], basis[:, COLUMN])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Linear:
-    """Symmetric matrices ``Q + sum_i x_i Q_i`` of the step x from a box's centre: the test of a box.
+def linear(value: Interval, slopes: Interval) -> Interval:
+    """Join matrices Q, (n, b), and Q_i, (n, 3, b), to ``Q + sum_i x_i Q_i``, (n, 4, b).
+
+    x is the step from a box's centre. Sums and multiples are those of the four matrices.
+    """
+    sides = ((value.low, slopes.low), (value.high, slopes.high))
+    return Interval(*(np.concatenate([each[:, None], steep], axis=1) for each, steep in sides))
+
+
+def negative(total: Interval, half: FloatArray, horizontal: np.ndarray) -> np.ndarray:
+    """Check which matrices are negative definite at all eight corners of their box, and so all over it.
+
+    This is the test of a box.
 
     Args:
-        value: (6, b) Q.
-        slopes: (6, 3, b) the three Q_i.
+        total: (6, 4, b) matrices that are linear in the step from the centre.
+        half: (3, b) the boxes' half sides.
+        horizontal: (b,) whether the horizontal plane is all that counts.
     """
-
-    value: Interval
-    slopes: Interval
-
-    def __add__(self, other: Linear) -> Linear:
-        return Linear(self.value + other.value, self.slopes + other.slopes)
-
-    def plus(self, constant: Interval) -> Linear:
-        """Return the matrices with constant ones, (6, b), added."""
-        return Linear(self.value + constant, self.slopes)
-
-    def times(self, scale: Interval) -> Linear:
-        """Return multiples, one for each box."""
-        return Linear(self.value * scale, self.slopes * scale)
-
-    def chosen(self, rows: IntArray) -> Linear:
-        """Return those of some boxes."""
-        return Linear(self.value[:, rows], self.slopes[:, :, rows])
-
-    def negative(self, half: FloatArray, horizontal: np.ndarray) -> np.ndarray:
-        """Check which are negative definite at all eight corners of their box, and so all over it.
-
-        Args:
-            half: (3, b) the boxes' half sides.
-            horizontal: (b,) whether the horizontal plane is all that counts.
-        """
-        ahead = self.slopes * half
-        corners = product(*((ahead[:, i], -ahead[:, i]) for i in range(3)))
-        every = [negative_definite(self.value + x + y + z, horizontal) for x, y, z in corners]
-        return np.asarray(np.all(every, axis=0))
+    ahead = total[:, 1:] * half
+    corners = product(*((ahead[:, i], -ahead[:, i]) for i in range(3)))
+    every = [negative_definite(total[:, 0] + x + y + z, horizontal) for x, y, z in corners]
+    return np.asarray(np.all(every, axis=0))
 
 
 def negative_definite(a: Interval, horizontal: np.ndarray | bool = False) -> np.ndarray:
@@ -160,6 +144,17 @@ def cell_ends(cell: IntArray, side: int) -> tuple[FloatArray, FloatArray]:
     return low, low + width
 
 
+def cell_axes(cell: IntArray) -> Interval:
+    """Enclose the axes of each cell, (3, b), of which the face's coordinate is 1.
+
+    Args:
+        cell: (b, 5) as in :class:`Leaves`, each on a face.
+    """
+    ones, place = np.ones(len(cell)), (np.arange(3)[:, None] - cell[:, 0]) % 3
+    ends = zip((ones, ones), *(cell_ends(cell, side) for side in range(2)), strict=True)
+    return Interval(*(np.take_along_axis(np.stack(end), place, axis=0) for end in ends))
+
+
 def side_form(cell: IntArray, side: int) -> Interval:
     """Build the form ``(v - low a)(high a - v)`` of one side of each cell, (6, b), not negative inside.
 
@@ -167,16 +162,9 @@ def side_form(cell: IntArray, side: int) -> Interval:
         cell: (b, 5) as in :class:`Leaves`, each on a face.
         side: 0 or 1.
     """
-    row, a = np.arange(len(cell)), cell[:, 0]
-    v = (a + 1 + side) % 3
     low, high = cell_ends(cell, side)
-    least = np.zeros((6, len(cell)))
-    least[v, row] = -1.0
-    least[PLACE[a, v], row] = 0.5 * (low + high)
-    most = least.copy()
-    ends = -(Interval(low) * high)
-    least[a, row], most[a, row] = ends.low, ends.high
-    return Interval(least, most)
+    a, v = (np.eye(3)[:, (cell[:, 0] + ahead) % 3] for ahead in (0, 1 + side))
+    return outer(Interval(v - low * a), Interval(high * a - v)) * 0.5
 
 
 def top_vectors(form: Interval, horizontal: np.ndarray | None = None) -> FloatArray:

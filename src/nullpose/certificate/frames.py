@@ -17,14 +17,15 @@ import numpy as np
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, Leaves
 from nullpose.certificate.channels import amplitude
-from nullpose.certificate.forms import COLUMN, Linear, congruence, gram, outer, squares
-from nullpose.certificate.interval import Interval, dot, swapped, where
+from nullpose.certificate.forms import COLUMN, IDENTITIES, congruence, gram, linear, outer, squares
+from nullpose.certificate.interval import Interval, dot, where
 from nullpose.certificate.lemmas import DIRECTION_BEND
 from nullpose.objectives.ratios import IntArray, Ratios
-from nullpose.physics.types import FloatArray
 
 UNIT = np.eye(3)[:, :, None]
 """The world's axes, for any number of boxes."""
+THIRD_SQUARE = (np.arange(6) == 2)[:, None]
+"""``e3 e3^T``, and which of a form's six numbers that is, for any number of boxes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,14 +35,13 @@ class Frames:
     Args:
         turning: (b,) whether the frame turns towards a point.
         anchor: (b,) that point.
-        direction: (3, b) the unit vector to it, zero where the frame stands still.
+        direction: (3, b) the unit vector d to it, zero where the frame stands still.
         rho: (b,) its distance from the centre.
         rho_least: (b,) its least distance from the box.
-        basis: (3, 3, b) columns: the coordinates that definiteness is asked in. In a turning frame the third
-            is the direction itself, and not a rounded one: the anchor's form then has no third row, however
-            strong the anchor is.
+        basis: (3, 3, b) columns: the coordinates that definiteness is asked in; see :func:`bases_about`.
         gram: (6, b) basis^T basis.
-        across: (6, b) I - d d^T in the basis: in a turning frame the third row is zero.
+        shape: (6, b) ``I - (1 - leak) d d^T`` in the basis of a turning frame: the anchor's form times its
+            distance squared. Without a leak its third row is exactly zero, however strong the anchor is.
     """
 
     turning: np.ndarray
@@ -51,12 +51,7 @@ class Frames:
     rho_least: Interval
     basis: Interval
     gram: Interval
-    across: Interval
-
-    def turned(self, vectors: Interval) -> Interval:
-        """Return basis^T v of one vector for each box, (3, b), or of several, (3, n, b)."""
-        several = vectors.low.ndim > 2
-        return dot(self.basis[:, :, None] if several else self.basis, vectors[:, None])
+    shape: Interval
 
 
 def frames_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> Frames:
@@ -67,64 +62,55 @@ def frames_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> Frames:
     offset = (Interval(anchor_m) - boxes.centre).T
     rho = offset.squared().total().sqrt()
     direction = where(turning, offset / rho, 0.0)
-    axes = axes_across(direction.middle(), turning)
-    basis = Interval(axes.copy(), axes)
-    basis.low[:, 2, turning], basis.high[:, 2, turning] = (
-        direction.low[:, turning],
-        direction.high[:, turning],
-    )
-    products = gram(basis)
-    products.low[2] = products.high[2] = 1.0
-    no_row = turning & (COLUMN == 2)[:, None]
-    across = where(no_row, 0.0, products - squares(dot(basis, direction[:, None])))
-    return Frames(turning, anchor, direction, rho, boxes.nearest(anchor_m), basis, products, across)
+    basis, products = bases_about(direction, turning)
+    shape = where(THIRD_SQUARE, ratios.leak, products)
+    return Frames(turning, anchor, direction, rho, boxes.nearest(anchor_m), basis, products, shape)
 
 
-def axes_across(third: FloatArray, mask: np.ndarray) -> FloatArray:
-    """Build bases, (3, 3, b), whose first two columns are across vectors, (3, b); else the world's axes."""
-    chosen = third[:, mask].T
-    pairs = np.stack([chosen, np.eye(3)[np.argmin(np.abs(chosen), axis=1)]], axis=-1)
-    axes = np.tile(UNIT, third.shape[1])
-    axes[:, :2, mask] = np.moveaxis(np.linalg.qr(pairs, "complete")[0][:, :, 1:], 0, -1)
-    return axes
+def bases_about(third: Interval, mask: np.ndarray) -> tuple[Interval, Interval]:
+    """Build bases, (3, 3, b), about unit vectors; where the mask does not hold, the world's axes.
+
+    The third column is the vector d itself, enclosed and not rounded, and the other two are across it for
+    certain: ``d d^T`` has one entry in the basis, which is 1. Also returns the columns' products, (6, b).
+    """
+    chosen = third.middle()[:, mask].T
+    beside = np.stack([chosen, np.eye(3)[np.argmin(np.abs(chosen), axis=1)]], axis=-1)
+    axes = np.tile(UNIT, third.low.shape[1])
+    axes[:, :2, mask] = np.moveaxis(np.linalg.qr(beside, "complete")[0][:, :, 1:], 0, -1)
+    across = Interval(axes) - third[:, None] * dot(Interval(axes), third[:, None])
+    exact = where((np.arange(3) == 2)[:, None], third[:, None], across)
+    basis = where(mask, exact, axes)
+    return basis, where(mask & (COLUMN == 2)[:, None], IDENTITIES, gram(basis))
 
 
 def expansion(
     ratios: Ratios, frames: Frames, boxes: Boxes, point: IntArray, is_above: bool
-) -> tuple[Linear, Interval, Interval]:
+) -> tuple[Interval, Interval, Interval]:
     """Expand the form of one point for each box, and bound two second derivatives, (b,) each: lemmas 1 and 2.
 
     The first bounds that of the form (``is_above``) or of minus the form, a multiple of the identity;
-    for the anchor of a turning frame, what its form is made of: :func:`anchor_shape`. The second bounds the
-    length of the link vector's.
+    for the anchor of a turning frame, of its shape. The second bounds the length of the link vector's.
     """
     anchored = frames.turning & (point == frames.anchor)
     points_m = ratios.points_m[point]
     a = (Interval(points_m) - boxes.centre).T
     s = a.squared().total()
-    seen = frames.turned(a)
-    twice = less_leak(squares(seen), ratios)
-    # the anchor's is (I - (1 - leak) d d^T) / rho^2, without the rounding of a - rho d
-    shape = anchor_shape(ratios, frames)
-    form = where(anchored, shape / s, (frames.gram * s - twice) / s.squared())
-    # b' = -e + (e (d.a) - d (a.e)) / rho for the three axes e, and rho d for the anchor itself
+    h, gradient, (h0, h1, h2) = amplitude(ratios, boxes, point, is_above)
+    # a changes by -e with the step e, and the frame, which turns d towards the anchor, adds the rest of steps
     swing = (dot(frames.direction, a) * UNIT - frames.direction[:, None] * a) / frames.rho
-    step = where(frames.turning, swing, 0.0) - UNIT
-    rate = dot(a[:, None], step) * 2.0
-    turned = less_leak(outer(frames.turned(step), seen[:, None]), ratios)
-    bent = turned + rate * frames.gram[:, None]
-    slopes = rate * twice[:, None] * 2.0 / (s.squared() * s) - bent / s.squared()
-    pull = frames.direction * 2.0 / (s * frames.rho)
-    slopes = where(anchored, shape[:, None] * pull, slopes)
+    steps, share = where(frames.turning, swing, 0.0) - UNIT, h / s
+    slopes = steps * share + a[:, None] * ((gradient + a * share * 2.0) / s)
+    seen = dot(frames.basis[:, :, None], linear(a * share, slopes)[:, None])
+    # (1 - leak) w w^T of the link vector w = h a / s
+    kept = 1.0 - Interval(ratios.leak)
+    along = linear(squares(seen[:, 0]) * kept, outer(seen[:, 1:] * kept, seen[:, :1]))
+    # |w|^2 = h^2 / s is the same in every frame
+    square = h * share
+    length2 = linear(square[None], ((gradient * h + a * square) * 2.0 / s)[None])
+    link = where(anchored, frames.shape, frames.gram)[:, None] * length2 - where(anchored, 0.0, along)
     near = boxes.nearest(points_m)
     rate = where(frames.turning & ~anchored, 1.0 / frames.rho_least, 0.0)
     # the rules invert, scale and turn: bounds on the link vector and on its first two derivatives
-    link, (h0, h1, h2) = Linear(form, slopes), (Interval(size) for size in (1.0, 0.0, 0.0))
-    if len(ratios.channels):
-        h, gradient, sizes = amplitude(ratios, boxes, point, is_above)
-        square, change = h.squared(), gradient * h * 2.0
-        link = Linear(form * square, slopes * square + form[:, None] * change)
-        h0, h1, h2 = (sizes[i] for i in range(3))
     length = h0 / near
     slope = (length + h1) / near
     bend = (slope * 2.0 + h2) / near
@@ -139,31 +125,13 @@ def expansion(
     return link, second.most(), seen_bend.most()
 
 
-def anchor_shape(ratios: Ratios, frames: Frames) -> Interval:
-    """Return ``I - (1 - leak) d d^T`` in the bases, (6, b): an anchor's form times its distance squared.
-
-    Without a leak its third row is exactly zero.
-    """
-    across = less_leak(frames.across, ratios)
-    return across if ratios.leak == 0.0 else across + frames.gram * ratios.leak
-
-
-def less_leak(form: Interval, ratios: Ratios) -> Interval:
-    """Return ``1 - leak`` times a form; the form itself, not rounded, of an antenna with a perfect null."""
-    return form if ratios.leak == 0.0 else form * (1.0 - Interval(ratios.leak))
-
-
-def constant(frames: Frames, q: Interval) -> Linear:
-    """Return constant forms, (6, b), in the basis; in a turning frame they have slopes.
+def constant(frames: Frames, q: Interval) -> tuple[Interval, Interval]:
+    """Return constant forms, (6, b), in the basis, and their slopes, (6, 3, b), in a turning frame.
 
     With ``K = (e d^T - d e^T) / rho`` the frame's transpose changes by K, which keeps d on the anchor; the
-    form, by ``K Q + Q K^T``.
+    form, by ``K Q + Q K^T``: in the basis ``e (Q d)^T - d (Q e)^T`` and its transpose, over rho.
     """
     form, half = congruence(q, frames.basis)
-    if not np.any(frames.turning):
-        return Linear(form, Interval(np.zeros((6, 3, len(frames.turning)))))
-    # in the basis: e (Q d)^T - d (Q e)^T and its transpose, over rho
     along = dot(half, frames.direction[:, None])
-    d = frames.turned(frames.direction)
-    slopes = outer(swapped(frames.basis), along[:, None]) - outer(d[:, None], swapped(half))
-    return Linear(form, where(frames.turning, slopes / frames.rho, 0.0))
+    slopes = outer(frames.basis.T, along[:, None]) - outer(Interval(UNIT[:, 2:]), half.T)
+    return form, where(frames.turning, slopes / frames.rho, 0.0)

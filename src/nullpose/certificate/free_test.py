@@ -11,8 +11,8 @@ from nullpose.certificate.allowed import Weighted, negative_where_allowed
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import TOWARDS, WORLD, Leaves
 from nullpose.certificate.dipoles import dipole_sum
-from nullpose.certificate.forms import COUNTED, IDENTITY, Linear, quadratic, side_form, top_vectors
-from nullpose.certificate.frames import Frames, anchor_shape, constant, expansion, frames_of
+from nullpose.certificate.forms import COUNTED, IDENTITY, linear, negative, quadratic, side_form, top_vectors
+from nullpose.certificate.frames import THIRD_SQUARE, Frames, constant, expansion, frames_of
 from nullpose.certificate.interval import Interval, where
 from nullpose.certificate.lemmas import CONSTANT_SWING, SPREAD_OVER_NORM
 from nullpose.certificate.weighted_sum import weighted_sum
@@ -61,40 +61,39 @@ def _holds(
         total = with_constants(total, field, leaves, boxes, frames)
         whole, turning = frames.gram, frames.turning
     horizontal = ~turning & (field.is_free and field.band[1] == 0.0)
-    top = top_vectors(total.value, horizontal)
+    top = top_vectors(total[:, 0], horizontal)
 
     def test(rows: IntArray, constraints: Weighted) -> np.ndarray:
-        bound, gram, half = total.chosen(rows), whole[:, rows], boxes.half[rows].T
+        bound, gram, half = total[..., rows], whole[:, rows], boxes.half[rows].T
         for weight, constraint in constraints:
-            value = constraint.value + (Interval(half).squared() * constraint.bend).total()
-            bound = bound + Linear(gram * (value * weight), gram[:, None] * (constraint.slopes * weight))
-        return bound.negative(half, horizontal[rows])
+            value, slopes = constraint.at.value + constraint.bent(), constraint.at.slopes
+            bound = bound + linear(gram * (value * weight), gram[:, None] * (slopes * weight))
+        return negative(bound, half, horizontal[rows])
 
     return negative_where_allowed(family.domain, leaves, boxes, test, lambda: steepest(total, top)), top
 
 
 def ratio_forms(
     ratios: Ratios, leaves: Leaves, boxes: Boxes, frames: Frames, vectors: FloatArray | None
-) -> Linear:
+) -> Interval:
     """Return ``sum_k lambda_k (N_k - t D_g(k))``, what its expansion leaves out being put into its value.
 
     With vectors, (3, b) in the basis, along which the sums are largest, denominators that are small there
     get the remainder that is sharp near a null if it is the smaller one.
     """
-    ratios, identity, terms = weighted_sum(ratios, leaves)
-    half2 = boxes.half2 * 0.5
-    total = Linear(frames.gram * identity, Interval(np.zeros((6, 3, len(boxes)))))
+    identity, terms = weighted_sum(ratios, leaves)
+    half2, value = boxes.half2 * 0.5, frames.gram * identity
+    total = Interval(np.zeros((6, 4, len(boxes))))
     for point, scale, sign in terms:
         form, bent, bend = expansion(ratios, frames, boxes, point, sign > 0.0)
         share, rest, around = np.zeros(len(boxes)), bent * half2, frames.gram
         if sign < 0.0:  # the remainder of what is added is bounded by the identity, anchored or not
-            anchored = frames.turning & (point == frames.anchor)
-            around = where(anchored, anchor_shape(ratios, frames), frames.gram)
+            around = where(frames.turning & (point == frames.anchor), frames.shape, frames.gram)
             if vectors is not None:
-                share, rest = sharper(form.value, vectors, boxes, frames, point, bend, rest)
-        used = where(scale.high > 0.0, (scale * rest).most(), 0.0)
-        total = total + form.times(scale * (1.0 - Interval(share)) * sign).plus(around * used)
-    return total
+                share, rest = sharper(form[:, 0], vectors, boxes, frames, point, bend, rest)
+        total = total + form * (scale * (1.0 - Interval(share)) * sign)
+        value = value + around * where(scale.high > 0.0, (scale * rest).most(), 0.0)
+    return total + linear(value, Interval(np.zeros((6, 3, len(boxes)))))
 
 
 def sharper(
@@ -128,13 +127,16 @@ def sharper(
     return np.where(use, eta, 0.0), where(use, rest, plain)
 
 
-def with_constants(total: Linear, field: AxisField, leaves: Leaves, boxes: Boxes, frames: Frames) -> Linear:
+def with_constants(
+    total: Interval, field: AxisField, leaves: Leaves, boxes: Boxes, frames: Frames
+) -> Interval:
     """Return a sum with multiples of the forms that are not negative in the cells and the band added."""
     for q, weight, spread in constants(field, leaves):
         if np.any(weight != 0.0):
             bend = spread / frames.rho_least.squared() * CONSTANT_SWING * np.abs(weight) * (boxes.half2 * 0.5)
-            used = where(frames.turning, bend.most(), 0.0)
-            total = total + constant(frames, q).times(Interval(weight)).plus(frames.gram * used)
+            used = frames.gram * where(frames.turning, bend.most(), 0.0)
+            value, slopes = constant(frames, q)
+            total = total + linear(value * weight + used, slopes * weight)
     return total
 
 
@@ -151,17 +153,16 @@ def constants(field: AxisField, leaves: Leaves) -> Iterator[tuple[Interval, Floa
         norm = (q.squared() * COUNTED[:, None]).total().sqrt()
         yield q, np.where(on_face, leaves.sides[:, side], 0.0), norm * SPREAD_OVER_NORM
     ends = np.where(leaves.band > 0.0, field.band[1], field.band[0])
-    upright = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])[:, None]
     # the multiple of the identity does not turn, and the spread of e3 e3^T is one
-    yield Interval(IDENTITY[:, None] * ends) - upright, leaves.band, Interval(np.ones(len(leaves)))
+    yield Interval(IDENTITY[:, None] * ends) - THIRD_SQUARE, leaves.band, Interval(np.ones(len(leaves)))
 
 
-def steepest(total: Linear, top: FloatArray) -> FloatArray:
+def steepest(total: Interval, top: FloatArray) -> FloatArray:
     """Return about the gradient of the largest eigenvalue at the centres, (3, b).
 
     Args:
         total: the sums.
         top: (3, b) the vectors of those eigenvalues.
     """
-    gradient = quadratic(total.slopes.middle(), top[:, None])
+    gradient = quadratic(total[:, 1:].middle(), top[:, None])
     return np.where(np.isfinite(gradient), gradient, 0.0)

@@ -101,8 +101,8 @@ class Interval:
 
     @property
     def T(self) -> Interval:  # noqa: N802 - as an array's
-        """The same numbers with the axes in the other order."""
-        return Interval(*(end.T for end in self.ends))
+        """The same numbers with the first two axes in the other order."""
+        return Interval(*(end.swapaxes(0, 1) for end in self.ends))
 
     def squared(self) -> Interval:
         """Square the numbers; what is squared is never below zero."""
@@ -159,11 +159,6 @@ def dot(a: Interval, b: Interval | FloatArray) -> Interval:
 def stack(parts: list[Interval]) -> Interval:
     """Return intervals of one shape along a new first axis."""
     return Interval(np.stack([p.low for p in parts]), np.stack([p.high for p in parts]))
-
-
-def swapped(x: Interval) -> Interval:
-    """Return an array with its first two axes in the other order."""
-    return Interval(*(end.swapaxes(0, 1) for end in x.ends))
 
 
 def where(mask: np.ndarray, a: Interval | ArrayLike, b: Interval | ArrayLike) -> Interval:

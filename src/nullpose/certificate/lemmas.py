@@ -14,8 +14,6 @@ ROUNDING = 1.0 + 1e-9
 # A direction to a point, seen from a position that moves along a unit direction.
 DIRECTION_BEND = 2.0 / math.sqrt(3.0) * _UP
 """The most that its frame's second derivative does to a unit vector: of 4 sin^2 - 3 sin^4, at sin^2 = 2/3."""
-DIRECTION_THIRD = 2.31
-"""Of its third derivative what is no multiple of the step: 6 cos^2 sin at most, 4 / sqrt(3)."""
 CONSTANT_SWING = (1.0 + math.sqrt(2.0)) * _UP
 """The second derivative of a constant form in a turning frame, over the spread of its eigenvalues."""
 

@@ -81,22 +81,11 @@ class Outline:
             high: (2,) its upper corner.
         """
         region = corners(exact(low), exact(high))
-        match met:
-            case []:
-                return [] if self.forbids(region[0]) else [()]
-            case [edge]:
-                return [(edge,)] if self._forbids_beyond(edge, region) else [()]
-            case [first, second] if self._keep_apart(first, second, region):
-                both = self._forbids_beyond(first, region) and self._forbids_beyond(second, region)
-                return [(first, second)] if both else [()]
-            case [first, second]:
-                return [(first,), (second,)] if self._forbids_beyond_both(first, second, region) else [()]
-        return [()]
-
-    def _forbids_beyond(self, edge: int, region: list[Point]) -> bool:
-        """Check that all of a rectangle beyond an edge's line is forbidden, no other edge being there."""
-        worst = min(region, key=lambda corner: self.allowance(edge, corner))
-        return self.allowance(edge, worst) >= 0 or self.forbids(worst)
+        if len(met) > 2:
+            return [()]
+        if len(met) == 2 and self._keep_apart(met[0], met[1], region):
+            return [tuple(met)] if all(self._forbids_beyond([edge], region) for edge in met) else [()]
+        return [(edge,) for edge in met] if self._forbids_beyond(met, region) else [()]
 
     def _keep_apart(self, first: int, second: int, region: list[Point]) -> bool:
         """Check that the part of each edge in a rectangle is on the allowed side of the other's line."""
@@ -106,15 +95,14 @@ class Outline:
             for end in clipped(self.edges[edge], region[0], region[2])
         )
 
-    def _forbids_beyond_both(self, first: int, second: int, region: list[Point]) -> bool:
-        """Check that all of a rectangle beyond the lines of the two edges that meet it is forbidden."""
-        for edge in (first, second):
+    def _forbids_beyond(self, edges: list[int], region: list[Point]) -> bool:
+        """Check that all of a rectangle beyond the lines of edges is forbidden, no other edge being there."""
+        for edge in edges:
             region = cut(region, [-self.allowance(edge, point) for point in region])
-        if not region:
-            return True
         # the mean of its vertices is beyond a line if any of them is
-        mean = np.sum(region, axis=0) / len(region)
-        return any(self.allowance(edge, mean) >= 0 for edge in (first, second)) or self.forbids(mean)
+        mean = np.sum(region, axis=0) / max(len(region), 1)
+        is_empty = not region or any(self.allowance(edge, mean) >= 0 for edge in edges)
+        return is_empty or self.forbids(mean)
 
 
 def left_of(edge: Point, point: Point) -> Fraction:

@@ -8,10 +8,10 @@ from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.certificate import Leaves
 from nullpose.certificate.channels import most_excess
 from nullpose.certificate.elementary import log
-from nullpose.certificate.forms import cell_ends
+from nullpose.certificate.forms import cell_axes
 from nullpose.certificate.interval import Interval
 from nullpose.certificate.zones import forbidden
-from nullpose.objectives.ratios import Ratios
+from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.family import Family
@@ -53,30 +53,32 @@ def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) ->
         leaves: of the boxes, with level.
         boxes: to be tested.
     """
-    near = np.stack(
-        [boxes.nearest2(family.ratios.points_m[j]) for j in family.ratios.numerator_point], axis=-1
-    )
+    points_m = family.ratios.points_m[family.ratios.numerator_point]
+    near = np.stack([boxes.distance2(point_m[None]).low for point_m in points_m], axis=-1)
     return out_of_reach(
         family.ratios, leaves.level, np.maximum(near, Interval(family.domain.keep_out_m).squared().low)
     )
 
 
-def kept_out_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
-    """Check which boxes lie inside their keep-out ball or zone, where no position is allowed.
+def borders(family: Family) -> int:
+    """Count the keep-out balls and, after them, the zones."""
+    return len(family.domain.keep_out_points_m) + len(family.domain.zone_kind)
+
+
+def kept_out(family: Family, border: IntArray, boxes: Boxes) -> np.ndarray:
+    """Check which boxes lie inside a keep-out ball or zone, where no position is allowed.
 
     Args:
         family: with its keep-out balls and zones.
-        field: of no effect.
-        leaves: of the boxes, with the ball, or, counted on from the balls, the zone.
-        boxes: to be tested.
+        border: (b,) the ball, or, counted on from the balls, the zone; no box lies in one that there is not.
+        boxes: b of them.
     """
     balls = len(family.domain.keep_out_points_m)
-    which = leaves.point
-    holds, in_ball = np.zeros(len(boxes), dtype=bool), which < balls
-    farthest2 = boxes.chosen(in_ball).farthest2(family.domain.keep_out_points_m[which[in_ball]])
-    holds[in_ball] = farthest2 < Interval(family.domain.keep_out_m).squared().low
-    if np.any(in_zone := ~in_ball & (which < balls + len(family.domain.zone_kind))):
-        holds[in_zone] = forbidden(family.domain, which[in_zone] - balls, boxes.chosen(in_zone))
+    holds, in_ball = np.zeros(len(boxes), dtype=bool), border < balls
+    distance2 = boxes.chosen(in_ball).distance2(family.domain.keep_out_points_m[border[in_ball]])
+    holds[in_ball] = distance2.high < Interval(family.domain.keep_out_m).squared().low
+    if np.any(in_zone := ~in_ball & (border < borders(family))):
+        holds[in_zone] = forbidden(family.domain, border[in_zone] - balls, boxes.chosen(in_zone))
     return holds
 
 
@@ -92,30 +94,27 @@ def root_holds(family: Family, root_m: FloatArray, upper_bound: float) -> str:
         root_m: (2, 3) the root's corners.
         upper_bound: t.
     """
-    points = family.ratios.points_m[family.ratios.numerator_point]
-    gaps = np.maximum(
-        (family.domain.low_m - Interval(points)).low, (Interval(points) - family.domain.high_m).low
-    )
-    gap2 = Interval(np.maximum(gaps, 0.0)).squared()  # from all of the domain, along each axis
-    for face_m, end_m, inwards in zip(
-        root_m, (family.domain.low_m, family.domain.high_m), (1.0, -1.0), strict=True
-    ):
-        beyond = Interval(np.maximum(((Interval(points) - face_m) * inwards).low, 0.0)).squared()
-        square = (beyond + gap2[:, [1, 2, 0]] + gap2[:, [2, 0, 1]]).low.T
-        out = out_of_reach(family.ratios, upper_bound, square)
-        fine = (face_m * inwards <= end_m * inwards) | out
-        if not np.all(fine):
-            i = int(np.argmin(fine))
-            end = f"{'xyz'[i]} = {face_m[i]:g} m"
-            return f"the root box ends at {end}, beyond which poses could exceed the bound"
-    return ""
+    domain, axis = family.domain, np.arange(3)
+    low, high = (np.tile(end_m[:, None], 6) for end_m in (domain.low_m, domain.high_m))
+    # what is beyond the three lower faces and then the three upper ones: a half space, within the domain
+    low[axis, axis], high[axis, axis] = -np.inf, root_m[0]
+    low[axis, axis + 3], high[axis, axis + 3] = root_m[1], np.inf
+    points_m = family.ratios.points_m[family.ratios.numerator_point]
+    square = (Interval(points_m[..., None]) - Interval(low, high)).T.squared().total().low.T
+    fine = out_of_reach(family.ratios, upper_bound, square)
+    fine |= np.append(root_m[0] <= domain.low_m, root_m[1] >= domain.high_m)
+    if np.all(fine):
+        return ""
+    i = int(np.argmin(fine))
+    end = f"{'xyz'[i % 3]} = {root_m.flat[i]:g} m"
+    return f"the root box ends at {end}, beyond which poses could exceed the bound"
 
 
 def off_band_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Check which leaves hold no axis of the band, wherever their boxes are.
 
-    With one coordinate at 1 and the squares of the two others in intervals, ``u_z^2 / |u|^2`` is largest
-    where z is and x and y are not, and the other way round.
+    ``c (u_x^2 + u_y^2) - (1 - c) u_z^2`` is positive where ``u_z^2`` is below c for a unit vector, and has
+    that sign for a vector of any length.
 
     Args:
         family: of no effect.
@@ -123,16 +122,6 @@ def off_band_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxe
         leaves: with cells.
         boxes: of no effect.
     """
-    cell = leaves.cell
-    row, on_face = np.arange(len(cell)), cell[:, 0] >= 0
-    face = np.maximum(cell[:, 0], 0)
-    least, most = np.ones((3, len(cell))), np.ones((3, len(cell)))
-    for side in range(2):
-        square = Interval(*cell_ends(cell, side)).squared()
-        v = (face + 1 + side) % 3
-        least[v, row], most[v, row] = square.low, square.high
-    lower, upper = field.band
-    # c (x^2 + y^2 + z^2) - z^2 for the greatest z^2 and the least x^2 and y^2, and the other way round
-    below = (Interval(least[0]) + least[1] + most[2]) * lower - most[2]
-    above = (Interval(most[0]) + most[1] + least[2]) * upper - least[2]
-    return np.asarray(on_face & ((below.low > 0.0) | (above.high < 0.0)))
+    u2 = cell_axes(leaves.cell).squared()
+    least, most = (Interval(c) * (u2[0] + u2[1]) - (1.0 - Interval(c)) * u2[2] for c in field.band)
+    return np.asarray((leaves.face >= 0) & ((least.low > 0.0) | (most.high < 0.0)))

@@ -165,15 +165,13 @@ def ratios_at(
             for point, dipole, through in rows
         ]
     )
-    heard, jamming = links, links
-    if gains is not None:
-        heard, jamming = links * exact(gains.low), links * exact(gains.high)
-    entries = exact(ratios.denominator_weight) * jamming[ratios.denominator_point]
+    low, high = (1, 1) if gains is None else (exact(gains.low), exact(gains.high))
+    entries = exact(ratios.denominator_weight) * (links * high)[ratios.denominator_point]
     starts, isotropic = ratios.denominator_start, exact(ratios.denominator_isotropic)
     denominators = np.array(
         [sum(entries[a:b], below) for a, b, below in zip(starts, starts[1:], isotropic, strict=False)]
     )
-    above = exact(ratios.numerator_weight) * heard[ratios.numerator_point]
+    above = exact(ratios.numerator_weight) * (links * low)[ratios.numerator_point]
     return np.asarray((exact(ratios.numerator_isotropic) + above) / denominators[ratios.denominator_of])
 
 

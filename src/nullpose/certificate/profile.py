@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -42,7 +42,7 @@ class Profile:
         rest = _most(weights, _ORDER + 1) / math.factorial(_ORDER + 1)
         self.rest = float(np.nextafter(float(rest), np.inf))
         whole = Interval(np.full(_CELLS, -1.0 / _CELLS), np.full(_CELLS, 1.0 / _CELLS))
-        self.spans = [_spans(self._series(order, np.arange(_CELLS), whole)) for order in range(3)]
+        self.spans = [self._series(order, np.arange(_CELLS), whole) for order in range(3)]
         self.peak = float(self.within(0, Interval([-1.0], [1.0])).high[0])
 
     def exact(self, cosine: Fraction) -> Fraction:
@@ -76,14 +76,10 @@ class Profile:
             np.clip(np.floor((end + 1.0) * (0.5 * _CELLS) + slack).astype(np.int64), 0, _CELLS - 1)
             for end, slack in ((low, -1e-9), (high, 1e-9))
         )
-        last = np.maximum(first, last)
-        level = np.frexp(last - first + 1.0)[1] - 1
-        lows, highs = self.spans[order]
-        second = last + 1 - (1 << level)
-        return Interval(
-            np.minimum(lows[level, first], lows[level, second]),
-            np.maximum(highs[level, first], highs[level, second]),
-        )
+        # from the first cell to the one behind the last: every other of the ranges that these numbers begin
+        begins = np.stack([first, np.maximum(first, last) + 1], axis=-1).ravel()
+        least, most = (np.append(end, 0.0) for end in self.spans[order].ends)
+        return Interval(np.minimum.reduceat(least, begins)[::2], np.maximum.reduceat(most, begins)[::2])
 
     def _series(self, order: int, cell: IntArray, step: Interval) -> Interval:
         """Return a derivative a step away from the middles of cells, by Taylor's formula."""
@@ -112,7 +108,7 @@ class ProfileField(AxisField):
     """
 
     profile: Profile
-    ends: tuple[tuple[float, float], tuple[float, float]]
+    ends: Sequence[Sequence[float]]
     spans: FloatArray
     even: bool
 
@@ -125,14 +121,18 @@ class ProfileField(AxisField):
         """
         if not antenna.is_axisymmetric:
             raise ValueError(f"{antenna.label}: its gain changes round its axis")
-        reach, even = _reach(scenario), antenna.harmonics.is_even
+        airframe, even = scenario.airframe, antenna.harmonics.is_even
+        mount, tilt = (0.0, math.pi) if airframe is None else (airframe.mount_rad, airframe.tilt_max_rad)
+        reach = max(mount - tilt, 0.0), min(mount + tilt, math.pi)
+        ends = [tuple(map(float, sine_cosine(Fraction(angle)))) for angle in reach]
+        wide = [reach[0] / math.pi * (1.0 - 1e-15), min(reach[1] / math.pi * (1.0 + 1e-15), 1.0)]
         return cls(
             is_free=True,
             offset=np.zeros(3),
             matrix=np.zeros((3, 3)),
             profile=_profile(antenna.harmonics.cosine[:, 0].tobytes()),
-            ends=_ends(*reach),
-            spans=np.array([[[0.0, 0.5 if even else 1.0], [-1.0, 1.0]], [_widened(*reach), [-1.0, 1.0]]]),
+            ends=ends,
+            spans=np.array([[[0.0, 0.5 if even else 1.0], [-1.0, 1.0]], [wide, [-1.0, 1.0]]]),
             even=even,
         )
 
@@ -166,26 +166,6 @@ def _profile(terms: bytes) -> Profile:
     return Profile(cosine * np.sqrt(2.0 * np.arange(len(cosine)) + 1.0))
 
 
-def _reach(scenario: Scenario) -> tuple[float, float]:
-    """Return the least and the greatest angle from the vertical that an axis has, radians."""
-    if (airframe := scenario.airframe) is None:
-        return 0.0, math.pi
-    least, most = airframe.mount_rad - airframe.tilt_max_rad, airframe.mount_rad + airframe.tilt_max_rad
-    return max(least, 0.0), min(most, math.pi)
-
-
-def _ends(least: float, most: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return sine and cosine of both angles."""
-    low, high = sine_cosine(Fraction(least)), sine_cosine(Fraction(most))
-    last = (float(high[0]), float(high[1])) if most < math.pi else (0.0, -1.0)
-    return (float(low[0]), float(low[1])), last
-
-
-def _widened(least: float, most: float) -> tuple[float, float]:
-    """Return angles over pi, rounded outwards."""
-    return least / math.pi * (1.0 - 1e-15), min(most / math.pi * (1.0 + 1e-15), 1.0)
-
-
 def _powers(weights: FloatArray) -> list[Fraction]:
     """Sum Legendre polynomials with weights: the coefficients of the powers of c, exactly."""
     return list(legendre.leg2poly(exact(weights)))
@@ -203,13 +183,3 @@ def _values(powers: list[Fraction], order: int, at: np.ndarray) -> Interval:
 def _most(weights: FloatArray, order: int) -> Fraction:
     """Bound a derivative's magnitude: those of Legendre polynomials are largest at 1."""
     return sum((a * math.perm(n, order) for n, a in enumerate(_powers(np.abs(weights)))), Fraction(0))
-
-
-def _spans(bounds: Interval) -> tuple[FloatArray, FloatArray]:
-    """Return lower and upper bounds over 2^level cells from each on, (levels, cells)."""
-    lows, highs = [bounds.low], [bounds.high]
-    for level in range(_CELLS.bit_length() - 1):
-        ahead = np.minimum(np.arange(_CELLS) + (1 << level), _CELLS - 1)
-        lows.append(np.minimum(lows[-1], lows[-1][ahead]))
-        highs.append(np.maximum(highs[-1], highs[-1][ahead]))
-    return np.array(lows), np.array(highs)

@@ -7,8 +7,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from nullpose.certificate.interval import Interval, stack, where
-from nullpose.certificate.taylor import Taylor, coordinates, inverse_root, joined
+from nullpose.certificate.interval import Interval, common, stack, where
+from nullpose.certificate.taylor import Taylor, coordinates, inverse, joined, root
 from nullpose.physics.types import FloatArray
 
 PI = Interval(np.pi, np.nextafter(np.pi, 4.0))
@@ -21,19 +21,17 @@ Link: TypeAlias = tuple[Taylor, Taylor]
 def links_of(
     apart: Interval,
     anchor: int,
-    upright: int,
     offset: Interval,
     turns: list[tuple[Interval, Interval]],
     half: FloatArray,
-) -> tuple[list[Link], Taylor]:
+) -> tuple[list[Link], list[Taylor]]:
     """Evaluate, for each point, the cosine to the antenna's axis, and one over the squared distance.
 
-    And the cosine of the axis to the vertical.
+    And the axis, a unit vector in the chart's order.
 
     Args:
         apart: (m, 3) from the anchor to each point, or from the first one, in the chart's order.
         anchor: which point that is, or -1 for the zenith, whose chart is 0: u is then from the vertical.
-        upright: which coordinate is the altitude.
         offset: (3, b) from the positions to the anchor or the first point, at the centres.
         turns: sine and cosine of the angle, then of the spin, at the centres.
         half: (5, b) the cells' half sides.
@@ -44,7 +42,7 @@ def links_of(
     r, across, upwards = -cell[:3], su * cs, su * ss
     x, y, z = r[0], r[1], r[2]
     f = x.squared() + z.squared()
-    level, length = f.of(inverse_root), r.squared().total().of(inverse_root)
+    level, length = (square.of(root).of(inverse) for square in (f, r.squared().total()))
 
     def along(w: Taylor | FloatArray, d: Interval | FloatArray) -> Taylor:
         """Multiply the axis by a vector w; d is w, or w less r, which the terms across r do not see."""
@@ -57,17 +55,16 @@ def links_of(
     found = []
     for j, d in enumerate(apart[j] for j in range(len(apart.low))):
         w = r + d[:, None]
-        near = w.squared().total().of(inverse_root)
+        near = w.squared().total().of(root).of(inverse)
         found.append((cu if j == anchor else along(w, d) * near, near.squared()))
-    vertical = np.eye(3)[upright][:, None]
-    return found, along(vertical, vertical)
+    return found, [along(e[:, None], e[:, None]) for e in np.eye(3)]
 
 
 def _sine_cosine_over(
     angle: Taylor, turn: tuple[Interval, Interval], half: FloatArray
 ) -> tuple[Taylor, Taylor]:
-    """Return sine and cosine of an angle over cells, from those at the centres."""
-    s, c = (joined(at, over) for at, over in zip(turn, _about(turn, half), strict=True))
+    """Return sine and cosine of an angle over cells, from those at the centres; no slope is above 1."""
+    s, c = (joined(at, common(at + Interval(-half, half), Interval(-1.0, 1.0))) for at in turn)
     return angle.composed(s, c, -s), angle.composed(c, -s, -c)
 
 
@@ -89,13 +86,3 @@ def sine_cosine(x: FloatArray) -> tuple[Interval, Interval]:
     turn = quarter.astype(np.int64) % 4
     swap, first, second = turn % 2 == 1, np.where(turn >= 2, -1.0, 1.0), np.where(turn % 3 > 0, -1.0, 1.0)
     return where(swap, cosine, sine) * first, where(swap, sine, cosine) * second
-
-
-def _about(turn: tuple[Interval, Interval], half: FloatArray) -> tuple[Interval, Interval]:
-    """Enclose sine and cosine within so many radians of an angle, (b,)."""
-    sine, cosine = turn
-    shrunk = Interval(np.maximum((1.0 - Interval(half).squared() * 0.5).low, -1.0), np.ones(len(half)))
-    step = Interval(-half, half)
-    both = sine * shrunk + cosine * step, cosine * shrunk + sine * step
-    wide = [Interval(np.maximum(x.low, -1.0), np.minimum(x.high, 1.0)) for x in both]
-    return wide[0], wide[1]

@@ -15,14 +15,14 @@ that holds for the smallest ratio, and no mean has a certificate here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes, halved
 from nullpose.certificate.certificate import DEEPEST, Leaves
 from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.plain_tests import kept_out_holds
+from nullpose.certificate.plain_tests import borders, kept_out
 from nullpose.certificate.profile import ProfileField
 from nullpose.certificate.profile_links import PI, Link, links_of, sine_cosine
 from nullpose.certificate.taylor import Taylor, joined, pairs
@@ -41,22 +41,6 @@ _CHUNK = 4096
 _ANGLE_SLACK_RAD = 1e-12  # radians: what is reached is taken so much wider, for the rounding of its ends
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Cells:
-    """Parts of leaves.
-
-    Args:
-        boxes: of positions, with the leaf of each.
-        turn: (b, 4) depth and index of the angle u, then of the spin.
-    """
-
-    boxes: Boxes
-    turn: IntArray
-
-    def chosen(self, mask: np.ndarray) -> _Cells:
-        return _Cells(self.boxes.chosen(mask), self.turn[mask])
-
-
 def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Check which boxes their leaves exclude.
 
@@ -67,71 +51,70 @@ def profile_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes
         boxes: to be tested.
     """
     assert isinstance(field, ProfileField)
-    holds = _all_kept_out(family, field, leaves, boxes)
+    holds = _kept_out_somewhere(family, boxes)
     isotropic = family.ratios.denominator_isotropic[family.ratios.denominator_of]
     unheard = Interval(leaves.level[:, None]) * isotropic - family.ratios.numerator_isotropic
     rows = np.flatnonzero(~holds & np.all(unheard.low > 0.0, axis=1))
-    cells = _Cells(Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows]), leaves.cell[rows, 1:])
+    # what is left: parts of leaves, with the row of each
+    parts, cells = Boxes(leaf=rows, centre=boxes.centre[rows], half=boxes.half[rows]), leaves.chosen(rows)
     most = _MOST * len(rows) + _CHUNK
     for _ in range(_ROUNDS):
-        if not 0 < len(cells.boxes) <= most or np.any(cells.turn[:, ::2] > DEEPEST):
+        if not 0 < len(parts) <= most or np.any(cells.depths > DEEPEST):
             break
-        excluded, side = _excluded(family, field, leaves.chosen(cells.boxes.leaf), cells)
-        cells = _halved(cells.chosen(~excluded), side[~excluded])
+        excluded, side = _excluded(family, field, cells, parts)
+        parts, cells = _halved(parts.chosen(~excluded), cells.chosen(~excluded), side[~excluded])
     holds[rows] = True
-    holds[np.unique(cells.boxes.leaf)] = False
+    holds[np.unique(parts.leaf)] = False
     return holds
 
 
-def _all_kept_out(family: Family, field: ProfileField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
+def _kept_out_somewhere(family: Family, boxes: Boxes) -> np.ndarray:
     """Check which boxes lie in some keep-out ball or zone."""
-    holds = np.zeros(len(boxes), dtype=bool)
-    for border in range(len(family.domain.keep_out_points_m) + len(family.domain.zone_kind)):
-        holds |= kept_out_holds(family, field, replace(leaves, point=np.full(len(leaves), border)), boxes)
-    return holds
+    each = (kept_out(family, np.full(len(boxes), border), boxes) for border in range(borders(family)))
+    return reduce(np.logical_or, each, np.zeros(len(boxes), dtype=bool))
 
 
-def _halved(cells: _Cells, side: IntArray) -> _Cells:
+def _halved(boxes: Boxes, leaves: Leaves, side: IntArray) -> tuple[Boxes, Leaves]:
     """Cut into both halves of each cell, across a coordinate: x, y, z, the angle or the spin."""
-    turn, rows = np.tile(cells.turn, (2, 1)), np.flatnonzero(np.tile(side, 2) >= 3)
-    depth = 2 * (np.tile(side, 2)[rows] - 3)
-    turn[rows, depth] += 1
-    turn[rows, depth + 1] = 2 * turn[rows, depth + 1] + (rows >= len(side))
-    return _Cells(halved(cells.boxes, side), turn)
+    both = leaves.chosen(np.tile(np.arange(len(side)), 2))
+    rows = np.flatnonzero(np.tile(side, 2) >= 3)
+    depth = 1 + 2 * (np.tile(side, 2)[rows] - 3)
+    both.cell[rows, depth] += 1
+    both.cell[rows, depth + 1] = 2 * both.cell[rows, depth + 1] + (rows >= len(side))
+    return halved(boxes, side), both
 
 
 def _excluded(
-    family: Family, field: ProfileField, leaves: Leaves, cells: _Cells
+    family: Family, field: ProfileField, leaves: Leaves, boxes: Boxes
 ) -> tuple[np.ndarray, IntArray]:
     """Check which cells are excluded, and find the coordinate to halve of those that are not."""
-    excluded = _all_kept_out(family, field, leaves, cells.boxes)
-    side = np.zeros(len(cells.boxes), dtype=np.int64)
-    key = leaves.point * 3 + leaves.chart
-    for shared in np.unique(key):
-        if len(rows := np.flatnonzero((key == shared) & ~excluded)):
-            excluded[rows], side[rows] = _excluded_by_bound(
-                family, field, leaves.chosen(rows), cells.chosen(rows)
-            )
+    excluded, side = _kept_out_somewhere(family, boxes), np.zeros(len(boxes), dtype=np.int64)
+    key = leaves.point * 3 + leaves.face
+    for shared in np.unique(key[~excluded]):
+        rows = np.flatnonzero((key == shared) & ~excluded)
+        excluded[rows], side[rows] = _excluded_by_bound(
+            family, field, leaves.chosen(rows), boxes.chosen(rows)
+        )
     return excluded, side
 
 
 def _excluded_by_bound(
-    family: Family, field: ProfileField, leaves: Leaves, cells: _Cells
+    family: Family, field: ProfileField, leaves: Leaves, boxes: Boxes
 ) -> tuple[np.ndarray, IntArray]:
     """Check which cells of one anchor and chart have a negative sum, or no axis within reach."""
-    chart, anchor = int(leaves.chart[0]), int(leaves.point[0])
+    chart, anchor = int(leaves.face[0]), int(leaves.point[0])
     order = np.array([chart, chart + 1, chart + 2]) % 3
     upright, begin = (2 - chart) % 3, family.ratios.points_m[max(anchor, 0), order]
-    points_m, centre_m = family.ratios.points_m[:, order], cells.boxes.centre.T[order]
+    points_m, centre_m = family.ratios.points_m[:, order], boxes.centre.T[order]
     apart, offset = Interval(points_m) - begin, Interval(begin[:, None]) - centre_m
-    depth, index = cells.turn.T[::2], cells.turn.T[1::2]
+    depth, index = leaves.depths[:, 3:].T, leaves.indices[:, 3:].T
     low, high = field.spans[int(anchor < 0)].T[:, :, None]  # of both angles, in multiples of pi
     half_turn = PI * ((high - low) * np.ldexp(0.5, -depth)) + _ANGLE_SLACK_RAD * (low < high)
-    half = np.vstack([cells.boxes.half.T[order], half_turn.high])
+    half = np.vstack([boxes.half.T[order], half_turn.high])
     turns = [sine_cosine(x) for x in low + (high - low) * np.ldexp(index + 0.5, -depth)]
-    missed = (anchor >= 0) & _out_of_reach(field, offset, turns, half, upright)
-    links, vertical = links_of(apart, anchor, upright, offset, turns, half)
-    bound, shares = _largest(family, field, leaves, links, vertical)
+    links, axis = links_of(apart, anchor, offset, turns, half)
+    missed = (anchor >= 0) & _out_of_reach(field, axis, upright)
+    bound, shares = _largest(family, field, leaves, links, axis[upright])
     # a gain that hardly changes needs no cuts across the turn: what adds most is halved
     length_m = np.linalg.norm(offset.middle(), axis=0)
     sizes = half / np.vstack([np.tile(0.5 * length_m, (3, 1)), np.ones((2, len(length_m)))])
@@ -153,7 +136,7 @@ def _largest(
         links: of each point.
         vertical: cosine of the axis to the vertical.
     """
-    profile, (_, identity, terms) = field.profile, weighted_sum(family.ratios, leaves)
+    profile, (identity, terms) = field.profile, weighted_sum(family.ratios, leaves)
     zero, total = Interval(np.zeros(len(leaves))), links[0][0].alike(identity)
     for j, (cosine, near) in enumerate(links):
         weight = sum((where(point == j, scale * sign, 0.0) for point, scale, sign in terms), zero)
@@ -177,56 +160,34 @@ def _within_reach(field: ProfileField, band: FloatArray, vertical: Taylor) -> Ta
         vertical: cosine of the axis to the vertical.
     """
     least, most = field.ends[0][1], field.ends[1][1]
-    side = np.ones(len(band))
-    if field.even:  # the nearer of both directions, where all of the cell has the same
-        ahead, behind = vertical.over.value.low > 0.0, vertical.over.value.high < 0.0
-        side = ahead.astype(float) - behind.astype(float)
-        least = max(least, -most)
+    least = max(least, -most) if field.even else least
+    # if it is even, the nearer of both directions, where all of the cell has the same
+    ahead, behind = vertical.over.value.low > 0.0, vertical.over.value.high < 0.0
+    side = ahead.astype(float) - behind if field.even else np.ones(len(band))
     end = where(band > 0.0, np.nextafter(most, -1.0), np.nextafter(least, 1.0))
     return (vertical * side - end) * (band * np.abs(side))
 
 
-def _out_of_reach(
-    field: ProfileField,
-    offset: Interval,
-    turns: list[tuple[Interval, Interval]],
-    half: FloatArray,
-    upright: int,
-) -> np.ndarray:
+def _out_of_reach(field: ProfileField, axis: list[Taylor], upright: int) -> np.ndarray:
     """Check which cells have no axis that the airframe reaches.
 
-    Along a straight line the frame turns by less than the step over its least distance from the chart's pole.
     With t the angle between the vertical and the axis at the centre, and b that of an end of what is reached,
-    ``sin(t - b)`` and ``cos t`` change by less than the axis moves.
+    ``sin(t - b)`` and ``cos t`` change by no more than the axis moves.
 
     Args:
         field: with the ends of what is reached.
-        offset: (3, b) to the anchor, at the centres.
-        turns: sine and cosine of the angle, then of the spin, at the centres.
-        half: (5, b) the cells' half sides.
+        axis: its coordinates.
         upright: which coordinate is the altitude.
     """
-    (su, cu), (ss, cs) = turns
-    x, y, z = offset[0], offset[1], offset[2]
-    level = (x.squared() + z.squared()).sqrt()
-    length = (offset.squared().total()).sqrt()
-    first = z / level, Interval(0.0), -x / level
-    second = -(x * y) / (level * length), level / length, -(y * z) / (level * length)
-    axis = [su * (ss * second[i] - cs * first[i]) + cu * (offset[i] / length) for i in range(3)]
-    sine = (axis[upright - 1].squared() + axis[upright - 2].squared()).sqrt()
-    wide = offset + Interval(-half[:3], half[:3])
-    nearest2 = Interval((wide[0].squared() + wide[2].squared()).low)
-    turned = (Interval(half[:3]).squared().total() / nearest2).sqrt()
-    spun = Interval(np.minimum(su.magnitude() + half[3], 1.0)) * half[4]
-    moved = Interval((turned + half[3] + spun + _ANGLE_SLACK_RAD).high)
+    x, y, z = (axis[upright - ahead].at.value for ahead in (2, 1, 0))
+    sine = (x.squared() + y.squared()).sqrt()
+    steps = (Interval((part.over.value - part.at.value).magnitude()).squared() for part in axis)
+    moved = Interval((sum(steps, Interval(0.0)).sqrt() + _ANGLE_SLACK_RAD).high)
     (sine_low, cosine_low), (sine_high, cosine_high) = field.ends
-    missed = np.ones(half.shape[1], dtype=bool)
-    for cosine in (axis[upright], -axis[upright])[: 1 + field.even]:
-        below = ((cosine * sine_low - sine * cosine_low - moved).low > 0.0) | (
-            (cosine - moved).low > cosine_low
-        )
-        above = ((sine * cosine_high - cosine * sine_high - moved).low > 0.0) | (
-            (cosine + moved).high < cosine_high
-        )
+    missed = np.ones(len(moved.low), dtype=bool)
+    for cosine in (z, -z)[: 1 + field.even]:
+        nearer, farther = cosine * sine_low - sine * cosine_low, sine * cosine_high - cosine * sine_high
+        below = ((nearer - moved).low > 0.0) | ((cosine - moved).low > cosine_low)
+        above = ((farther - moved).low > 0.0) | ((cosine + moved).high < cosine_high)
         missed &= below | above
     return missed

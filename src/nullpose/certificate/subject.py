@@ -54,8 +54,7 @@ def differences(certificate: Certificate, scenario: Scenario) -> tuple[str, ...]
 
 
 def _problem(scenario: Scenario) -> tuple[object, ...]:
-    airframe = scenario.airframe
-    reach = None if airframe is None else (airframe.tilt_max_rad, airframe.mount_rad)
+    reach = None if (frame := scenario.airframe) is None else (frame.tilt_max_rad, frame.mount_rad)
     pattern = (
         None if scenario.antenna_record.is_quadratic else scenario.antenna
     )  # a dipole's is in the family
@@ -88,8 +87,7 @@ def sentence(certificate: Certificate, leaves: int) -> str:
 
 def gives(certificate: Certificate) -> str:
     """State what a pose does to whom, and when."""
-    time = certificate.scenario.time
-    words = "" if time is None else f" at all {len(time.instants_s)} instants"
+    words = "" if (time := certificate.scenario.time) is None else f" at all {len(time.instants_s)} instants"
     return Quantity.of(certificate.scenario).gives + words
 
 

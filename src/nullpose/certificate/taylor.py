@@ -148,7 +148,7 @@ class Taylor:
         if self.value.low.shape[-2] == 1:
             return self
         at, over = self.at, self.over
-        swing = _reach(over.bends.magnitude()[..., pairs(len(self.half))[2], :], self.half)
+        swing = _reach(self._sizes(), self.half)
         reach = _reach(above(at.slopes.magnitude() + 0.5 * swing), self.half)
         return replace(
             self,
@@ -156,15 +156,22 @@ class Taylor:
             slopes=joined(at.slopes, common(over.slopes, at.slopes + Interval(-swing, swing))),
         )
 
+    def _sizes(self) -> FloatArray:
+        """Bound the magnitudes of second derivatives over the boxes, (..., n, n, b)."""
+        return self.over.bends.magnitude()[..., pairs(len(self.half))[2], :]
+
+    def bent(self) -> FloatArray:
+        """Bound what value and slopes at the centres leave out over the boxes, (b,)."""
+        return 0.5 * _reach(_reach(self._sizes(), self.half), self.half)
+
     def largest(self) -> Interval:
         """Bound numbers from above over the boxes, (b,).
 
         Of ``f(c) + G.x + x.H x / 2`` with ``|x_i| <= h_i``: mixed terms are split by
         ``2 |x_i x_j| <= x_i^2 h_j / h_i + x_j^2 h_i / h_j``, which leaves a parabola for each coordinate.
         """
-        bends, total = self.over.bends, self.at.value
+        bends, total, sizes = self.over.bends, self.at.value, self._sizes()
         steep = Interval(self.at.slopes.magnitude())
-        sizes = bends.magnitude()[pairs(len(self.half))[2]]
         for i, h in enumerate(self.half):
             # what x_i can add: (G + (mixed + own h / 2)) h at the end, or the parabola's top before it
             others = above(np.sum(np.delete(sizes[i] * self.half, i, axis=0), axis=0))
@@ -188,9 +195,9 @@ class Taylor:
 
     def alike(self, number: Interval | FloatArray | float) -> Taylor:
         """Take constants over the same boxes."""
-        n = len(self.half)
-        zeros = (Interval(np.zeros((m, 1, 1))) for m in (n, n * (n + 1) // 2))
-        return Taylor(self.half, _each(number), *zeros)
+        n, value = len(self.half), _each(number)
+        zeros = (np.zeros((*value.low.shape[:-2], m, 1, 1)) for m in (n, n * (n + 1) // 2))
+        return Taylor(self.half, value, *map(Interval, zeros))
 
 
 def coordinates(value: Interval, over: Interval) -> Taylor:
@@ -229,14 +236,6 @@ def root(x: Interval) -> Rule:
     value = x.sqrt()
     slope = 0.5 / value
     return value, slope, -(slope / x) * 0.5
-
-
-def inverse_root(x: Interval) -> Rule:
-    """State ``1 / sqrt(x)`` of what is positive by its rule."""
-    value = 1.0 / x.sqrt()
-    square = value.squared()
-    slope = value * square * -0.5
-    return value, slope, slope * square * -1.5
 
 
 def logarithm(x: Interval) -> Rule:

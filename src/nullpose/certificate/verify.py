@@ -25,7 +25,7 @@ from nullpose.certificate.certificate import (
 )
 from nullpose.certificate.claim import claim_fault, pose_fault
 from nullpose.certificate.free_test import free_holds
-from nullpose.certificate.plain_tests import far_holds, kept_out_holds, off_band_holds, root_holds
+from nullpose.certificate.plain_tests import borders, far_holds, kept_out, off_band_holds, root_holds
 from nullpose.certificate.profile import ProfileField, loudest
 from nullpose.certificate.profile_test import profile_holds
 from nullpose.certificate.subject import sentence
@@ -74,10 +74,6 @@ class _Test:
     points: Callable[[Family], int] | None = None
 
 
-def _borders(family: Family) -> int:
-    return len(family.domain.keep_out_points_m) + len(family.domain.zone_kind)
-
-
 _TESTS = {
     WORLD: _Test("free axis", free_holds, has_mix=True),
     TOWARDS: _Test(
@@ -85,7 +81,11 @@ _TESTS = {
     ),
     AFFINE: _Test("given axis", affine_holds, has_mix=True),
     FAR: _Test("distance", far_holds, points=lambda f: len(f.ratios.pairs) or len(f.ratios.numerator_point)),
-    KEPT_OUT: _Test("keep-out", kept_out_holds, points=_borders),
+    KEPT_OUT: _Test(
+        "keep-out",
+        lambda family, field, leaves, boxes: kept_out(family, leaves.point, boxes),
+        points=borders,
+    ),
     OFF_BAND: _Test("axes out of reach", off_band_holds),
     PROFILE: _Test(
         "any axis of a profile", profile_holds, has_mix=True, points=lambda f: len(f.ratios.points_m) + 1
@@ -121,9 +121,8 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
     fields = claimed_axes(certificate.scenario, certificate.scheme, certificate.null_jammer)
     reason = claim_fault(certificate, families[0], fields)
     reason = reason or pose_fault(certificate, scenes, families, fields or {})
-    family, done = families[0], 0
-    if certificate.instants and not reason:  # what some instants exclude, all do
-        family = join_instants(families, certificate.instants)
+    in_motion = certificate.instants and not reason  # what some instants exclude, all do
+    family, done = join_instants(families, certificate.instants) if in_motion else families[0], 0
 
     def checked(leaves: int) -> None:
         if on_progress is not None:
@@ -187,9 +186,9 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         "its test is unknown": ~np.isin(leaves.test, list(_TESTS)),
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
         "its test is for another antenna": (leaves.test == PROFILE) != isinstance(field, ProfileField),
-        "it has no chart": (leaves.test == PROFILE) & (leaves.chart < 0),
+        "it has no chart": (leaves.test == PROFILE) & (leaves.face < 0),
         "its angles are from the zenith, which has chart 0 alone": (
-            (leaves.test == PROFILE) & (leaves.point < 0) & (leaves.chart != 0)
+            (leaves.test == PROFILE) & (leaves.point < 0) & (leaves.face != 0)
         ),
         "its point does not exist": np.any(
             [
@@ -199,7 +198,7 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
             axis=0,
         ),
         "its multipliers do not exist": has_mix & _outside(leaves.mix, len(leaves.mixes)),
-        "its keep-out ball or zone does not exist": leaves.ball >= _borders(family),
+        "its keep-out ball or zone does not exist": leaves.ball >= borders(family),
         "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
         "the band's multiplier is not a number": ~np.isfinite(leaves.band),
         "its cell does not exist": _outside(leaves.face + 1, 4),

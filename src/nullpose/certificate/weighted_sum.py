@@ -119,54 +119,31 @@ def level_factor(
     return where(np.any(mine > 0.0, axis=0), level, 0.0)
 
 
-def weighted_sum(ratios: Ratios, leaves: Leaves) -> tuple[Ratios, Interval, list[Term]]:
+def weighted_sum(ratios: Ratios, leaves: Leaves) -> tuple[Interval, list[Term]]:
     """State a sum's multiple of the identity, and its terms: weak duality.
-
-    A dipole of leak f is two points at one place: ``1 - f`` times the dipole, and f times an isotropic one.
-    The ratios that are returned first have both.
 
     Args:
         ratios: over the points.
         leaves: with multipliers and level.
     """
-    count, isotropic = len(ratios.numerator_point), ratios.denominator_isotropic
-    leaks = np.zeros(len(ratios.points_m))
-    leaks[: len(ratios.ground_leaks)] = ratios.ground_leaks * (ratios.ground_leaks < 1.0)
-    leaky, twin = np.flatnonzero(leaks), np.cumsum(leaks > 0.0) + len(leaks) - 1
-
-    def parts(point: IntArray, scale: Interval, sign: float) -> list[Term]:
-        leak = leaks[point]
-        if not np.any(split := (leak > 0.0) & (scale.high > 0.0)):
-            return [Term(point, scale, sign)]
-        dipole = Term(point, where(split, scale * (1.0 - Interval(leak)), scale), sign)
-        leaking = where(split, scale * leak, 0.0)
-        return [dipole, Term(np.where(split, twin[point], point), leaking, sign)]
-
     number, weight = mix_slots(leaves)
-    ratio, identity = number % count, Interval(np.zeros(len(leaves)))
+    ratio, identity = number % len(ratios.numerator_point), Interval(np.zeros(len(leaves)))
     terms: list[Term] = []
     if len(ratios.pairs):
         identity, factors = pair_factors(ratios, leaves)
     else:
         for k, w in zip(ratio, weight, strict=True):
             identity = identity + Interval(w) * ratios.numerator_isotropic[k]
-            scale = Interval(w) * ratios.numerator_weight[k]
-            terms += parts(ratios.numerator_point[k], where(w > 0.0, scale, 0.0), 1.0)
-        factors = [level_factor(ratios, leaves, number, weight, g) for g in range(len(isotropic))]
-        for factor, below in zip(factors, isotropic, strict=True):
+            scale = where(w > 0.0, Interval(w) * ratios.numerator_weight[k], 0.0)
+            terms.append(Term(ratios.numerator_point[k], scale, 1.0))
+        groups = range(len(ratios.denominator_isotropic))
+        factors = [level_factor(ratios, leaves, number, weight, g) for g in groups]
+        for factor, below in zip(factors, ratios.denominator_isotropic, strict=True):
             identity = where(factor.high != 0.0, identity - factor * below, identity)
     for g, factor in enumerate(factors):
         sign = 1.0 if len(ratios.pairs) and g in ratios.denominator_of[ratios.pairs[:, 1]] else -1.0
         counts = factor.high != 0.0  # exactly zero where it does not count
         for e in range(*ratios.denominator_start[g : g + 2]) if np.any(counts) else ():
-            point = np.full(len(leaves), ratios.denominator_point[e])
-            terms += parts(point, where(counts, factor * ratios.denominator_weight[e], 0.0), sign)
-    rows = ratios.channels
-    if len(leaky):
-        ratios = ratios._replace(
-            points_m=np.vstack([ratios.points_m, ratios.points_m[leaky]]),
-            ground_axes=np.vstack([ratios.ground_axes, np.zeros((len(leaky), 3))]),
-            ground_leaks=np.zeros(0),
-            channels=np.vstack([rows, rows[leaky]]) if len(rows) else rows,
-        )
-    return ratios, identity, terms
+            scale = where(counts, factor * ratios.denominator_weight[e], 0.0)
+            terms.append(Term(np.full(len(leaves), ratios.denominator_point[e]), scale, sign))
+    return identity, terms

@@ -1,4 +1,4 @@
-"""No-fly zones and the geofence in boxes of positions: simple constraints that what is allowed there meets.
+"""No-fly zones and the geofence in boxes of positions: functions that are not negative where it is allowed.
 
 Worked out from the zones alone: exact for polygons seen from above, outward-rounded for the rest.
 """
@@ -6,62 +6,22 @@ Worked out from the zones alone: exact for polygons seen from above, outward-rou
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.interval import Interval, dot, stack
+from nullpose.certificate.interval import Interval
 from nullpose.certificate.outline import Outline, may_meet
 from nullpose.certificate.pose_value import exact
+from nullpose.certificate.taylor import Taylor
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.airspace import FENCE, FORBIDDEN_CYLINDER
 from nullpose.problem.records import Domain
 
-_FLAT = np.array([1.0, 1.0, 0.0])
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Constraint:
-    """A quadratic of the position for each box, ``g(c + x) = value + slopes.x + sum_i bend_i x_i^2``.
-
-    Args:
-        value: (b,) at the boxes' centres.
-        slopes: (3, b) its gradient there.
-        bend: (3, b) not negative.
-    """
-
-    value: Interval
-    slopes: Interval
-    bend: FloatArray
-
-    @classmethod
-    def beyond(cls, away: Interval, normal: Interval) -> Constraint:
-        """Return ``n.(p - q)``.
-
-        Args:
-            away: (3, b) from a point q of the plane to the boxes' centres.
-            normal: (3, b) n, of any length.
-        """
-        return cls(dot(away, normal), normal, np.zeros(normal.low.shape))
-
-    @classmethod
-    def outside(cls, away: Interval, radius: FloatArray | float, counted: FloatArray) -> Constraint:
-        """Return ``|p - q|^2 - R^2`` over the coordinates that count.
-
-        Args:
-            away: (3, b) from q to the boxes' centres, zero along the others.
-            radius: (b,) or one R.
-            counted: (3,) one for each coordinate that counts, zero for the others.
-        """
-        value = away.squared().total() - Interval(radius).squared()
-        return cls(value, away * 2.0, np.outer(counted, np.ones(value.low.shape)))
-
-
-Alternative: TypeAlias = tuple[IntArray, tuple[Constraint, ...]]
-"""Rows of boxes, and constraints, perhaps none, that all hold at positions which are allowed there."""
+Alternative: TypeAlias = tuple[IntArray, tuple[Taylor, ...]]
+"""Rows of boxes, and functions of the position, perhaps none: none is negative where it is allowed there."""
 
 
 def zone_alternatives(domain: Domain, zone: IntArray, boxes: Boxes) -> list[Alternative]:
@@ -76,24 +36,20 @@ def zone_alternatives(domain: Domain, zone: IntArray, boxes: Boxes) -> list[Alte
     """
     hull, rows = boxes.hull, np.arange(len(boxes))
     floor, ceiling = domain.zone_range_m[zone].T
-    found: list[Alternative] = []
-    for mask, height, upwards in (
-        (hull.high[2] >= ceiling, ceiling, 1.0),
-        (hull.low[2] <= floor, floor, -1.0),
-    ):
-        corner = np.outer(height[mask], [0.0, 0.0, 1.0])
-        up = Interval(np.tile([[0.0], [0.0], [upwards]], len(corner)))
-        away = (Interval(boxes.centre[mask]) - corner).T
-        found.append((rows[mask], (Constraint.beyond(away, up),)))
+    ends = (hull.high[2] >= ceiling, ceiling, 1.0), (hull.low[2] <= floor, floor, -1.0)
+    found: list[Alternative] = [
+        (rows[mask], ((boxes.chosen(mask).position[2] - height[mask]) * upwards,))
+        for mask, height, upwards in ends
+    ]
     is_cylinder = domain.zone_kind[zone] == FORBIDDEN_CYLINDER
     found.append(_outside_cylinder(domain, zone, boxes, rows[is_cylinder]))
-    beyond = [
+    choices = [
         (row, *edges)
         for z in np.unique(zone[~is_cylinder])
         for row, *edges in _beyond_edges(domain, int(z), rows[zone == z], boxes.chosen(zone == z))
     ]
     for count in range(3):
-        table = np.array([choice for choice in beyond if len(choice) == 1 + count], dtype=np.int64).reshape(
+        table = np.array([choice for choice in choices if len(choice) == 1 + count], dtype=np.int64).reshape(
             -1, 1 + count
         )
         row, *edges = table.T
@@ -128,19 +84,22 @@ def _beyond_edges(domain: Domain, zone: int, rows: IntArray, boxes: Boxes) -> It
         yield from ((int(row), *(int(first) + e for e in chosen)) for chosen in alternatives)
 
 
-def _right_of(boxes: Boxes, edges: FloatArray, sign: FloatArray) -> Constraint:
+def _right_of(boxes: Boxes, edges: FloatArray, sign: FloatArray) -> Taylor:
     """Measure how far a position is to the right of an edge, or with the other sign to its left."""
-    x1, y1, x2, y2 = edges.T
-    zero = np.zeros(len(boxes))
-    normal = stack([(Interval(y2) - y1) * sign, (Interval(x1) - x2) * sign, Interval(zero)])
-    return Constraint.beyond(Interval(boxes.centre.T) - np.stack([x1, y1, zero]), normal)
+    x1, y1, x2, y2 = (Interval(end) for end in edges.T)
+    x, y = boxes.position[0] - x1, boxes.position[1] - y1
+    return (x * (y2 - y1) - y * (x2 - x1)) * sign
 
 
 def _outside_cylinder(domain: Domain, zone: IntArray, boxes: Boxes, rows: IntArray) -> Alternative:
     """Return ``|p_xy - c|^2 - r^2`` for boxes that are not inside as a whole."""
-    circle = domain.zone_edges[domain.zone_start[zone[rows]]]
-    reach = Interval((boxes.chosen(rows).hull[:2] - circle[:, :2].T).magnitude())
-    out = ~(reach.squared().total().high < Interval(circle[:, 2]).squared().low)
-    rows, circle = rows[out], circle[out]
-    away = (Interval(boxes.centre[rows] * _FLAT) - circle[:, :3] * _FLAT).T
-    return rows, (Constraint.outside(away, circle[:, 2], _FLAT),)
+    circle = domain.zone_edges[domain.zone_start[zone[rows]]].T
+    reach2 = (boxes.chosen(rows).hull[:2] - circle[:2]).squared().total()
+    out = ~(reach2.high < Interval(circle[2]).squared().low)
+    rows, circle = rows[out], circle[:, out]
+    return rows, (beyond(boxes.chosen(rows).position[:2], circle[:2], circle[2]),)
+
+
+def beyond(position: Taylor, centre: FloatArray, radius: FloatArray | float) -> Taylor:
+    """Measure ``|p - c|^2 - R^2``, over the coordinates that count."""
+    return (position - centre).squared().total() - Interval(radius).squared()
