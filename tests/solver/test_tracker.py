@@ -65,7 +65,7 @@ KINDS = ("no-fly", "eavesdropper", "friendly-jamming", "relay", "airframe", "urb
 
 @pytest.mark.parametrize("name", KINDS)
 def test_every_kind_of_scene_is_tracked(name: str) -> None:
-    """Zones, secrecy rates, channels, buildings, tilt limits, dipoles: whatever solve proves of a dipole."""
+    """Whatever solve proves of a dipole, with everybody where they are said to be."""
     scene, rng = nullpose.load(EXAMPLES / f"{name}.toml"), np.random.default_rng(1)
     tracker = Tracker(scene)
     for _ in range(2):
@@ -76,9 +76,13 @@ def test_every_kind_of_scene_is_tracked(name: str) -> None:
             for kind, at_m in at.items()
             if at_m
         }
+        others = {}
         if scene.destination is not None:
-            moved["destination_m"] = np.add(scene.destination.position_m, 0.3)
-        result = tracker.update(**moved)
+            others["destination_m"] = np.add(scene.destination.position_m, 0.3)
+        result = tracker.update(**moved, **others)
+        for kind, at_m in moved.items():
+            points = getattr(result.scenario, kind.removesuffix("_m"))
+            np.testing.assert_allclose([point.position_m for point in points], at_m)
         assert result.status == Status.CERTIFIED
         assert agree(result)
 
