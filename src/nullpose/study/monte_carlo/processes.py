@@ -13,43 +13,35 @@ from multiprocessing.connection import Connection
 
 def end_with(pipe: Connection) -> None:
     """End this process when the other end of a pipe is closed, be it by the death of who holds it."""
+    threading.Thread(target=lambda: pipe.poll(None) and os._exit(0), daemon=True).start()
 
-    def watch() -> None:
-        pipe.poll(None)
-        os._exit(0)
 
-    threading.Thread(target=watch, daemon=True).start()
+# Libraries would start more threads in each process.
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+)
 
 
 @contextmanager
-def interrupts_put_off() -> Iterator[None]:
-    """Hear Ctrl-C at the end of the block; processes that the block starts never hear it."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
+def at_starting_processes() -> Iterator[None]:
+    """Start processes in the block that never hear Ctrl-C, with one thread each; hear it at the end."""
     heard: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
-    if has_mask := hasattr(signal, "pthread_sigmask"):
+    is_main = threading.current_thread() is threading.main_thread()
+    before = is_main and signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
+    if has_mask := is_main and hasattr(signal, "pthread_sigmask"):
         resource_tracker.ensure_running()  # it would take the mask away if it were started in the block
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    stated = {name: os.environ[name] for name in _ONE_THREAD if name in os.environ}
+    os.environ.update(_ONE_THREAD)
     try:
         yield
     finally:
+        for name in _ONE_THREAD:
+            del os.environ[name]
+        os.environ.update(stated)
         if has_mask:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        signal.signal(signal.SIGINT, before)
+        if is_main:
+            signal.signal(signal.SIGINT, before)
         if heard:
             signal.raise_signal(signal.SIGINT)
-
-
-@contextmanager
-def environment(values: dict[str, str]) -> Iterator[None]:
-    """Set variables of the environment in the block, which processes that it starts inherit."""
-    before = {name: os.environ[name] for name in values if name in os.environ}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name in values:
-            del os.environ[name]
-        os.environ.update(before)

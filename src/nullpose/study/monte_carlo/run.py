@@ -7,7 +7,7 @@ import os
 import platform
 import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from itertools import islice
@@ -21,7 +21,7 @@ from nullpose.study.monte_carlo.loading import require_sound
 from nullpose.study.monte_carlo.reading import StudyStatus, study_spec, study_status
 from nullpose.study.monte_carlo.rows import read_counts
 from nullpose.study.monte_carlo.spec import StudySpec
-from nullpose.study.monte_carlo.workers import LOOK_S, WorkerDiedError, Workers, workers_of
+from nullpose.study.monte_carlo.workers import LOOK_S, Workers, workers_of
 
 MOST_IN_A_PART = 5000  # scenes, however quick they are: a part is held in memory whole
 
@@ -40,7 +40,7 @@ class StudyProgress:
         done: how many are in parts, those of earlier runs too.
         rows: how many rows these have.
         failed: how many of them are failures.
-        workers: threads that work; 0 while there is none.
+        workers: threads that work; 0 while there is none but this process.
         rate: scenes per second of this run so far; 0 before the first part.
         note: news besides; empty while scenes are solved.
     """
@@ -65,26 +65,17 @@ class _Tally:
     def __init__(self, scenes: int, on_progress: Callable[[StudyProgress], None] | None) -> None:
         self.at = StudyProgress(scenes=scenes)
         self._on_progress = on_progress or (lambda progress: None)
-        self.start()
-
-    def start(self) -> None:
-        """Count what is done from now on towards the rate."""
-        self._began, self._before = time.monotonic(), self.at.done
+        self.began_s, self.before = time.monotonic(), 0  # of the work of this run; what earlier ones did
 
     def count(self, part: PartFile) -> None:
         """Count a part."""
         (rows, failed, _), at = read_counts(part.path), self.at
         self.at = replace(at, done=at.done + part.scenes, rows=at.rows + rows, failed=at.failed + failed)
 
-    def look(self, workers: int, note: str) -> None:
-        """Take the number of workers, and tell a note."""
+    def tell(self, note: str = "", workers: int = 0) -> None:
+        """Call the callback, with the number of workers."""
+        fresh, spent = self.at.done - self.before, time.monotonic() - self.began_s
         self.at = replace(self.at, workers=workers)
-        if note:
-            self.tell(note)
-
-    def tell(self, note: str = "") -> None:
-        """Call the callback."""
-        fresh, spent = self.at.done - self._before, time.monotonic() - self._began
         self._on_progress(replace(self.at, rate=fresh / spent if fresh and spent > 0.0 else 0.0, note=note))
 
 
@@ -111,7 +102,7 @@ def run_study(
             in this process.
         chunk: scenes of a part; without it as many as take about a second. A study that is resumed keeps
             its first size.
-        on_progress: called after every part.
+        on_progress: called after every part, and twice a second.
 
     Raises:
         UsageError: another study is in the folder, a bad option, or an extra is missing.
@@ -142,7 +133,7 @@ def run_study(
                 tally.tell()
                 return study_status(folder.path)
         study = json.dumps(spec.to_dict()), fingerprint()
-        with workers_of(scheduler, workers, tally.look) as crew:
+        with workers_of(scheduler, workers) as crew:
             if is_new:
                 folder.write_manifest(
                     spec,
@@ -153,7 +144,6 @@ def run_study(
                 to_do = _resume(folder, spec, tally)
             for (first, last), content in _solved(crew, study, to_do, tally):
                 tally.count(folder.add(first, last, content))
-                tally.tell()
     return study_status(folder.path)
 
 
@@ -162,7 +152,7 @@ def _resume(folder: Folder, spec: StudySpec, tally: _Tally) -> Iterator[Scenes]:
     sound, damaged = folder.clean(spec)
     for part in sound:
         tally.count(part)
-    tally.start()
+    tally.began_s, tally.before = time.monotonic(), tally.at.done
     if damaged:
         tally.tell(f"{damaged} part{'s' * (damaged > 1)} damaged, to be done anew")
     done = {part.first for part in sound}
@@ -176,26 +166,27 @@ def _solved(
     """Yield the parts as they are solved; a few are with the workers at a time, earlier scenes first."""
     queue, pending = iter(to_do), dict[Future[bytes], Scenes]()
     while True:
-        for scenes in islice(queue, max(0, crew.ahead * max(1, crew.count) - len(pending))):
-            pending[crew.executor.submit(solve_chunk, *study, *scenes)] = scenes
+        tally.tell(workers=(count := crew.look()))
+        # one that a worker solves, and the next; this process has solved what it is given
+        for scenes in islice(queue, max(0, (2 * count or 1) - len(pending))):
+            pending[crew.submit(solve_chunk, *study, *scenes)] = scenes
         if not pending:
             return
         for future in wait(pending, LOOK_S, FIRST_COMPLETED).done:
             first, last = scenes = pending.pop(future)
             try:
                 content = crew.result(future)
-            except WorkerDiedError:
-                tally.tell(f"workers died at scenes {first} to {last}: each is tried by itself")
+            except BrokenExecutor:
+                tally.tell(f"workers died at scenes {first} to {last}: each is tried by itself", count)
                 deadly = [scene for scene in range(first, last + 1) if _is_deadly(crew, study, scene)]
-                content = crew.outcome(solve_chunk, *study, first, last, deadly)
+                content = crew.result(crew.submit(solve_chunk, *study, first, last, deadly))
             yield scenes, content
-        crew.look()
 
 
 def _is_deadly(crew: Workers, study: tuple[str, str], scene: int) -> bool:
     try:
-        crew.outcome(solve_chunk, *study, scene, scene)
-    except WorkerDiedError:
+        crew.result(crew.submit(solve_chunk, *study, scene, scene))
+    except BrokenExecutor:
         return True
     return False
 
@@ -203,7 +194,7 @@ def _is_deadly(crew: Workers, study: tuple[str, str], scene: int) -> bool:
 def _size(spec: StudySpec, crew: Workers, study: tuple[str, str]) -> int:
     """Choose the scenes of a part, which takes about a second."""
     try:
-        seconds = crew.outcome(seconds_per_scene, *study)
-    except WorkerDiedError:  # of a scene that will show again in its own part
+        seconds = crew.result(crew.submit(seconds_per_scene, *study))
+    except BrokenExecutor:  # of a scene that will show again in its own part
         return 1
     return max(1, min(MOST_IN_A_PART, spec.n_scenes, int(_PART_S / max(seconds, 1e-9))))
