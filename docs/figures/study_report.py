@@ -1,7 +1,8 @@
-"""Bring the page "The report of a study" up to date: `python docs/figures/study_report.py out/study`.
+"""Bring the pages on studies up to date: `python docs/figures/study_report.py out/study out/motion`.
 
 From the folder of the study of ``examples/study.toml``: its pictures into ``docs/images/study-report-*.png``,
-its summary, its three numbers, its sentences and its table beside this script.
+its summary, its three numbers, its sentences and its table beside this script. From that of
+``examples/study-motion.toml``: ``docs/images/study-motion.png``.
 """
 
 from __future__ import annotations
@@ -41,5 +42,18 @@ def main(study: Path) -> None:
     write_text(FOLDER / "study-report-table.txt", "\n".join(last) + "\n")
 
 
+def draw_motion(study: Path) -> None:
+    """Write the distributions of the study of hovers and flights.
+
+    Args:
+        study: its folder.
+    """
+    with TemporaryDirectory() as folder:
+        report_study(study, out=folder)
+        image = Path(folder) / "figures" / "distribution.png"
+        darken(Path(shutil.copyfile(image, IMAGES / "study-motion.png")))
+
+
 if __name__ == "__main__":
     main(Path(sys.argv[1]))
+    draw_motion(Path(sys.argv[2]))

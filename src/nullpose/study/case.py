@@ -13,6 +13,7 @@ from nullpose.problem.schemes import RECORDS, Scheme
 from nullpose.scenario import Airframe, Array, Scenario
 from nullpose.scenario.airframe import PRESET_TILTS_DEG
 from nullpose.scenario.faults import Place, described, key_faults, require_value
+from nullpose.scenario.motion import FLIGHT_KEYS
 from nullpose.scenario.rules import ByName, Choice, Count, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
@@ -51,6 +52,7 @@ def _truth(value: object) -> bool:
     return bool(value)
 
 
+_FLIGHTS = {"hover": "the hover", "trajectory": "the best flight"}
 _Bool = Annotated[bool, BeforeValidator(_truth)]
 
 
@@ -67,6 +69,7 @@ class Case(Section):
         array: several dipoles in place of the one.
         robust: whether the pose that guarantees most under the scene's errors is asked for.
         pose: a pose to evaluate, in place of a search.
+        flight: what is asked for in a scene in motion: hover or trajectory; None for a pose at t = 0.
         certify: whether to prove anything.
         gap: relative gap in place of the study's.
         time_limit_s: seconds of one solve in place of the study's.
@@ -76,7 +79,7 @@ class Case(Section):
     letter: ClassVar[str] = "C"
     ways: ClassVar[tuple[Ways, ...]] = (
         at_most_one("airframe", "array"),
-        at_most_one("scheme", "robust", "array", "pose", "reach"),
+        at_most_one("scheme", "robust", "array", "pose", "reach", "flight"),
         at_most_one("mount_scenes", "reach"),
     )
 
@@ -111,6 +114,11 @@ class Case(Section):
         "A pose to evaluate in every scene, with nothing searched or proved: a table, or centroid.",
         {"position_m": [0.0, 25.0, 8.0], "roll_deg": 90.0},
     )
+    flight: Annotated[str, Choice("a flight", tuple(_FLIGHTS))] | None = optional(
+        "Of a scene in motion: hover, the one pose whose smallest value over all instants is largest, or "
+        "trajectory, the flight within airframe.speed_max_m_s of which it is. Left out: a pose for t = 0.",
+        "trajectory",
+    )
     certify: _Bool | None = optional("False: search only, and prove nothing.", False)
     gap: Gap | None = optional("Relative gap of this case, in place of the study's.", 1e-2)
     time_limit_s: Seconds | None = optional(
@@ -138,11 +146,17 @@ class Case(Section):
             ("certify", "gap", "time_limit_s") if self.pose is not None else (),
             "has no meaning with a pose, of which nothing is proved; remove it",
         )
+        yield from key_faults(
+            raw,
+            ("certify", "mount_scenes") if self.flight == "trajectory" else (),
+            "has no meaning with a trajectory, which always has a bound; remove it",
+        )
 
     @property
     def is_free(self) -> bool:
         """Whether it is the pose of a vehicle with one dipole that is best, or guarantees most."""
-        return self.scheme in (None, Scheme.OPTIMUM) and not (self.array or self.pose or self.reach)
+        others = (self.array, self.pose, self.reach, self.flight)
+        return self.scheme in (None, Scheme.OPTIMUM) and not any(others)
 
     @property
     def usual(self) -> str:
@@ -175,6 +189,8 @@ class Case(Section):
     @property
     def phrase(self) -> str:
         """What it is in a sentence, as in "a 10 degree tilt with a horizontal dipole"."""
+        if self.flight is not None and self.airframe is not None:
+            return f"{_FLIGHTS[self.flight]} of {self.model_copy(update={'flight': None}).phrase}"
         if self.pose is not None:
             return f"the given pose {self.name}"
         if self.array is not None:
@@ -209,11 +225,18 @@ class Case(Section):
         )
 
     def on(self, scenario: Scenario) -> Scenario:
-        """Put this case's vehicle into a scenario; an array of the scenario's goes."""
+        """Put this case's vehicle into a scenario; an array of the scenario's goes.
+
+        A scene in motion is that of t = 0 unless the case is a flight, whose vehicle keeps the scene's speed,
+        start and end unless it states others.
+        """
         changes: dict[str, object] = {"array": self.array}
         if self.airframe is not None or self.array is not None:
-            changes["airframe"] = self.airframe
-        return scenario.model_copy(update=changes)
+            kept = {key: getattr(scenario.airframe, key, None) for key in FLIGHT_KEYS}
+            stated = {key: getattr(self.airframe, key, None) or value for key, value in kept.items()}
+            changes["airframe"] = self.airframe and self.airframe.model_copy(update=stated)
+        found = scenario.model_copy(update=changes)
+        return found if self.flight else found.still()
 
 
 AIRFRAME_CASES: tuple[Case, ...] = tuple(

@@ -262,13 +262,14 @@ x = {}
 """
 
 
-def test_a_file_in_motion_counts_at_one_instant(tmp_path: Path) -> None:
-    """At that which the spec states, else at 0, and each scene says so; without a file it is refused."""
+def test_a_file_in_motion_may_count_at_one_instant(tmp_path: Path) -> None:
+    """At that which the spec states, and each scene says so; else it moves. Without a file it is refused."""
     shutil.copy(EXAMPLE.with_name("moving_jammer.toml"), tmp_path)
     spec = 'scenes = 1\n[scene]\nfile = "moving_jammer.toml"\n'
-    for line, east_m, at_s in (("", -60.0, 0.0), ("at_s = 12.5\n", -10.0, 12.5)):
-        scene = draw_scene(_load(tmp_path, spec + line), 0)
-        assert (scene.jammers[0].position_m[0], scene.at_s) == (east_m, at_s)
+    scene = draw_scene(_load(tmp_path, spec), 0)
+    assert (scene.jammers[0].position_m[0], scene.jammers[0].velocity_m_s[0]) == (-60.0, 4.0)
+    scene = draw_scene(_load(tmp_path, f"{spec}at_s = 12.5\n"), 0)
+    assert (scene.jammers[0].position_m[0], scene.at_s) == (-10.0, 12.5)
     drawn = '[nodes]\nlayout = "disc"\ncentre_m = [0, 0]\nradius_m = 5.0\ncount = 2\npower_w = 1.0\n'
     drawn += "height_m = 0.0\n"
     assert draw_scene(_load(tmp_path, f"{spec}at_s = 12.5\n{drawn}"), 0).at_s == 12.5

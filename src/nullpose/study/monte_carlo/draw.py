@@ -17,10 +17,12 @@ from nullpose.physics.types import FloatArray
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.scenario.faults import refusal, require
 from nullpose.scenario.ground_points import GroundPoint
+from nullpose.scenario.motion import places_m
 from nullpose.scenario.origin import DRAWN_LISTS, POINT_LISTS
 from nullpose.study.monte_carlo.blocks import Blocks, Town
 from nullpose.study.monte_carlo.distribution import Distribution, DrawnChannel
 from nullpose.study.monte_carlo.layout import MOST_POINTS, Points
+from nullpose.study.monte_carlo.motion import drawn_motions
 from nullpose.study.monte_carlo.spec import StudySpec
 
 _Tables = Mapping[str, Points | DrawnChannel | Blocks]
@@ -51,6 +53,10 @@ _STREAMS = {
     "nlos_loss_db": 13,
     "blocked_loss_db": 14,
     "shadow_margin_m": 15,
+    "waypoints": 16,
+    "speed_m_s": 17,
+    "direction_deg": 18,
+    "pause_s": 19,
 }
 
 
@@ -188,11 +194,13 @@ def _scene(spec: StudySpec, index: int, drawn: _Tables) -> Scenario:
 
 
 def _scene_of(values: PlainTable) -> Scenario:
-    """Validate a scene; a drawn block on which a ground point stands is left out."""
+    """Validate a scene; a drawn block on which a ground point ever stands is left out."""
     if not isinstance(town := values.get("buildings"), Town):
         return Scenario.from_dict(values)
     scene = Scenario.from_dict(values | {"buildings": ()})
-    return scene.model_copy(update={"buildings": town.around(scene.point_positions_m)})
+    times_s = scene.time.instants_s if scene.time else [0.0]
+    passed_m = [places_m(point, scene.origin, times_s) for point in scene.points]
+    return scene.model_copy(update={"buildings": town.around(np.concatenate(passed_m))})
 
 
 def _draw(spec: StudySpec, index: int, kind: str, drawn: _Tables, attempt: int) -> object:
@@ -206,11 +214,15 @@ def _draw(spec: StudySpec, index: int, kind: str, drawn: _Tables, attempt: int) 
         return what.draw(chance)
     if isinstance(what, Blocks):
         return what.draw(chance, [each.extent_m for each in drawn.values() if isinstance(each, Points)])
-    return _points(what, getattr(spec.scene.whole(index), kind), chance)
+    scene = spec.scene.whole(index)
+    return _points(what, getattr(scene, kind), scene.time.duration_s if scene.time else 0.0, chance)
 
 
 def _points(
-    points: Points, replaced: Sequence[GroundPoint], chance: Callable[[str], np.random.Generator]
+    points: Points,
+    replaced: Sequence[GroundPoint],
+    duration_s: float,
+    chance: Callable[[str], np.random.Generator],
 ) -> list[PlainTable]:
     """Draw the points of one kind as plain data, with what they keep of those that they replace."""
     plane_m = _places(points, chance)
@@ -220,6 +232,7 @@ def _points(
         for key, (value, *_) in points.values(replaced).items()
     }
     columns["position_m"] = np.column_stack([plane_m, columns.pop("height_m")]).tolist()
+    columns |= drawn_motions(points, columns["position_m"], duration_s, chance)
     columns["name"] = points.names(count)
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
@@ -228,13 +241,12 @@ def _places(points: Points, chance: Callable[[str], np.random.Generator]) -> Flo
     """Return positions seen from above [m], (n, 2)."""
     counting, placing = chance("count"), chance("place")
     if points.layout == "poisson":
-        sides_m2 = float(np.prod(np.diff(points.extent_m)))
-        area_m2 = sides_m2 if points.radius_m is None else math.pi * points.radius_m**2
-        mean = _bounded(points, (points.density_per_m2 or 0.0) * area_m2)
-        return _evenly(points, placing, int(counting.poisson(mean)))
+        round_m2 = math.pi * (points.radius_m or 0.0) ** 2
+        mean = (points.density_per_m2 or 0.0) * (round_m2 or float(np.prod(np.diff(points.extent_m))))
+        return points.evenly_m(placing, int(counting.poisson(_bounded(points, mean))))
     if points.layout != "clusters":
-        return _evenly(points, placing, _between(counting, points.count))
-    centres_m = _evenly(points, chance("parents"), _between(counting, points.parents))
+        return points.evenly_m(placing, _between(counting, points.count))
+    centres_m = points.evenly_m(chance("parents"), _between(counting, points.parents))
     sizes = [_between(counting, points.count) for _ in centres_m]
     total = int(_bounded(points, sum(sizes)))
     around_m = (points.spread_m or 0.0) * placing.standard_normal((total, 2))
@@ -253,14 +265,3 @@ def _bounded(points: Points, count: float) -> float:
 
 def _between(counting: np.random.Generator, ends: tuple[int, int] | None) -> int:
     return int(counting.integers(*(ends or (0, 0)), endpoint=True))
-
-
-def _evenly(points: Points, placing: np.random.Generator, count: int) -> FloatArray:
-    """Return positions drawn evenly in a disc or a rectangle: the first few are the same for any count."""
-    shares = placing.random((count, 2))
-    if points.radius_m is not None:
-        radii_m, angles = points.radius_m * np.sqrt(shares[:, 0]), 2.0 * np.pi * shares[:, 1]
-        around_m = radii_m[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        return np.asarray(np.array(points.centre_m) + around_m)
-    low_m, high_m = points.extent_m.T
-    return np.asarray(low_m + shares * (high_m - low_m))

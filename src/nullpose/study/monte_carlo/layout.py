@@ -17,6 +17,7 @@ from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
     GEODETIC_KEYS,
+    AttitudeDegrees,
     AxisDirection,
     DecibelMilliwatts,
     DecibelsIsotropic,
@@ -28,6 +29,7 @@ from nullpose.scenario.units import (
     RadiusMetres,
     Range,
     RatioDecibels,
+    Seconds,
     Watts,
     Weight,
 )
@@ -59,7 +61,10 @@ _NEEDED = {
 _IN_A_REGION = ("poisson", "clusters")
 _REGIONS = (("centre_m", "radius_m"), ("x_m", "y_m"))
 _PLACING = ("count", "density_per_m2", "parents", "spread_m", *_REGIONS[0], *_REGIONS[1])
-_PLACE = ("name", "position_m", *GEODETIC_KEYS, *ALTITUDE_KEYS)
+_PLACE = ("name", "position_m", *GEODETIC_KEYS, *ALTITUDE_KEYS, "velocity_m_s", "track", "track_from")
+_MOTIONS = {"constant-velocity": ("speed_m_s", "direction_deg"), "random-waypoint": ("speed_m_s", "pause_s")}
+_MOVING = ("speed_m_s", "direction_deg", "pause_s")
+_GroundSpeed = Annotated[float, Limits("a speed in m/s", 1e-3, 1e5, "36 km/h are 10 m/s")]
 _DETAILS = {
     "antenna": ("antenna_axis", "antenna_file", "antenna_profile", "gain_dbi", "null_depth_db"),
 }
@@ -81,6 +86,10 @@ class Points(Section):
         antenna_axis: the direction of each dipole's wire, (3,), of any length.
         null_depth_db: how far each dipole's gain along its axis is below that across it [dB].
         gain_dbi: each antenna's gain at its peak over an isotropic one [dBi].
+        motion: constant-velocity or random-waypoint; None where they stand.
+        speed_m_s: of a point, or of each of its legs from waypoint to waypoint [m/s].
+        direction_deg: of a constant velocity, from east towards north; None for any.
+        pause_s: at each waypoint [s].
         name: the name of one alone; the beginning of the names of several.
     """
 
@@ -135,6 +144,24 @@ class Points(Section):
     antenna_axis: AxisDirection | None = optional("Direction of every dipole's wire.", [0.0, 0.0, 1.0])
     null_depth_db: NullDepthDecibels | None = optional("How deep the null of every dipole is, in dB.", 20.0)
     gain_dbi: DecibelsIsotropic | None = optional("Gain of every antenna where it is largest.", 2.15)
+    motion: Annotated[str, Choice("a motion", tuple(_MOTIONS))] | None = optional(
+        "How they move, in a scene with a time: constant-velocity, or random-waypoint (straight to a point "
+        "drawn evenly in the same disc or rectangle, and so on). Left out: they stand.",
+        "random-waypoint",
+    )
+    speed_m_s: Annotated[Distribution, Drawn.of(_GroundSpeed)] | None = optional(
+        "Speed over the ground in m/s of each point, or of each of its legs from waypoint to waypoint: a "
+        "number or a distribution.",
+        {"uniform": [1.0, 3.0]},
+    )
+    direction_deg: Annotated[Distribution, Drawn.of(AttitudeDegrees)] | None = optional(
+        "Direction of a constant velocity in degrees, 0 for east and 90 for north: a number or a "
+        "distribution. Left out: any, each as likely.",
+        90.0,
+    )
+    pause_s: Annotated[Distribution, Drawn.of(Seconds)] | None = optional(
+        "How long a point stays at each waypoint: a number or a distribution. Left out: 0.", 5.0
+    )
     name: Label | None = optional(
         "Name of one alone; several are numbered after it. Left out: S1, M1 or E1 and so on.", "M"
     )
@@ -154,6 +181,11 @@ class Points(Section):
             yield from (((), message) for message in Ways(_REGIONS).faults(present))
         strange = [key for key in present if key not in may]
         yield from key_faults(raw, strange, f'has no meaning with layout "{self.layout}"; remove it')
+        may_move = _MOTIONS.get(self.motion or "", _MOVING if "motion" in raw else ())
+        words = f'with motion "{self.motion}"; remove it' if self.motion else "without motion; add it"
+        yield from key_faults(raw, [key for key in _MOVING if key not in may_move], f"has no meaning {words}")
+        if self.motion is not None and "speed_m_s" not in raw:
+            yield ("speed_m_s",), f'missing; motion "{self.motion}" needs it, as in {{ uniform = [1, 3] }}'
 
     def values(self, replaced: Sequence[GroundPoint]) -> dict[str, list[Any]]:
         """Return the values by key, places apart: what is stated here, else what the scene's points have.
@@ -164,7 +196,11 @@ class Points(Section):
         Args:
             replaced: the scene's points, in whose place these are drawn; there may be none.
         """
-        keys = [key for key in type(self).model_fields if key not in ("layout", "name", *_PLACING)]
+        keys = [
+            key
+            for key in type(self).model_fields
+            if key not in ("layout", "name", "motion", *_MOVING, *_PLACING)
+        ]
         drawn = {key: [getattr(self, key)] for key in keys if getattr(self, key) is not None}
         others = {other for key in drawn for ways in self.ways for other in ways.others(key)}
         dropped = {*_PLACE, *others, *(detail for key in drawn for detail in _DETAILS.get(key, ()))}
@@ -182,6 +218,21 @@ class Points(Section):
         if self.radius_m is not None:
             return np.asarray(np.add.outer(np.array(self.centre_m), [-self.radius_m, self.radius_m]))
         return np.array([self.x_m, self.y_m])
+
+    def evenly_m(self, placing: np.random.Generator, count: int) -> FloatArray:
+        """Draw places evenly in the disc or the rectangle: the first few are the same for any count.
+
+        Args:
+            placing: where chance comes from.
+            count: how many.
+        """
+        shares = placing.random((count, 2))
+        if self.radius_m is not None:
+            radii_m, angles = self.radius_m * np.sqrt(shares[:, 0]), 2.0 * np.pi * shares[:, 1]
+            around_m = radii_m[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+            return np.asarray(np.array(self.centre_m) + around_m)
+        low_m, high_m = self.extent_m.T
+        return np.asarray(low_m + shares * (high_m - low_m))
 
     def names(self, count: int) -> list[str]:
         """Return the points' names.

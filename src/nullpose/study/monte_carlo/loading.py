@@ -13,6 +13,7 @@ from nullpose.objectives import USUAL
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario, load
 from nullpose.scenario.faults import call_each, path_of, raise_all, refusal
+from nullpose.scenario.motion import time_of
 from nullpose.scenario.toml_file import FileKind, file_text, inside, tables_of
 from nullpose.study.case import Case
 from nullpose.study.monte_carlo.draw import Draws
@@ -68,7 +69,7 @@ def _read_scenarios(tables: PlainTable, folder: Path, allow_outside: bool) -> li
     def read(name: str) -> PlainTable:
         try:
             whole = load(inside(folder, name, allow_outside), allow_outside=allow_outside)
-            return whole.still(at_s if isinstance(at_s, int | float) else None).to_dict()
+            return (whole.still(at_s) if isinstance(at_s, int | float) else whole).to_dict()
         except UsageError as error:
             raise refusal("scene.at_s", f"{name}: {error}") from None
         except ScenarioError as error:
@@ -140,7 +141,13 @@ def _meaningless(case: Case, scene: Scenario) -> str:
             case.array is None or vehicle.objective == USUAL,
             "an array is for a drone that receives, not for this objective",
         )
-        if not (case.robust or case.array or case.pose):
+        if case.flight is not None:
+            time_of(vehicle, f"flight = {case.flight}: asked for")
+            require_usage(
+                case.flight == "hover" or (vehicle.airframe and vehicle.airframe.speed_max_m_s),
+                "airframe.speed_max_m_s: missing; a trajectory needs the largest speed, in m/s",
+            )
+        elif not (case.robust or case.array or case.pose):
             (case.scheme or Scheme.OPTIMUM).require_applicable(vehicle)
     except (ScenarioError, UsageError) as error:
         return str(error)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import Annotated, ClassVar
 
+import numpy as np
 from pydantic import Field, SerializeAsAny
 
 from nullpose.files import PlainTable
@@ -24,10 +25,12 @@ from nullpose.scenario import (
     Receiver,
     Scenario,
     Source,
+    Time,
     Transmitter,
 )
 from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.faults import Place, key_faults
+from nullpose.scenario.motion import places_m, started
 from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section, optional
@@ -43,7 +46,8 @@ class SceneBase(Section):
         file: a scenario file.
         files: several, which are the scenes in turn.
         scenarios: what the files hold; read together with the spec.
-        at_s: the instant at which they count, where they are in motion.
+        at_s: the one instant that counts, where they are in motion; None for all.
+        time: the instants of tables in motion.
         objective, origin, airspace, airframe, antenna, array, channel, receiver, transmitter, destination: as
             in a scenario file, like buildings.
         nodes, jammers, eavesdroppers, sources: points that are not drawn, as in a scenario file.
@@ -68,8 +72,11 @@ class SceneBase(Section):
         default=(), description="What file or files hold. Filled in when the spec is read."
     )
     at_s: Seconds | None = optional(
-        "Where what a file holds is in motion: the instant that counts, in seconds. Left out: 0.", 30.0
+        "Where what a file holds is in motion: everything stands where it is at this instant, in seconds. "
+        "Left out: it moves, for cases with a flight, and others are of the instant 0.",
+        30.0,
     )
+    time: Time | None = optional("A table headed [scene.time], where points move.")
     objective: Annotated[str, Choice("an objective", RECORDS)] = Field(
         default=USUAL, description="As in a scenario file.", examples=list(RECORDS)
     )
@@ -103,7 +110,7 @@ class SceneBase(Section):
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Fill in the positions of points that are stated by latitude and longitude."""
-        return located(data)
+        return located(started(data))
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield tables that are missing, or stated twice."""
@@ -144,13 +151,18 @@ class SceneBase(Section):
         """
         values = {key: getattr(self.whole(index), key) for key in _TABLES if key not in drawn}
         if drawn:
-            values |= {kind: tuple(map(_in_metres, values[kind])) for kind in POINT_LISTS if kind in values}
-            values["destination"] = values["destination"] and _in_metres(values["destination"])
+            origin, kinds = values["origin"], [kind for kind in POINT_LISTS if kind in values]
+            values |= {kind: tuple(_in_metres(each, origin) for each in values[kind]) for kind in kinds}
+            values["destination"] = values["destination"] and _in_metres(values["destination"], origin)
         return {key: value for key, value in values.items() if value is not None}
 
 
-def _in_metres(point: GroundPoint) -> GroundPoint:
-    return point if point.lat_deg is None else point.model_copy(update={"position_m": point.position_m})
+def _in_metres(point: GroundPoint, origin: Origin | None) -> GroundPoint:
+    update: PlainTable = {"position_m": point.position_m}
+    if point.track is not None:
+        times_s = [row[0] for row in point.track]
+        update["track"] = np.column_stack([times_s, places_m(point, origin, times_s)]).tolist()
+    return point if point.lat_deg is None else point.model_copy(update=update)
 
 
-_TABLES = tuple(key for key in Scenario.model_fields if key not in ("name", "nodes_from", "time"))
+_TABLES = tuple(key for key in Scenario.model_fields if key not in ("name", "nodes_from"))

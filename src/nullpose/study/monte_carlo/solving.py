@@ -25,6 +25,7 @@ from nullpose.solver import (
 )
 from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.robust import RobustDetails
+from nullpose.solver.trajectory import GAP_DB, solve_trajectory
 from nullpose.study.case import Case
 from nullpose.study.evaluation import pose_faults
 from nullpose.study.least_tilt import tilt_search
@@ -87,9 +88,8 @@ def _options_of(spec: StudySpec, case: Case) -> SolveKeywords:
 
 def _null_gain(scene: Scenario, pose: Pose) -> float | None:
     """Return the smallest of the gains towards interferers; None of an array, or without interferers."""
-    if scene.array is not None:
-        return None
-    gains = interferer_gains(scene, pose.position_m, pose.orientation(scene.antenna_record))
+    place = pose.position_m, pose.orientation(scene.antenna_record)
+    gains = np.empty(0) if scene.array is not None else interferer_gains(scene, *place)
     return float(np.min(gains)) if len(gains) else None
 
 
@@ -119,12 +119,11 @@ def _found(
 
 def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
     if case.pose is not None:
-        pose, quantity = case.pose.on(scene), Quantity.of(scene)
-        links = evaluate(scene, pose)
+        pose = case.pose.on(scene)
         faults = "; ".join(f"not allowed: {fault}" for fault in pose_faults(scene, pose))
-        columns = _found(scene, Status.POSE_GIVEN, pose, objective_of_links(scene, links), None, None)
-        node = None if quantity.whole else min(links, key=quantity.at).node
-        return columns | {"reason": faults, "binding_node": node}
+        return _evaluated(scene, pose, Status.POSE_GIVEN) | {"reason": faults}
+    if case.flight == "trajectory":
+        return _flown(scene, options)
     tilts: PlainTable = {}
     if case.reach is not None and scene.airframe is not None:
         search = tilt_search(scene, case.reach, options | {"gap": case.gap})
@@ -132,13 +131,44 @@ def _solved(case: Case, scene: Scenario, options: SolveKeywords) -> PlainTable:
         result = search.result_of(mount)
         tilts = {"least_tilt_deg": mount.suffices_deg, "too_little_deg": mount.fails_deg}
     else:
-        result = solve(scene, case.scheme or Scheme.OPTIMUM, robust=bool(case.robust), **options)
+        result = solve(
+            scene,
+            case.scheme or Scheme.OPTIMUM,
+            robust=bool(case.robust),
+            hover=case.flight == "hover",
+            **options,
+        )
     objective, pose, details = result.objective, result.pose, result.details
     columns = _found(
-        scene, result.status, pose, objective.value, objective.upper_bound, objective.relative_gap
+        result.scenario, result.status, pose, objective.value, objective.upper_bound, objective.relative_gap
     )
     node = details.robust.binding_node if isinstance(details, RobustDetails) else result.binding_node
     return columns | tilts | {"reason": result.reason, "binding_node": node, "boxes": result.stats.boxes}
+
+
+def _evaluated(
+    scene: Scenario, pose: Pose, status: Status, bound: float | None = None, gap: float | None = None
+) -> PlainTable:
+    links, quantity = evaluate(scene, pose), Quantity.of(scene)
+    node = None if quantity.whole else min(links, key=quantity.at).node
+    columns = _found(scene, status, pose, objective_of_links(scene, links), bound, gap)
+    return columns | {"binding_node": node}
+
+
+def _flown(scene: Scenario, options: SolveKeywords) -> PlainTable:
+    """Return the columns of the best flight: value and pose of its worst instant, the bound of all flights.
+
+    A relative gap of a power ratio counts in dB, of a rate in bits/s/Hz.
+    """
+    gap, quantity = options["gap"], Quantity.of(scene)
+    gap_db = GAP_DB if gap is None else gap if quantity.is_rate else quantity.in_unit(1.0 + gap)
+    found = solve_trajectory(scene, gap_db=max(gap_db, 1e-6), time_limit_s=options["time_limit_s"])
+    worst, bound = int(np.argmin(found.values)), found.upper_bound
+    value = float(found.values[worst])
+    bound = max(value, bound if quantity.is_rate else 10.0 ** (bound / 10.0))
+    proved = bound, quantity.gap(value, bound)
+    still = scene.at(float(found.times_s[worst]))
+    return _evaluated(still, found.poses[worst], found.status, *proved) | {"reason": found.reason}
 
 
 def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tuple[int, int, str], Row]:
@@ -155,7 +185,7 @@ def solved_together(spec: StudySpec, scenes: Mapping[At, Scenario]) -> dict[tupl
         if case.is_free and not case.robust:
             alike[repr(_options_of(spec, case))].append(case)
     vehicles: dict[Airframe | None, dict[At, Scenario]] = defaultdict(dict)  # by the scene's own
-    for at, scene in scenes.items():
+    for at, scene in ((at, scene.still()) for at, scene in scenes.items()):
         if not (Quantity.of(scene).is_rate or Quantity.of(scene).whole):
             vehicles[scene.airframe][at] = scene.without_array
     rows = (

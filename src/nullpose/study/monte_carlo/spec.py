@@ -193,7 +193,14 @@ class StudySpec(Section):
             range(self.scene.size if self.scene else 0),
             [(kind, each) for kind, each in self.drawn.items() if isinstance(each, Points)],
         ):
-            replaced = filter(None, getattr(self.scene.whole(index), kind))
+            whole = self.scene.whole(index)
+            if points.motion and whole.time is None:
+                yield (
+                    (kind, "motion"),
+                    "given, but the scene has no [time]; add a table headed [scene.time] with duration_s and "
+                    "step_s, or [time] to the scenario file",
+                )
+            replaced = filter(None, getattr(whole, kind))
             for key, values in points.values(list(replaced)).items():
                 if len(values) > 1:
                     remedy = "add it" if key in type(points).model_fields else "give all of them the same"
