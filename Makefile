@@ -1,5 +1,5 @@
 # Everything here needs Python 3.11 or newer with pip, and nothing else: each target makes what it misses in .venv.
-# Another interpreter: make demo PYTHON=python3.12. All combinations, as CI takes them: make test TESTS="not slow"
+# Another interpreter: make demo PYTHON=python3.12. All combinations: make test TESTS="not slow"
 
 PYTHON ?= python3
 BIN := .venv/bin
