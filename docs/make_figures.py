@@ -12,7 +12,7 @@ from claims.page import check_claims, claims_page
 
 import nullpose
 from nullpose.antenna.files import read_pattern
-from nullpose.paper.reproduce import reproduce
+from nullpose.paper import reproduce
 from nullpose.report.figures.pattern import draw_pattern
 from nullpose.report.figures.poses import draw_result
 from nullpose.report.figures.trajectory import draw_flight

@@ -28,7 +28,7 @@ from nullpose.solver.compiling import precompile
 from nullpose.solver.kernels.bounds.pattern_branch import branch_pattern
 
 if TYPE_CHECKING:
-    from nullpose.paper.reproduce import Reproduction
+    from nullpose.paper import Reproduction
 
 # Compiling a kernel inside an example would break any deadline.
 settings.register_profile("house", derandomize=True, deadline=None, max_examples=40)
@@ -193,7 +193,7 @@ def channel(request: pytest.FixtureRequest) -> LinkChannel | None:
 @pytest.fixture(scope="session")
 def reproduction(tmp_path_factory: pytest.TempPathFactory) -> "Reproduction":
     """The paper's figures from two jamming levels a decade."""
-    from nullpose.paper.reproduce import reproduce
+    from nullpose.paper import reproduce
 
     levels = [10.0 ** (exponent / 2) for exponent in range(-6, 13)]
     folder = tmp_path_factory.mktemp("reproduction")

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from benchmarks.soundness.search import best_value, ground_of
 from nullpose.channel import PointChannels, excess_gain
 from nullpose.objectives import Quantity
-from nullpose.physics import Pose, Reception, maximum_gain_axis, objective_value, zero_interference_axis
+from nullpose.physics import Pose, Reception, objective_value
 from nullpose.problem.instants import still_scenes
 from nullpose.scenario import Scenario
 from nullpose.scenario.polygon import depth_m
@@ -146,6 +146,10 @@ def misses(scenario: Scenario, pose: Pose) -> bool:
     return bool(np.any(reached_db < np.array(required_db) - _ROUNDING))
 
 
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return vector / np.linalg.norm(vector)
+
+
 def allowed_axes(data: Data, scenario: Scenario) -> dict[str, Any]:
     """Return the names and axes, functions of the position, that the scheme allows; None is any axis."""
     scenario = scenario.still()  # the axes alone do not move
@@ -158,10 +162,10 @@ def allowed_axes(data: Data, scenario: Scenario) -> dict[str, Any]:
     if data["scheme"] in ("vertical", "optimum"):
         return {"vertical": lambda p: np.array([0.0, 0.0, 1.0])}
     if data["scheme"] == "maximum-gain" and len(scenario.nodes) == 2:
-        return {"broadside": lambda p: maximum_gain_axis(scenario, p)}
+        return {"broadside": lambda p: _unit(np.cross(*(scenario.node_positions_m - p)))}
     if data["scheme"] == "zero-interference":
         return {
-            f"null {name}": lambda p, at=at: zero_interference_axis(p, at)
+            f"null {name}": lambda p, at=at: _unit(at - p)
             for name, at in jammers.items()
             if null in (None, name)
         }

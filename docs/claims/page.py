@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from claims.claim import Claim
 from claims.claims import CLAIMS
 from claims.study import JammingStudy
-from nullpose.paper.reproduce import Reproduction
+from nullpose.paper import Reproduction
 from nullpose.report.answer import certainty_lines
 from nullpose.report.document import Row
 

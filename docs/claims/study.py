@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from nullpose.paper.printed import JAMMER_POWER, PrintedPoint, search_as_printed
-from nullpose.paper.reproduce import Reproduction
+from nullpose.paper import JAMMER_POWER, PrintedPoint, Reproduction, search_as_printed
 from nullpose.report.numbers import rounded_up
 from nullpose.scenario import Override, Scenario, apply_overrides
 from nullpose.study import ResultRow, sweep

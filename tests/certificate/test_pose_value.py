@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from paper_schemes import maximum_gain_axis, zero_interference_axis
 from tests.certificate.plain import dense_ratios, random_family, seeds, value_at
 
 from nullpose.certificate.pose_value import (
@@ -16,13 +17,7 @@ from nullpose.certificate.pose_value import (
     field_offset,
     sine_cosine,
 )
-from nullpose.physics import (
-    Pose,
-    antenna_axis as physics_axis,
-    maximum_gain_axis,
-    min_sinr,
-    zero_interference_axis,
-)
+from nullpose.physics import Pose, antenna_axis as physics_axis, min_sinr
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 

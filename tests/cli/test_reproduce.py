@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-import nullpose.paper.reproduce
+import nullpose.paper
 from scenes import Run
 
 FILES = [
@@ -25,8 +25,8 @@ FILES = [
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Makes the verb take one level in three decades."""
     levels = [10.0**exponent for exponent in range(-3, 7, 3)]
-    fewer = partial(nullpose.paper.reproduce.reproduce, levels=levels, printed_levels=levels[::3])
-    monkeypatch.setattr(nullpose.paper.reproduce, "reproduce", fewer)
+    fewer = partial(nullpose.paper.reproduce, levels=levels, printed_levels=levels[::3])
+    monkeypatch.setattr(nullpose.paper, "reproduce", fewer)
 
 
 @pytest.mark.usefixtures("coarse")

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from claims.claim import Claim
 from claims.page import check_claims, claims_page
+from paper_schemes import maximum_gain_sinr
 
 from nullpose import Scenario
-from nullpose.paper.printed import JAMMER_POWER, paper_scenario
-from nullpose.paper.reproduce import Reproduction
-from nullpose.physics import maximum_gain_sinr
+from nullpose.paper import JAMMER_POWER, Reproduction, paper_scenario
 from nullpose.scenario import Override, apply_overrides
 
 PAGE = (Path(__file__).parents[2] / "docs" / "claims.md").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from hypothesis import given, strategies as st
 from scipy.spatial.transform import Rotation
 
 from nullpose.antenna import GroundAntennas, QuadraticAntenna, unit_axis
-from nullpose.physics import antenna_gain, elevation_cosine
+from nullpose.physics import antenna_gain
 from nullpose.physics.gain import dipole_gain, link_gain
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -48,9 +48,8 @@ def test_gain_is_equations_1_2_to_1_4(seed: int, random_poses: Callable[..., tup
     points = rng.uniform(-50.0, 50.0, (20, 3))
     gain = antenna_gain(position, axis, points)
     assert np.all((gain >= 0.0) & (gain <= 1.0 + 4e-16))
-    cosine = elevation_cosine(position, axis, points)  # eq. 1.3
     along = (points - position) / np.linalg.norm(points - position, axis=1)[:, None]
-    np.testing.assert_allclose(cosine, along @ axis, atol=1e-15)
+    cosine = along @ axis  # eq. 1.3
     np.testing.assert_allclose(gain, np.sin(np.arccos(cosine)) ** 2, atol=1e-15)
     np.testing.assert_array_equal(gain, antenna_gain(position, -axis, points))
     broadside = np.cross(axis, rng.normal(size=3))

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from paper_schemes import maximum_gain_axis, zero_interference_axis
 
-from nullpose.physics import maximum_gain_axis, zero_interference_axis
 from nullpose.problem.axis_field import AxisField
 
 SHARES = st.floats(0.0, 1.0)

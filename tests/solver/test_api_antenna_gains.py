@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from array_beams import beam_sinr
+from paper_schemes import zero_interference_sinr
 
 import nullpose
 from nullpose.physics import (
@@ -16,7 +17,6 @@ from nullpose.physics import (
     evaluate,
     objective_of_links,
     ratios_under,
-    zero_interference_sinr,
 )
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario

@@ -5,9 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from paper_schemes import maximum_gain_sinr
 
 from nullpose.errors import SolveError
-from nullpose.physics import maximum_gain_sinr, sinr, to_db
+from nullpose.physics import sinr, to_db
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family

@@ -9,7 +9,7 @@ from nullpose.cli.progress import Ticker
 
 def reproduce(out: OutFolder, seed: Seed = 0, json_output: JsonOutput = False) -> None:
     """Redraw the paper's Figure 2 and its poses."""
-    from nullpose.paper import reproduce as paper
+    from nullpose import paper
 
     with compiling_announced(), Ticker("reproducing the paper") as ticker:
         reproduction = paper.reproduce(out, seed=seed, on_progress=ticker)

@@ -28,13 +28,7 @@ from nullpose.physics.frames import (
     frd_from_flu,
     pose_frames,
 )
-from nullpose.physics.gain import antenna_gain, dipole_gain, elevation_cosine, interferer_gains, link_gain
-from nullpose.physics.paper_schemes import (
-    maximum_gain_axis,
-    maximum_gain_sinr,
-    zero_interference_axis,
-    zero_interference_sinr,
-)
+from nullpose.physics.gain import antenna_gain, dipole_gain, interferer_gains, link_gain
 from nullpose.physics.pose import Pose
 from nullpose.physics.poses import Poses
 from nullpose.physics.reception import (
@@ -81,15 +75,12 @@ __all__ = [
     "dipole_gain",
     "eavesdropper_snr",
     "element_positions",
-    "elevation_cosine",
     "evaluate",
     "flu_from_frd",
     "frd_from_flu",
     "from_db",
     "interferer_gains",
     "link_gain",
-    "maximum_gain_axis",
-    "maximum_gain_sinr",
     "min_margin",
     "min_secrecy_rate",
     "min_sinr",
@@ -107,6 +98,4 @@ __all__ = [
     "sinr",
     "steering_vectors",
     "to_db",
-    "zero_interference_axis",
-    "zero_interference_sinr",
 ]

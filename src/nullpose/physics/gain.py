@@ -16,25 +16,6 @@ def _unit(vectors: FloatArray) -> FloatArray:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
-def elevation_cosine(position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike) -> FloatArray:
-    """Evaluate cos(gamma), gamma being the angle between the dipole and the direction to each point.
-
-    ``cos gamma_i = <(p_i - p) / |p_i - p|, u>``
-
-    Source: paper eq. 1.3.
-
-    Args:
-        position_m: the drone's position, shape ``(..., 3)``, metres.
-        axis: unit antenna axis, shape ``(..., 3)``.
-        points_m: ground points, shape ``(m, 3)``, metres, none of them at the drone's position.
-
-    Returns:
-        Array of shape ``(..., m)``.
-    """
-    to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
-    return np.asarray(np.sum(_unit(to_points) * np.asarray(axis, dtype=float)[..., None, :], axis=-1))
-
-
 def antenna_gain(
     position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: AnyAntenna = SHORT_DIPOLE
 ) -> FloatArray:

@@ -5,9 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from paper_schemes import zero_interference_axis
 
 from nullpose.errors import UsageError
-from nullpose.physics import antenna_gain, sinr, zero_interference_axis
+from nullpose.physics import antenna_gain, sinr
 from nullpose.problem.build import build_family
 from nullpose.problem.schemes.zero_interference import ZERO_INTERFERENCE
 from nullpose.scenario import Scenario

@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from paper_schemes import maximum_gain_sinr, zero_interference_sinr
 from scipy.optimize import differential_evolution
 
-from nullpose.physics import antenna_gain, maximum_gain_sinr, sinr, zero_interference_sinr
+from nullpose.physics import antenna_gain, sinr
 from nullpose.scenario import Scenario
 from nullpose.solver import Scheme, Status, solve
 

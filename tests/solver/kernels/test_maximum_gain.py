@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from paper_schemes import maximum_gain_axis, maximum_gain_sinr
 from scipy.optimize import minimize
 
-from nullpose.physics import maximum_gain_axis, maximum_gain_sinr
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.search.maximum_gain import maximum_gain_value

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nullpose.physics.sinr import received_from_sources_w, sinr
+from nullpose.physics import received_from_sources_w, sinr
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
 

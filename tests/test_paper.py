@@ -12,15 +12,16 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
 from nullpose import load
-from nullpose.paper.printed import (
+from nullpose.paper import (
     JAMMER_POWER,
     JAMMING_LEVELS,
     POSE_LEVELS,
     PRINTED_LEVELS,
+    Reproduction,
+    draw_figure2,
     paper_scenario,
     sinr_as_printed,
 )
-from nullpose.paper.reproduce import Reproduction, draw_figure2
 from nullpose.physics import min_sinr, to_db
 from nullpose.report.figures.poses import draw_poses
 from nullpose.report.figures.style import CURVES
@@ -78,7 +79,7 @@ def test_rows_are_what_physics_says(reproduction: Reproduction) -> None:
 
 def test_the_scene_is_the_example_and_levels_cover_the_figure() -> None:
     """Both curves go from 1e-3 to 1e6, and the poses are drawn at levels that the sweep has."""
-    assert paper_scenario() == load(Path(__file__).parents[2] / "examples" / "paper.toml")
+    assert paper_scenario() == load(Path(__file__).parents[1] / "examples" / "paper.toml")
     for levels in (JAMMING_LEVELS, PRINTED_LEVELS):
         assert (levels[0], levels[-1]) == (1e-3, 1e6)
         assert list(levels) == sorted(set(levels))
