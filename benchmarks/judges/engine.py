@@ -14,7 +14,7 @@ from nullpose import Pose, Scenario
 from nullpose.antenna import PatternAntenna
 from nullpose.physics import attitude_from_axis
 from nullpose.scenario.buildings import Building
-from nullpose.studio.meshes import Mesh, merged, prism_mesh
+from nullpose.studio.drawing import Mesh, merged, prism_mesh
 
 _SPEED_OF_LIGHT = 299_792_458.0
 _DIPOLE, _HALF_WAVE = 1.5, 1.643  # largest gains of Sionna's dipoles over an isotropic antenna

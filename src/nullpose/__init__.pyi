@@ -57,7 +57,7 @@ from .solver.trajectory import (
     Trajectory as Trajectory,
     solve_trajectory as solve_trajectory,
 )
-from .studio.show import (
+from .studio.exports import (
     show as show,
 )
 from .study import (

@@ -6,9 +6,9 @@ import shapely
 
 from nullpose import load
 from nullpose.scenario import Scenario
+from nullpose.studio.drawing import prism_mesh
 from nullpose.studio.ground import ground_shapes
 from nullpose.studio.look import LIGHT
-from nullpose.studio.meshes import prism_mesh
 from nullpose.studio.state import State
 
 

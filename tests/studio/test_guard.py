@@ -8,8 +8,7 @@ import pytest
 import viser
 from websockets.datastructures import Headers
 
-from nullpose.studio.guard import PREFERS_DARK, Guard, framed, look_html
-from nullpose.studio.opening import LOOPBACK
+from nullpose.studio.guard import LOOPBACK, PREFERS_DARK, Guard, framed, look_html
 
 
 @pytest.mark.parametrize(("query", "dark"), [("dark=1&more=1", True), ("dark=yes", False), ("", False)])

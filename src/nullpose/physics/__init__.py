@@ -29,8 +29,7 @@ from nullpose.physics.frames import (
     pose_frames,
 )
 from nullpose.physics.gain import antenna_gain, dipole_gain, interferer_gains, link_gain
-from nullpose.physics.pose import Pose
-from nullpose.physics.poses import Poses
+from nullpose.physics.pose import Pose, Poses
 from nullpose.physics.reception import (
     Reception,
     allowed_value,

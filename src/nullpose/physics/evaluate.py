@@ -11,8 +11,7 @@ import numpy as np
 
 from nullpose.errors import checked
 from nullpose.physics.decibel import to_db
-from nullpose.physics.pose import Pose
-from nullpose.physics.poses import Poses
+from nullpose.physics.pose import Pose, Poses
 from nullpose.physics.reception import Reception
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario

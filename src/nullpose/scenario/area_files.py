@@ -15,8 +15,7 @@ from shapely import Polygon
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
-from nullpose.scenario.area_roles import STAY_OUT
-from nullpose.scenario.areas import Area, areas_of, notes_on, polygons_of
+from nullpose.scenario.areas import STAY_OUT, Area, areas_of, notes_on, polygons_of
 from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import described, refusal, require
 from nullpose.scenario.geo_file import Feature

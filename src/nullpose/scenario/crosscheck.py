@@ -13,10 +13,9 @@ from nullpose.objectives import RECORDS, Custom
 from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.channel import CustomChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of, unknown
-from nullpose.scenario.ground_points import GroundPoint, Node, Terminal
+from nullpose.scenario.ground_points import SAME_PLACE_M, GroundPoint, Node, Terminal
 from nullpose.scenario.motion import flight_faults, motion_faults
-from nullpose.scenario.origin import POINT_LISTS
-from nullpose.scenario.origin_faults import is_placed, origin_faults
+from nullpose.scenario.origin import POINT_LISTS, is_placed, origin_faults
 from nullpose.scenario.plausibility import too_small
 from nullpose.scenario.reach import airspace_faults
 from nullpose.scenario.section import table_of
@@ -27,9 +26,6 @@ if TYPE_CHECKING:
     from nullpose.scenario.no_fly import NoFlyZone
     from nullpose.scenario.radio import Receiver
     from nullpose.scenario.scenario import Scenario
-
-SAME_PLACE_M = 1e-6
-"""Two ground points closer than this are at the same place [m]."""
 
 
 def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place, str]]:

@@ -45,6 +45,8 @@ _Row = Annotated[
     tuple[ElevationDegrees, DecibelsIsotropic],
     ListOf("a list of two numbers [elevation in degrees, gain in dBi]", 2, 2),
 ]
+SAME_PLACE_M = 1e-6
+"""Two ground points closer than this are at the same place [m]."""
 _LEAST_STEP_DEG = 0.01
 ALIKE = ((-90.0, 0.0), (90.0, 0.0))
 """The profile of an isotropic antenna."""

@@ -15,7 +15,7 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
-from nullpose.scenario.stream import move_points
+from nullpose.scenario.motion import move_points
 from nullpose.solver.branch_and_bound import INTERRUPT
 from nullpose.solver.by_scheme import answer_of
 from nullpose.solver.compiling import limit_clock, precompile, working_clock

@@ -12,18 +12,24 @@ from nullpose.antenna import AnyAntenna
 from nullpose.physics import Pose, rotation_world_from_body
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.solver import Result
-from nullpose.studio.drawing import Shape, Shapes, coloured_mesh, frame, label, lines, mesh
-from nullpose.studio.ground import CROWD
-from nullpose.studio.look import Look, linear_colours, scale_colours
-from nullpose.studio.meshes import (
+from nullpose.studio.drawing import (
     BODY,
     ROD,
     ROTORS,
     Mesh,
+    Shape,
+    Shapes,
+    coloured_mesh,
+    frame,
+    label,
+    lines,
+    mesh,
     pattern_mesh,
     relative_gain,
     revolved_mesh,
 )
+from nullpose.studio.ground import CROWD
+from nullpose.studio.look import Look, linear_colours, scale_colours
 from nullpose.studio.readout import drone_text
 from nullpose.studio.state import State
 

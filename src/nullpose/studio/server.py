@@ -10,8 +10,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 from nullpose.scenario import Scenario
-from nullpose.studio.guard import PREFERS_DARK
-from nullpose.studio.opening import LOOPBACK, open_server, require_viser, unannounced
+from nullpose.studio.guard import LOOPBACK, PREFERS_DARK, open_server, require_viser, unannounced
 
 if TYPE_CHECKING:
     from viser import ClientHandle, ViserServer

@@ -14,9 +14,8 @@ from nullpose.report.numbers import MINUS
 from nullpose.studio.drawing import FLAT, Shape, Shapes, label, lines
 from nullpose.studio.drone import drone_shapes
 from nullpose.studio.field_map import Scale
-from nullpose.studio.ground import ground_shapes, scene_size_m
+from nullpose.studio.ground import ground_shapes, scene_size_m, shadow_shapes
 from nullpose.studio.look import LIGHT, Look, Rgb, round_steps, scale_colours
-from nullpose.studio.shadows import shadow_shapes
 from nullpose.studio.state import Key, State
 from nullpose.study import Field
 

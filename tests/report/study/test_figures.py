@@ -8,8 +8,7 @@ import pytest
 from matplotlib.collections import PathCollection
 
 from nullpose.report.study.figures import figures_of, step_curve
-from nullpose.report.study.statistics import band_half_width
-from nullpose.report.study.summary import Summary
+from nullpose.report.study.summary import Summary, band_half_width
 
 Summed = Callable[..., Summary]
 Ladder = Callable[..., Any]

@@ -24,7 +24,7 @@ from websockets.sync.client import ClientConnection, connect
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
-from nullpose.studio.opening import LOOPBACK, open_server
+from nullpose.studio.guard import LOOPBACK, open_server
 from nullpose.studio.server import MOST_PAGES, studio
 
 PROTOCOL: Any = f"viser-v{viser.__version__}"

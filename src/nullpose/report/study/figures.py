@@ -18,8 +18,7 @@ from nullpose.physics.types import FloatArray
 from nullpose.report.figures.style import GREY, INK, VEHICLES, Curve, draw_curve, house_style, line_style
 from nullpose.report.numbers import percent
 from nullpose.report.study.cases import point_words, shown_points
-from nullpose.report.study.statistics import CONFIDENCE, WORST_TENTH, band_half_width
-from nullpose.report.study.summary import Summary
+from nullpose.report.study.summary import CONFIDENCE, WORST_TENTH, Summary, band_half_width
 
 if TYPE_CHECKING:
     import pandas as pd

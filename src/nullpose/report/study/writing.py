@@ -18,8 +18,7 @@ from nullpose.objectives import Quantity
 from nullpose.report.figures.style import write_figure
 from nullpose.report.numbers import NONE, number, percent, with_unit
 from nullpose.report.study.cases import point_words, report_cases, shown_points
-from nullpose.report.study.statistics import CONFIDENCE
-from nullpose.report.study.summary import STATUSES, Summary, summarise
+from nullpose.report.study.summary import CONFIDENCE, STATUSES, Summary, summarise
 from nullpose.study.monte_carlo import read_study
 
 if TYPE_CHECKING:

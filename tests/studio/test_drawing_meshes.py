@@ -10,8 +10,8 @@ from nullpose.antenna import SHORT_DIPOLE
 from nullpose.physics import antenna_gain
 from nullpose.report.geometry import outline_m
 from nullpose.scenario import NoFlyZone
-from nullpose.studio import meshes
-from nullpose.studio.meshes import Mesh
+from nullpose.studio import drawing as meshes
+from nullpose.studio.drawing import Mesh
 
 YARD = [[1, 1], [2, 1], [2, 2], [1, 2]]
 

@@ -11,7 +11,7 @@ import nullpose
 from nullpose.errors import UsageError
 from nullpose.scenario import Scenario
 from nullpose.studio.case import new_scenario
-from nullpose.studio.opening import LOOPBACK, open_server, require_viser
+from nullpose.studio.guard import LOOPBACK, open_server, require_viser
 from nullpose.studio.panel import Panel
 from nullpose.studio.session import History
 from nullpose.studio.state import State

@@ -13,9 +13,9 @@ from nullpose.studio.answer import answer_of
 from nullpose.studio.case import OPTIMUM
 from nullpose.studio.drawing import Shapes
 from nullpose.studio.field_map import MAPS, field_map
+from nullpose.studio.ground import shadow_shapes
 from nullpose.studio.look import LIGHT
 from nullpose.studio.readout import card_html
-from nullpose.studio.shadows import shadow_shapes
 from nullpose.studio.state import State
 
 TOWN = load("examples/town.toml")

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from nullpose.report.study.statistics import (
+from nullpose.report.study.summary import (
     MEDIAN,
     WORST_TENTH,
     band_half_width,

@@ -11,7 +11,7 @@ from nullpose.errors import ScenarioError
 from nullpose.physics import Pose, evaluate
 from nullpose.problem.build import build_family
 from nullpose.scenario import Scenario
-from nullpose.scenario.stream import move_points
+from nullpose.scenario.motion import move_points
 from scenes import EXAMPLES
 
 FILES = (
