@@ -206,33 +206,24 @@ class Poses:
     mount_rad: float = 0.0
 
     def __post_init__(self) -> None:
-        position_m = np.asarray(self.position_m, dtype=float)
-        names = ("roll_rad", "pitch_rad", "yaw_rad")
-        angles = [np.asarray(getattr(self, name), dtype=float) for name in names]
-        shapes = {"position_m": position_m.shape} | dict(zip(names, (a.shape for a in angles), strict=True))
-        counts = {shape[0] for shape in (position_m.shape[:-1], *(a.shape for a in angles)) if shape} or {1}
-        mount = np.asarray(self.mount_rad, dtype=float)
-        if (
-            position_m.shape[-1:] != (3,)
-            or position_m.ndim > 2
-            or max(a.ndim for a in angles) > 1
-            or mount.ndim
-        ):
-            counts = set()
+        names = ("position_m", "roll_rad", "pitch_rad", "yaw_rad")
+        position_m, *angles = (np.asarray(getattr(self, name), dtype=float) for name in names)
+        shapes = [position_m.shape, *(angle.shape for angle in angles)]
+        counts = {shape[0] for shape in (position_m.shape[:-1], *shapes[1:]) if shape} or {1}
+        fits = position_m.shape[-1:] == (3,) and max(position_m.ndim - 1, *(a.ndim for a in angles)) <= 1
         require_usage(
-            len(counts) == 1,
-            f"poses: given {', '.join(f'{name} of shape {shape}' for name, shape in shapes.items())}; "
+            fits and len(counts) == 1 and np.ndim(self.mount_rad) == 0,
+            f"poses: given {', '.join(map('{} of shape {}'.format, names, shapes))}; "
             "allowed: position_m of shape (n, 3) or (3,), and angles of shape (n,) or one number",
         )
-        finite = all(np.all(np.isfinite(each)) for each in (*angles, mount))
+        finite = all(np.all(np.isfinite(each)) for each in (*angles, np.array(self.mount_rad)))
         require_usage(
             finite and np.all(np.abs(position_m) <= FARTHEST_M),
             f"poses: a number is not finite or beyond {FARTHEST_M:g} m",
         )
-        count = counts.pop()
-        object.__setattr__(self, "position_m", np.broadcast_to(position_m, (count, 3)))
-        for name, angle in zip(names, angles, strict=True):
-            object.__setattr__(self, name, np.broadcast_to(angle, (count,)))
+        object.__setattr__(self, "position_m", np.broadcast_to(position_m, (*counts, 3)))
+        for name, angle in zip(names[1:], angles, strict=True):
+            object.__setattr__(self, name, np.broadcast_to(angle, tuple(counts)))
 
     @classmethod
     @checked

@@ -92,30 +92,38 @@ def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> 
     """List what does not go with an array, and dipoles that do not go with the drone's antenna."""
     has_array, antenna = scenario.array is not None, scenario.antenna_record
     is_tilted = scenario.airframe is not None and scenario.axis_band != (1.0, 1.0)
-    apart = (
-        "an array is of upright dipoles on a horizontal vehicle, but [airframe] tilts it or mounts the "
-        "dipole at an angle; remove either table"
-    )
-    other = "the elements of an array are short dipoles; remove this table or [array]"
-    deaf = "an array hears isotropic antennas only; remove this key or [array]"
-    unlike = (
-        "a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that of "
-        f'antenna.kind = "{antenna.name}" is not; write "circular" or "isotropic"'
-    )
-    in_python = (
-        'antenna = "profile" does not go with a channel that is a function in Python; multiply that by the '
-        'gain, or write antenna = "isotropic" with gain_dbi'
-    )
     faults: list[tuple[bool, Place, str]] = [
-        (has_array and is_tilted, ("array",), apart),
-        (has_array and antenna != SHORT_DIPOLE, ("antenna",), other),
+        (
+            has_array and is_tilted,
+            ("array",),
+            "an array is of upright dipoles on a horizontal vehicle, but [airframe] tilts it or mounts the "
+            "dipole at an angle; remove either table",
+        ),
+        (
+            has_array and antenna != SHORT_DIPOLE,
+            ("antenna",),
+            "the elements of an array are short dipoles; remove this table or [array]",
+        ),
     ]
     for place, point in points.items():
-        is_custom = isinstance(point.channel or scenario.channel, CustomChannel)
         faults += [
-            (point.antenna == "profile" and is_custom, (*place, "antenna"), in_python),
-            (has_array and point.antenna not in (None, "isotropic"), (*place, "antenna"), deaf),
-            (point.antenna == "dipole" and not antenna.has_polarisation, (*place, "antenna"), unlike),
+            (
+                point.antenna == "profile" and isinstance(point.channel or scenario.channel, CustomChannel),
+                (*place, "antenna"),
+                'antenna = "profile" does not go with a channel that is a function in Python; multiply that '
+                'by the gain, or write antenna = "isotropic" with gain_dbi',
+            ),
+            (
+                has_array and point.antenna not in (None, "isotropic"),
+                (*place, "antenna"),
+                "an array hears isotropic antennas only; remove this key or [array]",
+            ),
+            (
+                point.antenna == "dipole" and not antenna.has_polarisation,
+                (*place, "antenna"),
+                "a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that "
+                f'of antenna.kind = "{antenna.name}" is not; write "circular" or "isotropic"',
+            ),
         ]
     return [(place, message) for is_wrong, place, message in faults if is_wrong]
 

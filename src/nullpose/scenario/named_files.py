@@ -72,21 +72,12 @@ class NamedFiles:
             tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
             tables["nodes"] = self._nodes(tables["nodes"])
         failures = len(self._faults)
-        for kind in (*POINT_LISTS, "destination"):
-            if isinstance(points := tables.get(kind), list):
-                tables[kind] = [self._with_track(each, f"{kind}[{i}]") for i, each in enumerate(points)]
-            elif points is not None:
-                tables[kind] = self._with_track(points, kind)
+        tables |= _each_point(tables, self._with_track)
         if len(self._faults) > failures:
             raise_all(self._faults)  # nothing else is known of such a point
-        profile = ("antenna_file", "antenna_profile", with_profile, ALIKE)
-        for kind in POINT_LISTS:
-            if isinstance(points := tables.get(kind), list):
-                tables[kind] = [
-                    self._with_file(each, f"{kind}[{i}]", *profile) for i, each in enumerate(points)
-                ]
-        if end := tables.get("destination"):
-            tables["destination"] = self._with_file(end, "destination", *profile)
+        keys = {"key": "antenna_file", "product": "antenna_profile"}
+        with_profiles = partial(self._with_file, **keys, read=with_profile, instead=ALIKE)
+        tables |= _each_point(tables, with_profiles)
         try:
             scenario = Scenario.from_dict(tables)
         except ScenarioError as error:
@@ -246,6 +237,17 @@ class NamedFiles:
                     self._places[f"nodes[{index}].{key}".removesuffix(".")] = f"{file}: {place}"
             return [node.values for node in nodes]
         return []
+
+
+def _each_point(tables: PlainTable, read: Callable[[object, str], object]) -> PlainTable:
+    """Return the points of a raw scenario, each as read, with its place for messages."""
+    kinds = {kind: tables[kind] for kind in (*POINT_LISTS, "destination") if kind in tables}
+    return {
+        kind: [read(each, f"{kind}[{index}]") for index, each in enumerate(points)]
+        if isinstance(points, list)
+        else read(points, kind)
+        for kind, points in kinds.items()
+    }
 
 
 def _require_nodes_in_reach(scenario: Scenario, key: str) -> None:

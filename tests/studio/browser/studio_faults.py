@@ -22,7 +22,7 @@ from nullpose import load, solve
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import Scenario
 from nullpose.studio.case import case_named
-from nullpose.studio.field_map import MAPS
+from nullpose.studio.field_map import MAPS, FieldMap
 from nullpose.studio.state import State
 
 KNOWN_DB = {20.0: -4.41, 30.0: -14.15, 40.0: -24.12}  # of field.toml's best pose, by the jamming power
@@ -32,7 +32,7 @@ def _show(hand: Hand, state: State) -> None:
     """Show a scene with its numbers and its map, and look at all of it."""
     hand.session.change(lambda now: now.with_scene_of(state))
     hand.certified()
-    hand.until(lambda: hand.session.state.field_map is not None)
+    hand.until(lambda: hand.session.state.present(FieldMap) is not None)
     hand.tab("Map and view")
     hand.press("Reset the camera")
     hand.tab("Scene")
@@ -78,7 +78,7 @@ def test_a_scene_of_a_kilometre_is_drawn(hand: Hand, tmp_path: Path) -> None:
     for node in scenario.nodes:
         assert _blue(_around(picture, camera, node.position_m, 10)) > 10
     assert _orange(_around(picture, camera, scenario.jammers[0].position_m, 10)) > 10
-    field = hand.session.state.field_map.footprint
+    field = hand.session.state.present(FieldMap).footprint
     inside = slice(len(field.east_m) // 4, -len(field.east_m) // 4, 3)
     ground = [(east, north, 0.0) for east in field.east_m[inside] for north in field.north_m[inside]]
     tints = [np.ptp(np.median(_around(picture, camera, place, 1), axis=0)) for place in ground]

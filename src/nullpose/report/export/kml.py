@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from nullpose.report.export.places import map_place, marked_points, require_origin
+from nullpose.report.export.places import map_altitude_m, marked_points, require_origin
 from nullpose.solver import Result
 
 
@@ -20,14 +20,14 @@ def kml_file(result: Result) -> bytes:
     root = Element("kml", xmlns="http://www.opengis.net/kml/2.2")
     document = SubElement(root, "Document")
     for position_m, properties in marked_points(result):
-        mark, place = SubElement(document, "Placemark"), map_place(origin, position_m)
+        mark, place = SubElement(document, "Placemark"), origin.place(position_m)
         SubElement(mark, "name").text = str(properties.pop("name"))
         data = SubElement(mark, "ExtendedData")
         for key in (key for key, value in properties.items() if value is not None):
             SubElement(SubElement(data, "Data", name=key), "value").text = str(properties[key])
         point = SubElement(mark, "Point")
-        SubElement(point, "altitudeMode").text = "absolute" if place.is_over_sea else "relativeToGround"
-        coordinates = f"{place.lon_deg:.9f},{place.lat_deg:.9f},{place.altitude_m:.4f}"
+        SubElement(point, "altitudeMode").text = "absolute" if "alt_msl_m" in place else "relativeToGround"
+        coordinates = f"{place['lon_deg']:.9f},{place['lat_deg']:.9f},{map_altitude_m(origin, place):.4f}"
         SubElement(point, "coordinates").text = coordinates
     indent(root)
     return bytes(tostring(root, encoding="UTF-8", xml_declaration=True))

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
 
 from numpy.typing import ArrayLike
 
@@ -18,22 +17,6 @@ from nullpose.scenario import GroundPoint, Origin, Scenario
 from nullpose.scenario.radio import Powered, Uncertain
 from nullpose.solver import Result
 from nullpose.solver.robust import RobustDetails
-
-
-class MapPlace(NamedTuple):
-    """A place on the Earth with an altitude that autopilots and KML understand.
-
-    Args:
-        lat_deg: geodetic latitude [degrees].
-        lon_deg: longitude [degrees].
-        altitude_m: over the sea, or above the origin [m].
-        is_over_sea: which of the two; over the sea if the origin states its own altitude so.
-    """
-
-    lat_deg: float
-    lon_deg: float
-    altitude_m: float
-    is_over_sea: bool
 
 
 def require_origin(scenario: Scenario) -> Origin:
@@ -51,16 +34,16 @@ def require_origin(scenario: Scenario) -> Origin:
     return scenario.origin
 
 
-def map_place(origin: Origin, position_m: ArrayLike) -> MapPlace:
-    """Convert a position to a place whose altitude counts from the sea, or else from the origin.
+def map_altitude_m(origin: Origin, place: Mapping[str, float]) -> float:
+    """Return an altitude that autopilots and KML understand: over the sea if the origin states its own so.
+
+    Otherwise it counts from the origin.
 
     Args:
         origin: of the scenario.
-        position_m: east, north and up [m], (3,).
+        place: on the Earth, as :meth:`Origin.place` states it.
     """
-    place = origin.place(position_m)
-    height_m = place.get("alt_msl_m", place.get("alt_m", 0.0) - (origin.alt_m or 0.0))
-    return MapPlace(place["lat_deg"], place["lon_deg"], height_m, origin.alt_msl_m is not None)
+    return place.get("alt_msl_m", place.get("alt_m", 0.0) - (origin.alt_m or 0.0))
 
 
 def marked_points(solution: Result) -> Iterator[tuple[ArrayLike, PlainTable]]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from nullpose.files import PlainTable, json_text
 from nullpose.physics import Pose, evaluate, objective_of_links, pose_frames
-from nullpose.report.export.places import map_place, require_origin
+from nullpose.report.export.places import map_altitude_m, require_origin
 from nullpose.report.numbers import with_unit
 from nullpose.scenario import Airspace, NoFlyZone, Origin, Scenario
 from nullpose.scenario.airspace import BORDER_M
@@ -68,10 +68,13 @@ def _item(command: int, params: Sequence[float], frame: int = _OF_MISSION) -> Pl
 
 def _at_pose(command: int, scenario: Scenario, pose: Pose, wait_s: float) -> PlainTable:
     """Write a command at the place of a pose, with its heading, and how long to stay there."""
-    place = map_place(require_origin(scenario), pose.position_m)
-    frame, mode = _OVER_SEA if place.is_over_sea else _OVER_HOME
-    item = _item(command, [wait_s, 0, 0, _heading_deg(scenario, pose), *place[:3]], frame)
-    return item | {"Altitude": place.altitude_m, "AltitudeMode": mode, "AMSLAltAboveTerrain": None}
+    origin = require_origin(scenario)
+    place = origin.place(pose.position_m)
+    altitude_m = map_altitude_m(origin, place)
+    frame, mode = _OVER_SEA if "alt_msl_m" in place else _OVER_HOME
+    where = [place["lat_deg"], place["lon_deg"], altitude_m]
+    item = _item(command, [wait_s, 0, 0, _heading_deg(scenario, pose), *where], frame)
+    return item | {"Altitude": altitude_m, "AltitudeMode": mode, "AMSLAltAboveTerrain": None}
 
 
 def _content(scenario: Scenario, poses: Sequence[Pose], items: Sequence[PlainTable]) -> bytes:

@@ -192,10 +192,9 @@ def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, ...]
     """Write the figures; remove those of an earlier report."""
     from nullpose.report.study.figures import figures_of
 
-    kinds = (".png", ".svg", ".pdf")
-    for name, kind in product((*_CAPTIONS, "sweep", "best", "outage", "robustness", "effort"), kinds):
+    kinds, drawn = (".png", ".svg", ".pdf"), figures_of(summary)
+    for name, kind in product(_CAPTIONS, kinds):
         (folder / f"{name}{kind}").unlink(missing_ok=True)
-    drawn = figures_of(summary)
     return {name: write_figure(drawn[name], *(folder / f"{name}{kind}" for kind in kinds)) for name in drawn}
 
 
