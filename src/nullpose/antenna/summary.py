@@ -68,12 +68,11 @@ class PatternSummary:
     def to_dict(self) -> PlainTable:
         """Return the summary as plain data, angles in radians, without the table's numbers."""
         data = {name: getattr(self.table, name) for name in ("source", "quantity", "frequency_hz", "notes")}
-        for name in PatternSummary.__dataclass_fields__:
-            if name.endswith("_deg"):
-                data[name.replace("_deg", "_rad")] = np.radians(getattr(self, name)).tolist()
-            elif name != "table":
-                data[name] = getattr(self, name)
-        return data
+        found = {name: getattr(self, name) for name in PatternSummary.__dataclass_fields__ if name != "table"}
+        return data | {
+            name.replace("_deg", "_rad"): np.radians(value).tolist() if name.endswith("_deg") else value
+            for name, value in found.items()
+        }
 
 
 def summary_of(table: PatternTable) -> PatternSummary:
