@@ -120,7 +120,7 @@ def show(
     scenario = draw_scene(spec, scene) if point is None else scene_at(spec, scene, point)
     if case is not None:
         require_usage(case in spec.case_names, f"case: given {case!r}; allowed: {', '.join(spec.case_names)}")
-        scenario = spec.cases[spec.case_names.index(case)].on(scenario)
+        scenario = spec.cases[spec.case_names.index(case)].drawn(scenario)
     tell(scenario, lambda scene: scene.to_toml().removesuffix("\n"), json_output)
 
 

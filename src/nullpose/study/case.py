@@ -227,16 +227,18 @@ class Case(Section):
     def on(self, scenario: Scenario) -> Scenario:
         """Put this case's vehicle into a scenario; an array of the scenario's goes.
 
-        A scene in motion is that of t = 0 unless the case is a flight, whose vehicle keeps the scene's speed,
-        start and end unless it states others.
+        The vehicle keeps the scenario's speed, start and end unless it states others.
         """
         changes: dict[str, object] = {"array": self.array}
         if self.airframe is not None or self.array is not None:
             kept = {key: getattr(scenario.airframe, key, None) for key in FLIGHT_KEYS}
             stated = {key: getattr(self.airframe, key, None) or value for key, value in kept.items()}
             changes["airframe"] = self.airframe and self.airframe.model_copy(update=stated)
-        found = scenario.model_copy(update=changes)
-        return found if self.flight else found.still()
+        return scenario.model_copy(update=changes)
+
+    def drawn(self, scene: Scenario) -> Scenario:
+        """Put this case's vehicle into a scene of a study: in motion for flights, and else as at t = 0."""
+        return self.on(scene if self.flight else scene.still())
 
 
 AIRFRAME_CASES: tuple[Case, ...] = tuple(

@@ -131,7 +131,7 @@ def _cases_faults(spec: StudySpec, scenes: list[Scenario]) -> list[Fault]:
 def _meaningless(case: Case, scene: Scenario) -> str:
     """Give the reason for which a case has no meaning in a scene; empty if it has."""
     try:
-        vehicle = case.on(scene)
+        vehicle = case.drawn(scene)
         require_usage(
             vehicle.is_uncertain or not case.robust,
             "robust, but the scenes state no errors; add uncertainty_m to jammers or eavesdroppers, or "

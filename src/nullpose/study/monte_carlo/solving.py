@@ -52,7 +52,7 @@ def solved_row(spec: StudySpec, scene: Scenario, index: int, point: int, case: C
     """
     began = time.perf_counter()
     try:
-        columns = _solved(case, case.on(scene), _options_of(spec, case))
+        columns = _solved(case, case.drawn(scene), _options_of(spec, case))
     except Exception as error:  # whatever goes wrong in one scene is no reason to lose the others
         columns = {"status": FAILED, "reason": reason_of(error)}
     if columns["reason"] == INTERRUPT:
