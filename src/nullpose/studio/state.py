@@ -132,9 +132,14 @@ class State:
         return all(self.current(case) or self.present(Notice, case) for case in self.cases)
 
     @property
+    def field_map(self) -> FieldMap | None:
+        """The maps of the present version, or None."""
+        return self.present(FieldMap)
+
+    @property
     def scale(self) -> Scale | None:
         """The map that is shown with its colours, or None."""
-        maps = self.present(FieldMap)
+        maps = self.field_map
         return None if maps is None else maps.scale(self.map_name)
 
     @property
