@@ -67,8 +67,8 @@ def _guesses(constraints: tuple[Taylor, ...], gradient: FloatArray) -> Iterator[
 
     By least squares, each constraint alone and then all together.
     """
-    some = np.unique([*np.eye(len(constraints)), np.ones(len(constraints))], axis=0)
-    for used in some if constraints else ():
+    subsets = np.unique([*np.eye(len(constraints)), np.ones(len(constraints))], axis=0)
+    for used in subsets if constraints else ():
         normals = np.stack([np.broadcast_to(g.at.slopes.middle(), gradient.shape) for g in constraints])
         inverse = np.linalg.pinv(np.moveaxis(normals * used[:, None, None], -1, 0))
         pull = -np.einsum("bkc,kb->cb", inverse, gradient)

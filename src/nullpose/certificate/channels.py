@@ -164,8 +164,8 @@ def amplitude(
         is_above: whether the link is to be bounded from above, else from below.
     """
     if not len(ratios.channels):
-        one, none = Interval(np.ones(1)), Interval(np.zeros((3, 1)))
-        return one, none, [one, none[0], none[0]]
+        unit, flat = Interval(np.ones(1)), Interval(np.zeros((3, 1)))
+        return unit, flat, [unit, flat[0], flat[0]]
     rows = ratios.channels[point].T
     distance, angle, tangent = _sight(ratios.points_m[point], boxes, rows)
     at, d = stack([distance.at.value, angle.at.value]), distance.over.value

@@ -133,6 +133,12 @@ class Pose:
         """Unit vector along the dipole, shape ``(3,)``, world frame (paper eq. 1.1)."""
         return antenna_axis(self.roll_rad, self.pitch_rad, self.yaw_rad, self.mount_rad)
 
+    @property
+    def rotation_world_from_antenna(self) -> FloatArray:
+        """Rotation to the world from the antenna's axes, the third along the dipole, ``(3, 3)``."""
+        body = rotation_world_from_body(self.roll_rad, self.pitch_rad, self.yaw_rad)
+        return np.asarray(body @ rotation_world_from_body(0.0, self.mount_rad, 0.0))
+
     def orientation(self, antenna: AnyAntenna) -> FloatArray:
         """Orient an antenna, as its gain needs it.
 
@@ -140,10 +146,7 @@ class Pose:
             Unit axis, shape ``(3,)``; for an antenna with a pattern the rotation to the world from its axes,
             ``(3, 3)``.
         """
-        if antenna.is_quadratic:
-            return self.antenna_axis
-        body = rotation_world_from_body(self.roll_rad, self.pitch_rad, self.yaw_rad)
-        return np.asarray(body @ rotation_world_from_body(0.0, self.mount_rad, 0.0))
+        return self.antenna_axis if antenna.is_quadratic else self.rotation_world_from_antenna
 
     @property
     def tilt_rad(self) -> float:

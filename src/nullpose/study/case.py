@@ -231,9 +231,9 @@ class Case(Section):
         """
         changes: dict[str, object] = {"array": self.array}
         if self.airframe is not None or self.array is not None:
-            kept = {key: getattr(scenario.airframe, key, None) for key in FLIGHT_KEYS}
-            stated = {key: getattr(self.airframe, key, None) or value for key, value in kept.items()}
-            changes["airframe"] = self.airframe and self.airframe.model_copy(update=stated)
+            of_scene = {key: getattr(scenario.airframe, key, None) for key in FLIGHT_KEYS}
+            flown = {key: getattr(self.airframe, key, None) or value for key, value in of_scene.items()}
+            changes["airframe"] = self.airframe and self.airframe.model_copy(update=flown)
         return scenario.model_copy(update=changes)
 
     def drawn(self, scene: Scenario) -> Scenario:

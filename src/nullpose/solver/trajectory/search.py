@@ -86,6 +86,7 @@ def best_flight(course: Course, best_poses: FloatArray, deadline: float) -> tupl
         flight_of(course, rough[i][0].run(_ROUGH, _END[is_worst], deadline), rough[i][0])
         for _, i in sorted(found, reverse=True)[:_FINISHED]
     ]
+    finished = [each for each in finished if each.score > -np.inf]
     return max(finished, key=lambda each: each.score, default=None), lattice
 
 
@@ -97,12 +98,12 @@ def hovering(course: Course, lattice: Lattice, deadline: float) -> Flight | None
         lattice: where the search begins.
         deadline: on ``limit_clock``.
     """
-    given = [each for each in course.ends_m if each is not None]
+    fixed_m = [each for each in course.ends_m if each is not None]
     is_worst, count, best = course.aim.is_worst, len(course.times_s), None
     places_m = [
-        np.tile(place_m, (count, 1)) for place_m in given[:1] or lattice.best_places(is_worst, deadline)
+        np.tile(place_m, (count, 1)) for place_m in fixed_m[:1] or lattice.best_places(is_worst, deadline)
     ]
-    if not given:
+    if not fixed_m:
         held = replace(course, speed_max_m_s=_AT_REST_M_S)
         starts = [Climb(held, inside(held, each)) for each in places_m[:_FINISHED] if is_clear(course, each)]
         ends_m = [climb.run(_BARRIERS[is_worst][0], _END[is_worst], deadline)[:, :3] for climb in starts]
@@ -160,12 +161,12 @@ def is_allowed(course: Course, positions_m: FloatArray) -> bool:
     """Check that a flight, (t, 3), keeps to speed, airspace, points and the ends that are given."""
     steps_m = np.linalg.norm(np.diff(positions_m, axis=0), axis=1)
     is_slow = bool(np.all(steps_m <= course.reach_m * (1.0 + _ROUNDING) + _ROUNDING))
-    given = [
+    ends = [
         (place_m, end_m)
         for place_m, end_m in zip(positions_m[[0, -1]], course.ends_m, strict=True)
         if end_m is not None
     ]
-    at_ends = all(np.allclose(place_m, end_m, rtol=0.0, atol=_ROUNDING) for place_m, end_m in given)
+    at_ends = all(np.allclose(place_m, end_m, rtol=0.0, atol=_ROUNDING) for place_m, end_m in ends)
     return is_slow and at_ends and is_clear(course, positions_m)
 
 

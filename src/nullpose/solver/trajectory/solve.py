@@ -22,6 +22,8 @@ from nullpose.solver.trajectory.prices import PriceBound
 from nullpose.solver.trajectory.result import Trajectory, from_nats
 from nullpose.solver.trajectory.search import Flight, best_flight, greedy, hovering, is_allowed, seeing_ahead
 
+_OPPOSITE = -1.0 + 1e-12  # cosine to an axis that the vehicle reaches the other way round, too
+
 GAP_DB = 0.05
 """The gap asked for unless another is, in dB or, of a rate, bits/s/Hz."""
 TIME_LIMIT_S = 60.0
@@ -84,9 +86,6 @@ def solve_trajectory(
     return _Run(course, gap_db, limit_clock() + time_limit_s, tell).result(scenario, window_s, began)
 
 
-_OPPOSITE = -1.0 + 1e-12  # cosine to an axis that the vehicle reaches the other way round, too
-
-
 class _Run:
     """The steps of one solve."""
 
@@ -119,7 +118,7 @@ class _Run:
             name: each if each and each.score > -math.inf and is_allowed(course, each.poses[:, :3]) else None
             for name, each in others.items()
         }
-        flights = [each for each in (found, *others.values()) if each is not None and each.score > -np.inf]
+        flights = [each for each in (found, *others.values()) if each is not None]
         if not flights:
             raise SolveError(
                 "no trajectory was found that keeps to the airspace and the speed; raise "
@@ -171,7 +170,7 @@ class _Run:
             self.reason = INTERRUPT
         if bound > flight.score + self.gap and not self.reason:
             is_late = limit_clock() > self.deadline
-            self.reason = "the time limit" if is_late else "boxes became too many; more time is of no help"
+            self.reason = "the time limit" if is_late else "the bound came no nearer"
         return flight, bound, name
 
 
@@ -198,7 +197,7 @@ def continuous_poses(course: Course, poses: FloatArray) -> Iterator[Pose]:
         found = Pose.of_airframe(scene, pose[:3], pose[3:])
         axis = found.antenna_axis
         if before is None:
-            before = _antenna_frame(found)
+            before = found.rotation_world_from_antenna
         elif is_free:
             if tilt_max_rad >= math.pi and axis @ before[:, 2] < 0.0:
                 axis = -axis
@@ -208,18 +207,12 @@ def continuous_poses(course: Course, poses: FloatArray) -> Iterator[Pose]:
             other = Pose(
                 pose[:3], *attitude_of_axis(-axis, tilt_max_rad, mount_rad, is_even=False), mount_rad
             )
-            frames = [_antenna_frame(each) for each in (found, other)]
+            frames = [each.rotation_world_from_antenna for each in (found, other)]
             is_other = (
                 other.antenna_axis @ axis < _OPPOSITE and np.sum(before * (frames[1] - frames[0])) > 0.0
             )
             found, before = (other, frames[1]) if is_other else (found, frames[0])
         yield found
-
-
-def _antenna_frame(pose: Pose) -> FloatArray:
-    """Return the rotation to the world from the antenna's axes."""
-    body = rotation_world_from_body(pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
-    return np.asarray(body @ rotation_world_from_body(0.0, pose.mount_rad, 0.0))
 
 
 def _least_turn(first: FloatArray, last: FloatArray) -> FloatArray:

@@ -105,23 +105,29 @@ class Drawn(Rule):
     def _sound(self, value: Distribution) -> Distribution:
         """Refuse a distribution that draws a number which is not allowed."""
         ((key, numbers),) = value.to_dict().items()
-        ends = np.ravel(numbers).tolist()
-        first, last = ends[0], ends[-1]
-        wrong = [each for each in ends if not self.quantity.low <= each <= self.quantity.high]
-        is_normal, is_range = key == "normal", key in ("uniform", "log_uniform")
-        faults = {
-            f"got {numbers!r}, must be two numbers, the lower first": is_range and not first < last,
-            f"got a lower end of {first!r}, must be above 0, as its logarithm is taken": key == "log_uniform"
-            and first <= 0.0,
-            f"got {next(iter(wrong), 0.0)!r}, must be {self.quantity.allowed} ({self.quantity.hint})": wrong
-            and not is_normal,
-            f"a normal distribution falls below what is allowed, {self.quantity.allowed}; use uniform or "
-            "log_uniform, or for a power the key that ends in _dbm": is_normal and self.quantity.low >= 0.0,
-            "the standard deviation is below 0; it must be 0 or more": is_normal and last < 0.0,
-        }
-        for message in [each for each, holds in faults.items() if holds][:1]:
+        message = (
+            self._normal_fault(numbers[1]) if key == "normal" else self._fault(key, np.atleast_1d(numbers))
+        )
+        if message:
             raise collected("", [((key,), message)])
         return value
+
+    def _fault(self, key: str, numbers: FloatArray) -> str:
+        """Describe the fault of the numbers that bound all drawn ones; empty without a fault."""
+        wrong = [each for each in numbers.tolist() if not self.quantity.low <= each <= self.quantity.high]
+        if key in ("uniform", "log_uniform") and not numbers[0] < numbers[1]:
+            return f"got {numbers.tolist()}, must be two numbers, the lower first"
+        if key == "log_uniform" and numbers[0] <= 0.0:
+            return f"got a lower end of {float(numbers[0])!r}, must be above 0, as its logarithm is taken"
+        return f"got {wrong[0]!r}, must be {self.quantity.allowed} ({self.quantity.hint})" if wrong else ""
+
+    def _normal_fault(self, deviation: float) -> str:
+        if self.quantity.low >= 0.0:
+            return (
+                f"a normal distribution falls below what is allowed, {self.quantity.allowed}; use uniform or "
+                "log_uniform, or for a power the key that ends in _dbm"
+            )
+        return "the standard deviation is below 0; it must be 0 or more" if deviation < 0.0 else ""
 
 
 class Environments(Section):
