@@ -96,6 +96,12 @@ class Hand:
         """Press a button of the panel."""
         self.page.get_by_role("button", name=name, exact=True).click()
 
+    def take_tool(self, name: str) -> None:
+        """Take up a tool, and wait until the page says what a click does now."""
+        self.tab("Edit")
+        self.press(name)
+        self.page.locator("[data-np=tool]", has_text="lick").wait_for()
+
     def choose(self, place: int, option: str) -> None:
         """Choose from one of the lists of the tab in front."""
         self.page.locator("input.mantine-Select-input:visible").nth(place).click()

@@ -17,15 +17,9 @@ from nullpose.studio.state import Key, State
 JAMMER: Key = ("jammers", 0)
 
 
-def _take_tool(hand: Hand, name: str) -> None:
-    hand.tab("Edit")
-    hand.press(name)
-    hand.page.locator("[data-np=tool]", has_text="lick").wait_for()
-
-
 def _add(hand: Hand, name: str, east_m: float, north_m: float) -> None:
     """Add a point or a zone with a click on the ground."""
-    _take_tool(hand, name)
+    hand.take_tool(name)
     version = hand.session.state.version
     hand.click(east_m, north_m, 0.0)
     hand.until(lambda: hand.session.state.version > version)
@@ -101,7 +95,7 @@ def test_a_scene_built_with_the_mouse_alone_is_solved_alike(hand: Hand, tmp_path
     size_m = hand.ours.stage.size_m
     _add(hand, "node", 0.3 * size_m, 0.0)
     _add(hand, "jammer", 0.2 * size_m, 0.15 * size_m)
-    _take_tool(hand, "fence")
+    hand.take_tool("fence")
     corners = size_m * np.array([[-0.2, -0.15], [0.38, -0.15], [0.38, 0.4], [-0.2, 0.4], [-0.2, -0.15]])
     for east_m, north_m in corners:
         hand.click(east_m, north_m, 0.0)

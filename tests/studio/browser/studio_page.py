@@ -256,8 +256,7 @@ def test_what_is_pointed_at_is_read(hand: Hand) -> None:
     (nearest,) = [field.values[np.abs(field.north_m - north).argmin(), np.abs(field.east_m - east).argmin()]]
     assert value == pytest.approx(nearest, abs=1.0)
     assert hand.session.state.pointed is None
-    hand.tab("Edit")
-    hand.press("ruler")
+    hand.take_tool("ruler")
     for place in ((10.0, 40.0, 0.0), (10.0, 30.0, 0.0)):
         hand.click(*place)
     hand.until(lambda: "/sketch/side-0" in hand.ours._client.scene._handle_from_node_name)
