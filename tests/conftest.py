@@ -24,8 +24,7 @@ from nullpose.channel.free_space import constant_channel
 from nullpose.channel.power_law import power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.solver import SolveOptions, array_search
-from nullpose.solver.compiling import precompile
-from nullpose.solver.kernels.bounds.pattern_branch import branch_pattern
+from nullpose.solver.kernels.bounds.worst_case_bound import worst_case
 
 if TYPE_CHECKING:
     from nullpose.paper import Reproduction
@@ -42,31 +41,35 @@ LONG_FILE_LINES = 350
 
 Place = tuple[float, float, float]
 
-COMPILE = """
+BEGIN = """
 import gc
-import sys
-from nullpose import load
-from nullpose.solver import best_axis, compare, solve
+from nullpose import load, solve
+from nullpose.solver import best_axis
+from nullpose.solver.compiling import compile_proof, compile_search
 gc.disable()  # a fifth of the time that compiling takes
-for scene in sys.argv[1:]:
-    name, *overrides = scene.split()
-    gap = 1e-2 if "array" in scene else 1.0  # wider ones need no box
-    solve(load(f"examples/{name}.toml", overrides=overrides), gap=gap, robust=name == "robust")
-    if "array" in scene:
-        compare(load("examples/paper.toml"), gap=gap)
-        best_axis(load("examples/paper.toml"), [1.0, 20.0, 9.0])
+paper = "examples/paper.toml"
 """
+COMPILE = (
+    """
+compile_proof()  # takes as long as all else, so that the searches are there when it ends
+solve(load("examples/robust.toml"), gap=1.0, robust=True)
+array = ["array.elements=2", "array.layout=linear", "array.spacing_wavelengths=0.5"]
+solve(load(paper, overrides=array), gap=1e-2)  # wider ones need no box
+""",
+    """
+compile_search()
+solve(load(paper, overrides=["antenna.kind=half-wave"]), gap=1.0)
+best_axis(load(paper), [1.0, 20.0, 9.0])
+""",
+)
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Compile the kernels, unless they are kept, before there are processes that would all do so."""
     option = session.config.option
     has_workers = getattr(option, "numprocesses", None) and not option.collectonly
-    if has_workers and not list(Path(branch_pattern.stats.cache_path).glob("pattern_branch.*.nbc")):
-        precompile()
-        array = "paper array.elements=2 array.layout=linear array.spacing_wavelengths=0.5"
-        scenes = [array], ["paper antenna.kind=half-wave", "robust"]
-        at_work = [subprocess.Popen([sys.executable, "-c", COMPILE, *each]) for each in scenes]
+    if has_workers and not list(Path(worst_case.stats.cache_path).glob("worst_case_bound.*.nbc")):
+        at_work = [subprocess.Popen([sys.executable, "-c", BEGIN + program]) for program in COMPILE]
         assert [each.wait() for each in at_work] == [0, 0]
 
 

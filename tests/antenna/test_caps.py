@@ -2,25 +2,15 @@
 
 import numpy as np
 import pytest
+from tests.reference.plain_kernels import plain
 
 from nullpose.antenna.caps import pattern_arrays
 from nullpose.antenna.harmonics import Harmonics
-from nullpose.solver.kernels.compiler.jit import kernel
-from nullpose.solver.kernels.linear_algebra.harmonics import cap_bounds, gain_at, gain_jet
+from nullpose.solver.kernels.linear_algebra import harmonics as kernels
 
 STEP = 2e-3  # of differences, radians
 
-
-@kernel
-def fill_jet(pattern, direction, slope, bend):
-    """Fill gradient and Hessian of the gain over squared distance."""
-    return gain_jet(pattern, (direction[0], direction[1], direction[2]), slope, bend)
-
-
-@kernel
-def fill_cap(pattern, direction, radius, out):
-    """Fill the five bounds over a cap."""
-    cap_bounds(pattern, (direction[0], direction[1], direction[2]), radius, out)
+cap_bounds, gain_at, gain_jet = map(plain, (kernels.cap_bounds, kernels.gain_at, kernels.gain_jet))
 
 
 def pattern(degree: int, seed: int) -> Harmonics:
@@ -46,7 +36,7 @@ def test_samples_are_within(degree: int, caps: int) -> None:
     arrays, bounds = pattern_arrays(harmonics), np.empty(5)
     for _ in range(caps):
         middle, radius = unit(rng.normal(size=3)), 10.0 ** rng.uniform(-3.0, 0.6)
-        fill_cap(arrays, middle, min(radius, np.pi), bounds)
+        cap_bounds(arrays, tuple(middle), min(radius, np.pi), bounds)
         across = unit(np.cross(middle, rng.normal(size=(200, 3))))
         angle = np.minimum(radius, np.pi) * np.sqrt(rng.uniform(size=(200, 1)))
         there = middle * np.cos(angle) + across * np.sin(angle)
@@ -73,7 +63,7 @@ def test_kernels_evaluate_the_pattern() -> None:
 
     slope, bend, e = np.empty(3), np.empty((3, 3)), 1e-4 * np.eye(3)
     d = ways[0]
-    fill_jet(arrays, d, slope, bend)
+    gain_jet(arrays, tuple(d), slope, bend)
     by_steps = [(over_square(d + i) - over_square(d - i)) / 2e-4 for i in e]
     twice = [
         [

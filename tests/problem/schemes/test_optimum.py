@@ -68,13 +68,6 @@ def test_the_optimum_falls_to_zero_interference(paper: Callable) -> None:
     np.testing.assert_allclose(excess[1:], excess[-1], rtol=1e-2)
 
 
-@pytest.mark.parametrize("altitude_m", [(8.0, 30.0), (0.0, 30.0), (8.0, 8.0)])
-def test_one_node_alone_is_closed_form(altitude_m: tuple[float, float], scene: Callable) -> None:
-    """One node and no jammer: broadside, from as near as floor and keep-out allow, P / (sigma^2 d^2)."""
-    value = solve(scene([(0, 0, 0)], altitude_m=altitude_m)).objective.value
-    assert value == pytest.approx(1e3 / max(altitude_m[0], 1.0) ** 2, rel=1e-9)
-
-
 @pytest.mark.parametrize("ratio", [1e-3, 0.1, 1.0, 10.0, 1e3, 1e6])
 @pytest.mark.parametrize("scheme", Scheme)
 def test_the_paper_is_certified(scheme: Scheme, ratio: float, paper: Callable) -> None:

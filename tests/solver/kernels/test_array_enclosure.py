@@ -6,12 +6,14 @@ from itertools import product
 
 import numpy as np
 import pytest
+from tests.reference.plain_kernels import plain
 
 from nullpose.scenario import Array, Scenario
 from nullpose.solver.array_search import ArraySearch
-from nullpose.solver.kernels.bounds.array_enclosure import box_bound
+from nullpose.solver.kernels.bounds import array_enclosure
 from nullpose.solver.kernels.search.array_response import respond
 
+box_bound = plain(array_enclosure.box_bound)
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=4)))
 
 

@@ -11,11 +11,20 @@ from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.bounds.ascent import POOL, Pool, ascend
 from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, FACE, HALF, LEVEL, keep_largest
-from nullpose.solver.kernels.linear_algebra.dual import dual_multipliers
-from nullpose.solver.kernels.linear_algebra.forms import congruence, fill_forms, inverse_factor
-from nullpose.solver.kernels.linear_algebra.symmetric import top_eigenvector
+from nullpose.solver.kernels.linear_algebra import dual, forms as kernels_of_forms, symmetric
 
 TOLERANCE = 1e-6
+
+congruence, dual_multipliers, fill_forms, inverse_factor, top_eigenvector = map(
+    plain,
+    (
+        kernels_of_forms.congruence,
+        dual.dual_multipliers,
+        kernels_of_forms.fill_forms,
+        kernels_of_forms.inverse_factor,
+        symmetric.top_eigenvector,
+    ),
+)
 
 
 def ascended(family, row, mean, back, weights, v):

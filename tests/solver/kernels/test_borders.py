@@ -3,36 +3,28 @@
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from tests.reference.plain_kernels import plain
 
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
-from nullpose.solver.kernels.bounds.borders import borders, choose_border, slope_and_rest
+from nullpose.solver.kernels.bounds import borders
 from nullpose.solver.kernels.bounds.node import BALL, CENTRE, COLUMNS, HALF, LEVEL
-from nullpose.solver.kernels.compiler.jit import kernel
-from nullpose.solver.kernels.search.domain import forbidding
+from nullpose.solver.kernels.search import domain as kernels_of_domain
 from nullpose.solver.kernels.search.zones import MOST_ALTERNATIVES
 
 SEEDS = st.integers(0, 2**32 - 1)
 
+choose_border, borders_of, slope_of, forbidding = map(
+    plain,
+    (borders.choose_border, borders.borders, borders.slope_and_rest, kernels_of_domain.forbidding),
+)
 
-@kernel
-def chosen_border(domain, row):
+
+def chosen_border(domain: Domain, row: np.ndarray) -> int:
     """Returns the zone that forbids all of a box, having filled the border that is to be used in it."""
     choose_border(domain, row)
     return forbidding(domain, row[CENTRE:HALF], row[HALF:LEVEL])
-
-
-@kernel
-def borders_of(domain, row, sides, counts):
-    """Returns how many alternatives a node's border has, having filled them."""
-    return borders(domain, row, sides, counts)
-
-
-@kernel
-def slope_of(side, row, slope):
-    """Returns a constraint's value at a box's centre and its curvature, having filled its slope."""
-    return slope_and_rest(side, row, slope)
 
 
 def row_of(centre: np.ndarray, half: np.ndarray) -> np.ndarray:

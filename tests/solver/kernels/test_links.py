@@ -14,9 +14,9 @@ from nullpose.certificate.pose_value import exact, link
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
 from nullpose.solver.kernels.linear_algebra import links
-from nullpose.solver.kernels.linear_algebra.links import log_objective, log_ratios
+from nullpose.solver.kernels.linear_algebra.links import log_objective
 
-derivatives = plain(links.derivatives)
+derivatives, log_ratios = plain(links.derivatives), plain(links.log_ratios)
 SEEDS = st.integers(0, 2**32 - 1)
 
 

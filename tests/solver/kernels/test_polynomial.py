@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from numpy.polynomial import Polynomial
+from tests.reference.plain_kernels import plain
 
-from nullpose.solver.kernels.linear_algebra.polynomial import real_roots
+from nullpose.solver.kernels.linear_algebra import polynomial
 
 SEEDS = st.integers(0, 2**32 - 1)
 EDGE = 1.0 + 1e-9
+
+real_roots = plain(polynomial.real_roots)
 
 
 def roots_of(coefficients: np.ndarray, degree: int | None = None) -> np.ndarray:

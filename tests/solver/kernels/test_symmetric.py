@@ -5,15 +5,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from tests.reference.plain_kernels import plain
 
-from nullpose.solver.kernels.linear_algebra.symmetric import (
-    cholesky_factor,
-    cholesky_solve,
-    eigen3,
-    gauss_solve,
-)
+from nullpose.solver.kernels.linear_algebra import symmetric
 
 SEEDS = st.integers(0, 2**32 - 1)
+
+cholesky_factor, cholesky_solve, eigen3, gauss_solve = map(
+    plain, (symmetric.cholesky_factor, symmetric.cholesky_solve, symmetric.eigen3, symmetric.gauss_solve)
+)
 
 
 def eigen(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

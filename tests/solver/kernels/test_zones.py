@@ -5,13 +5,12 @@ from collections import Counter
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from tests.reference.plain_kernels import plain
 
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.records import Domain
 from nullpose.scenario import Airspace
 from nullpose.scenario.polygon import depth_m
-from nullpose.solver.kernels.bounds.node import CENTRE, COLUMNS, HALF, LEVEL
-from nullpose.solver.kernels.compiler.jit import kernel
 from nullpose.solver.kernels.search.zones import (
     FORBIDDEN,
     MOST_ALTERNATIVES,
@@ -23,11 +22,7 @@ from nullpose.solver.kernels.search.zones import (
 SEEDS = st.integers(0, 2**32 - 1)
 HAIR_M = 1e-8
 
-
-@kernel
-def alternatives_of(domain, z, row, sides, counts):
-    """Returns what the kernel makes of a zone in a box: it has no Python name of its own."""
-    return zone_alternatives(domain, z, row[CENTRE:HALF], row[HALF:LEVEL], sides, counts)
+alternatives_of = plain(zone_alternatives)
 
 
 def domain_of(airspace: Airspace) -> Domain:
@@ -40,13 +35,6 @@ def domain_of(airspace: Airspace) -> Domain:
     for array in box:
         array.flags.writeable = False
     return Domain(*box, 1.0, *arrays)
-
-
-def row_of(centre: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """Returns a node with a box."""
-    row = np.zeros(COLUMNS)
-    row[CENTRE:HALF], row[HALF:LEVEL] = centre, half
-    return row
 
 
 def clear_by(airspace: Airspace, positions: np.ndarray) -> np.ndarray:
@@ -66,7 +54,7 @@ def met_by(side: np.ndarray, positions: np.ndarray) -> np.ndarray:
 def check_box(airspace: Airspace, centre: np.ndarray, half: np.ndarray, rng: np.random.Generator) -> int:
     """Checks what is said of a box against positions in it; returns the word or the number."""
     sides, counts = np.full((MOST_ALTERNATIVES, 2, 5), np.nan), np.zeros(MOST_ALTERNATIVES, np.int64)
-    said = alternatives_of(domain_of(airspace), 0, row_of(centre, half), sides, counts)
+    said = alternatives_of(domain_of(airspace), 0, centre, half, sides, counts)
     positions = centre + half * rng.uniform(-1.0, 1.0, (300, 3))
     snapped = rng.uniform(size=positions.shape) < 0.2
     positions = np.where(snapped, centre + half * np.sign(positions - centre), positions)
@@ -177,8 +165,8 @@ def test_a_face_on_a_zones_top_or_bottom_is_allowed(end: float) -> None:
     face = 30.1 if end > 0.0 else 12.0
     sides, counts = np.zeros((MOST_ALTERNATIVES, 2, 5)), np.zeros(MOST_ALTERNATIVES, np.int64)
     for half in (0.1, 0.3, 1.0, 0.7):
-        row = row_of(np.array([1.0, 2.0, face - end * half]), np.full(3, half))
-        assert alternatives_of(domain, 0, row, sides, counts) == 1
+        centre, halves = np.array([1.0, 2.0, face - end * half]), np.full(3, half)
+        assert alternatives_of(domain, 0, centre, halves, sides, counts) == 1
         np.testing.assert_array_equal(sides[0, 0], [0.0, 0.0, 0.0, end, end * face])
-        row[CENTRE + 2] -= end * 1e-3
-        assert alternatives_of(domain, 0, row, sides, counts) == FORBIDDEN
+        centre[2] -= end * 1e-3
+        assert alternatives_of(domain, 0, centre, halves, sides, counts) == FORBIDDEN
