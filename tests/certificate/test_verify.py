@@ -180,8 +180,9 @@ def test_huge_numbers_end_in_words(paper: Callable, walled: Certificate) -> None
         if certificate is walled:  # of the other, pieces pass that need no ball
             held = with_leaves(certificate, ball=leaves.ball * 0, ball_multiplier=whole)
             assert "is not excluded" in rejected(held)
-        wide = np.array([[-size] * 3, [size] * 3])
-        assert "is not excluded" in rejected(with_tree(certificate, root_m=wide))
+        wide = np.array([[-1.0] * 3, [1.0] * 3])
+        assert "is too large" in rejected(with_tree(certificate, root_m=wide * size))
+        assert "is not excluded" in rejected(with_tree(certificate, root_m=wide * 9e149))
         mixes = tuple(dict.fromkeys(mix, size) for mix in leaves.mixes)
         assert verify(with_leaves(certificate, mixes=mixes)).message
         kept_out = with_leaves(

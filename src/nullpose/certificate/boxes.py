@@ -67,9 +67,8 @@ def boxes_of(root_m: FloatArray, leaves: Leaves) -> Boxes:
     """
     depth, index = leaves.depths[:, :3], leaves.indices[:, :3]
     side = Interval(root_m[1]) - root_m[0]
-    # powers of two are exact; an index of more than 53 bits is not, and is enclosed
-    ends = [Interval(np.nextafter(i, -np.inf), np.nextafter(i, np.inf)) for i in (index, index + 1)]
-    low, high = (side * (end * np.ldexp(1.0, -depth)) + root_m[0] for end in ends)
+    # the share of the side is exact: an index has at most 50 bits
+    low, high = (side * np.ldexp(i.astype(float), -depth) + root_m[0] for i in (index, index + 1))
     centre = 0.5 * low.low + 0.5 * high.high
     half = np.maximum((Interval(high.high) - centre).high, (Interval(centre) - low.low).high)
     return Boxes(leaf=np.arange(len(leaves)), centre=centre, half=np.maximum(half, 0.0))
@@ -94,9 +93,10 @@ def halved(boxes: Boxes, side: IntArray) -> Boxes:
     # the step upwards counts where the slack is too small to be a number
     half = np.where(across, np.nextafter(0.5 * boxes.half + slack, np.inf), boxes.half)
     step = np.where(across, 0.5 * boxes.half, 0.0)
-    both = [Boxes(leaf=boxes.leaf, centre=boxes.centre + sign * step, half=half) for sign in (-1.0, 1.0)]
     return Boxes(
-        **{name: np.concatenate([getattr(b, name) for b in both]) for name in ("leaf", "centre", "half")}
+        leaf=np.tile(boxes.leaf, 2),
+        centre=np.concatenate([boxes.centre - step, boxes.centre + step]),
+        half=np.tile(half, (2, 1)),
     )
 
 

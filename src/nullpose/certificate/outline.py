@@ -18,6 +18,8 @@ Point: TypeAlias = Exact
 def may_meet(edges: FloatArray, low: FloatArray, high: FloatArray) -> np.ndarray:
     """Check which edges may meet which rectangles, (b, e): false only where they certainly do not.
 
+    All do that are not of finite numbers.
+
     Two convex sets are apart if their ranges are, along x, along y or across the edge.
 
     Args:
@@ -31,7 +33,7 @@ def may_meet(edges: FloatArray, low: FloatArray, high: FloatArray) -> np.ndarray
     apart = (across.low > 0.0) | (across.high < 0.0)
     for over, first, second in ((over_x, x1, x2), (over_y, y1, y2)):
         apart |= (np.maximum(first, second) < over.low) | (np.minimum(first, second) > over.high)
-    return np.asarray(~apart)
+    return np.asarray(~apart | ~np.isfinite(low + high).all(axis=1)[:, None])
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +82,9 @@ class Outline:
             low: (2,) its lower corner.
             high: (2,) its upper corner.
         """
-        region = corners(exact(low), exact(high))
         if len(met) > 2:
             return [()]
+        region = corners(exact(low), exact(high))
         if len(met) == 2 and self._keep_apart(met[0], met[1], region):
             return [tuple(met)] if all(self._forbids_beyond([edge], region) for edge in met) else [()]
         return [(edge,) for edge in met] if self._forbids_beyond(met, region) else [()]

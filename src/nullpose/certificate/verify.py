@@ -40,6 +40,7 @@ _CHUNK = 4096
 _CUT_AT_ONCE = 128
 _CUTS = 2  # boxes whose test fails by a hair are cut into eight, so many times
 _MORE_CUTS = 6  # or as often as that, while few of the pieces fail
+_FARTHEST_M = 1e150  # with roots beyond it squares of distances overflow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -211,7 +212,13 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
     for number, mix in enumerate(leaves.mixes):
         if not mix or any(not (0 <= k < numbers and w >= 0.0) for k, w in mix.items()):
             return f"multipliers {number}: a ratio that does not exist, or a negative weight"
-    return "" if np.all(tree.root_m[0] <= tree.root_m[1]) else "the root box is empty"
+    of_root = {
+        f"the root box is too large: its numbers must be below {_FARTHEST_M:g} m": ~(
+            np.abs(tree.root_m) < _FARTHEST_M
+        ),
+        "the root box is empty": ~(tree.root_m[0] <= tree.root_m[1]),
+    }
+    return next((words for words, mask in of_root.items() if np.any(mask)), "")
 
 
 def _outside(index: IntArray, count: int | IntArray) -> np.ndarray:

@@ -36,7 +36,8 @@ def zone_alternatives(domain: Domain, zone: IntArray, boxes: Boxes) -> list[Alte
     """
     hull, rows = boxes.hull, np.arange(len(boxes))
     floor, ceiling = domain.zone_range_m[zone].T
-    ends = (hull.high[2] >= ceiling, ceiling, 1.0), (hull.low[2] <= floor, floor, -1.0)
+    # an undefined height may be anywhere: it leaves out no alternative
+    ends = (~(hull.high[2] < ceiling), ceiling, 1.0), (~(hull.low[2] > floor), floor, -1.0)
     found: list[Alternative] = [
         (rows[mask], ((boxes.chosen(mask).position[2] - height[mask]) * upwards,))
         for mask, height, upwards in ends
