@@ -33,7 +33,7 @@ def may_meet(edges: FloatArray, low: FloatArray, high: FloatArray) -> np.ndarray
     apart = (across.low > 0.0) | (across.high < 0.0)
     for over, first, second in ((over_x, x1, x2), (over_y, y1, y2)):
         apart |= (np.maximum(first, second) < over.low) | (np.minimum(first, second) > over.high)
-    return np.asarray(~apart | ~np.isfinite(low + high).all(axis=1)[:, None])
+    return np.asarray(~apart | ~np.all(np.isfinite(low + high), axis=1, keepdims=True))
 
 
 @dataclass(frozen=True, slots=True)
