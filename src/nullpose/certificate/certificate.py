@@ -11,8 +11,7 @@ from nullpose.certificate.profile import ProfileField
 from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
-from nullpose.problem.schemes import RECORDS
-from nullpose.problem.schemes.optimum import OPTIMUM
+from nullpose.problem.schemes import OPTIMUM, RECORDS
 from nullpose.scenario import Scenario
 
 WORLD = 0  # any axis, in the world frame

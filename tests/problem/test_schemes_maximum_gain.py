@@ -10,7 +10,7 @@ from paper_schemes import zero_interference_axis
 from nullpose.errors import UsageError
 from nullpose.physics import antenna_gain, sinr
 from nullpose.problem.build import build_family
-from nullpose.problem.schemes.zero_interference import ZERO_INTERFERENCE
+from nullpose.problem.schemes import ZERO_INTERFERENCE
 from nullpose.scenario import Scenario
 from nullpose.solver import Scheme, Status, solve
 from nullpose.solver.by_scheme import solve_scheme
