@@ -1,4 +1,4 @@
-"""The objectives that a scenario can maximise, one file each.
+"""The objectives that a scenario can maximise.
 
 Everything that depends on the objective reads its record. A new objective is a record in a file, and its name
 in the line ``RECORDS`` below.
@@ -9,13 +9,12 @@ from __future__ import annotations
 from nullpose.objectives.custom import Custom
 from nullpose.objectives.downlink import DOWNLINK
 from nullpose.objectives.friendly_jamming import FRIENDLY_JAMMING
+from nullpose.objectives.means import PROPORTIONAL_FAIR, SUM_RATE
 from nullpose.objectives.min_sinr import MIN_SINR
-from nullpose.objectives.proportional_fair import PROPORTIONAL_FAIR
 from nullpose.objectives.ratios import FloatArray, IntArray, Ratios
 from nullpose.objectives.record import LEAST_RATE_BPS_HZ, ObjectiveRecord, Quantity
 from nullpose.objectives.relay import RELAY
 from nullpose.objectives.secrecy_rate import SECRECY_RATE
-from nullpose.objectives.sum_rate import SUM_RATE
 
 __all__ = [
     "LEAST_RATE_BPS_HZ",
