@@ -20,8 +20,7 @@ from tests.reference.whip import whip_rows
 
 from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel, with_profile
-from nullpose.channel.free_space import constant_channel
-from nullpose.channel.power_law import power_law
+from nullpose.channel.power_law import constant_channel, power_law
 from nullpose.scenario import Airspace, Jammer, Node, Receiver, Scenario
 from nullpose.solver import SolveOptions, array_search
 from nullpose.solver.kernels.bounds.worst_case_bound import worst_case

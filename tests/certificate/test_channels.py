@@ -12,9 +12,8 @@ from nullpose.certificate.forms import COLUMN, ROW
 from nullpose.certificate.pose_value import exact
 from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel
-from nullpose.channel.free_space import constant_channel
 from nullpose.channel.model import BY_ELEVATION
-from nullpose.channel.power_law import power_law
+from nullpose.channel.power_law import constant_channel, power_law
 from nullpose.problem.family import Family
 
 BOXES, SAMPLES = 300, 200  # 60,000 samples for each channel and side

@@ -14,8 +14,8 @@ from nullpose.certificate.channels import excess_at
 from nullpose.certificate.pose_value import exact
 from nullpose.channel import PointChannels, excess_gain
 from nullpose.channel.elevation import ENVIRONMENTS, elevation_channel, with_profile
-from nullpose.channel.free_space import constant_channel
 from nullpose.channel.model import KNOTS
+from nullpose.channel.power_law import constant_channel
 from nullpose.channel.profile import knots_of, log_gain, mean_gain
 from nullpose.solver.kernels.bounds import link_field
 from nullpose.solver.kernels.compiler.interpreted import python_of

@@ -1,4 +1,4 @@
-"""The channels, one file each: what power a link carries beside that of free space.
+"""The channels: what power a link carries beside that of free space.
 
 A link of length d carries the reference gain times ``strength * excess / d^2``; in free space both are 1.
 Physics, solver and certificate ask the channel for these two.
@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from nullpose.channel.custom import Custom
 from nullpose.channel.elevation import ELEVATION, ENVIRONMENTS
-from nullpose.channel.free_space import FREE_SPACE
 from nullpose.channel.model import ChannelModel, LinkChannel, PointChannels, excess_gain
-from nullpose.channel.power_law import POWER_LAW
+from nullpose.channel.power_law import FREE_SPACE, POWER_LAW
 
 __all__ = [
     "CHANNELS",

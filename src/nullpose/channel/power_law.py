@@ -1,12 +1,19 @@
-"""A power law: the gain falls with a power of the distance (log-distance path loss)."""
+"""A power law: the gain falls with a power of the distance (log-distance path loss), as in free space."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from nullpose.channel.convex import FloatArray
-from nullpose.channel.free_space import constant_channel
-from nullpose.channel.model import BY_DISTANCE, EXPONENT, REFERENCE_M, ChannelModel, LinkChannel, channel_row
+from nullpose.channel.model import (
+    BY_DISTANCE,
+    CONSTANT,
+    EXPONENT,
+    REFERENCE_M,
+    ChannelModel,
+    LinkChannel,
+    channel_row,
+)
 
 
 def distance_excess(
@@ -21,6 +28,15 @@ def distance_excess(
         azimuth_rad: likewise.
     """
     return np.asarray((distance_m / row[REFERENCE_M]) ** row[EXPONENT])
+
+
+def constant_channel(strength: float) -> LinkChannel:
+    """Return free space with another strength.
+
+    Args:
+        strength: the power over that of free space, a ratio.
+    """
+    return LinkChannel(strength, channel_row(CONSTANT), distance_excess)
 
 
 def power_law(exponent: float, reference_distance_m: float, is_interferer: bool = False) -> LinkChannel:
@@ -42,6 +58,9 @@ def power_law(exponent: float, reference_distance_m: float, is_interferer: bool 
     return LinkChannel(reference_distance_m**2, row, distance_excess)
 
 
+FREE_SPACE = ChannelModel(
+    "free space with line of sight, as in the paper", lambda is_interferer: constant_channel(1.0)
+)
 POWER_LAW = ChannelModel(
     "a gain that falls with a power of the distance",
     power_law,
