@@ -12,7 +12,7 @@ from benchmarks.soundness.search import best_value, ground_of
 from nullpose.channel import PointChannels, excess_gain
 from nullpose.objectives import Quantity
 from nullpose.physics import Pose, Reception, objective_value
-from nullpose.problem.instants import still_scenes
+from nullpose.problem.family import still_scenes
 from nullpose.scenario import Scenario
 from nullpose.scenario.polygon import depth_m
 

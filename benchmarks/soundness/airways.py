@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from nullpose.problem.instants import still_scenes
+from nullpose.problem.family import still_scenes
 from nullpose.scenario import Airspace, Scenario
 
 FloatArray = NDArray[np.float64]

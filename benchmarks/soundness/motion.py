@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.soundness.features import FEATURES
 from nullpose.errors import ScenarioError
 from nullpose.problem.build import build_family
-from nullpose.problem.instants import still_scenes
+from nullpose.problem.family import still_scenes
 from nullpose.scenario import Scenario
 
 Table = dict[str, Any]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from nullpose.physics import allowed_value
-from nullpose.problem.instants import still_scenes
+from nullpose.problem.family import still_scenes
 from nullpose.scenario import Scenario
 
 FloatArray = NDArray[np.float64]

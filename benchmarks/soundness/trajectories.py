@@ -23,7 +23,7 @@ from benchmarks.soundness.motion import make_motion_scene, make_zoned_scene, wit
 from nullpose.errors import ScenarioError, SolveError
 from nullpose.objectives import Quantity
 from nullpose.physics import allowed_value
-from nullpose.problem.instants import still_scenes
+from nullpose.problem.family import still_scenes
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
 from nullpose.solver.trajectory import Aim, Trajectory, solve_trajectory

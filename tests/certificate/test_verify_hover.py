@@ -16,7 +16,7 @@ from nullpose.certificate.pose_value import exact, ratios_at
 from nullpose.errors import CertificateError
 from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.problem.build import build_family
-from nullpose.problem.instants import join_instants, still_scenes
+from nullpose.problem.family import join_instants, still_scenes
 from nullpose.scenario import Scenario
 from nullpose.solver import solve
 from nullpose.solver.certificate_from_proof import certificate_of

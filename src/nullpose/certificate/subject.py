@@ -12,7 +12,7 @@ from nullpose.certificate.file import scenario_digest
 from nullpose.files import PlainTable
 from nullpose.objectives import Quantity
 from nullpose.problem.build import build_family
-from nullpose.problem.instants import still_scenes
+from nullpose.problem.family import still_scenes
 from nullpose.problem.schemes import RECORDS
 from nullpose.scenario import Scenario
 

@@ -33,8 +33,7 @@ from nullpose.errors import checked
 from nullpose.objectives.ratios import IntArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
-from nullpose.problem.family import Family
-from nullpose.problem.instants import join_instants, still_scenes
+from nullpose.problem.family import Family, join_instants, still_scenes
 
 _CHUNK = 4096
 _CUT_AT_ONCE = 128

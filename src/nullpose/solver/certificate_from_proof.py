@@ -18,8 +18,7 @@ from nullpose.objectives.ratios import IntArray
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
-from nullpose.problem.family import Family
-from nullpose.problem.instants import join_instants, still_scenes
+from nullpose.problem.family import Family, join_instants, still_scenes
 from nullpose.problem.schemes import Scheme
 from nullpose.scenario import Scenario
 from nullpose.solver.branch_and_bound import MOST_LEAVES

@@ -13,7 +13,7 @@ from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import Pose, evaluate, objective_of_links
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
-from nullpose.problem.instants import join_instants, still_scenes
+from nullpose.problem.family import join_instants, still_scenes
 from nullpose.scenario import Scenario
 from nullpose.scenario.motion import time_of
 from nullpose.solver.branch_and_bound import INTERRUPT

@@ -13,8 +13,7 @@ from nullpose.objectives import FloatArray, Quantity
 from nullpose.physics import Pose, allowed_value
 from nullpose.problem.axis_field import AxisField
 from nullpose.problem.build import build_family
-from nullpose.problem.family import Family
-from nullpose.problem.instants import still_scenes
+from nullpose.problem.family import Family, still_scenes
 from nullpose.scenario import Scenario
 from nullpose.scenario.motion import time_of
 
