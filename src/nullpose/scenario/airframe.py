@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import Field
 
 from nullpose.scenario.rules import ByName, Choice, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Position
-from nullpose.scenario.ways import Ways, exactly_one
+from nullpose.scenario.ways import exactly_one
 
 PRESET_TILTS_DEG = {
     "level": 0.0,
@@ -24,7 +24,7 @@ PRESET_TILTS_DEG = {
 _PRESETS = ", ".join(f"{name} ({tilt_deg:g})" for name, tilt_deg in PRESET_TILTS_DEG.items())
 
 
-class Airframe(Section):
+class Airframe(Section, ways=(exactly_one("preset", "tilt_max_deg"),), unstated=("mount_deg",)):
     """How far the vehicle can tilt, and how the dipole is mounted on it.
 
     A dipole mounted at an angle a from the body's vertical, on a vehicle that tilts by at most t in any
@@ -38,9 +38,6 @@ class Airframe(Section):
         speed_max_m_s: the largest speed [m/s], in a scene in motion.
         start_m, end_m: where it is at the first and at the last instant of such a scene [m], (3,).
     """
-
-    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("preset", "tilt_max_deg"),)
-    unstated: ClassVar[frozenset[str]] = frozenset({"mount_deg"})
 
     preset: Annotated[str, Choice("a preset", tuple(PRESET_TILTS_DEG))] | None = optional(
         f"An airframe by name, with its largest tilt in degrees: {_PRESETS}. Either this or tilt_max_deg.",

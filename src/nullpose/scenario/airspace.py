@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from functools import cached_property, reduce
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,7 +33,14 @@ BORDER_M = 1e-9
 """Positions no further than this beyond a border count as on it [m]."""
 
 
-class Airspace(Section):
+class Airspace(
+    Section,
+    ways=(
+        ALTITUDES,
+        Ways((("geofence_m",), ("geofence_lat_lon_deg",), ("geofence_from",)), fewest=0, most=3),
+    ),
+    unstated=("margin_m", "no_fly"),
+):
     """The positions allowed to the vehicle: a box, within a fence, less zones and a ball around every point.
 
     World frame: east, north, up (ENU), in metres. Without ``x_m`` or ``y_m`` that direction is
@@ -57,12 +64,6 @@ class Airspace(Section):
             they have been read.
         no_fly: zones that the vehicle stays out of.
     """
-
-    unstated: ClassVar[frozenset[str]] = frozenset({"margin_m", "no_fly"})
-    ways: ClassVar[tuple[Ways, ...]] = (
-        ALTITUDES,
-        Ways((("geofence_m",), ("geofence_lat_lon_deg",), ("geofence_from",)), fewest=0, most=3),
-    )
 
     altitude_m: Range = Field(
         description="Lowest and highest altitude of the vehicle above the origin, in metres: [low, high].",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -26,7 +26,7 @@ _Row = Annotated[
 ]
 
 
-class Antenna(Section):
+class Antenna(Section, unstated=("kind", "normalise", "gain_dbi")):
     """The drone's antenna.
 
     Args:
@@ -41,8 +41,6 @@ class Antenna(Section):
         gain_dbi: its gain across its axis, or where it is largest, over an isotropic antenna [dBi].
         harmonics: what was read of the file: the terms of its spherical harmonics, by degree.
     """
-
-    unstated: ClassVar[frozenset[str]] = frozenset({"kind", "normalise", "gain_dbi"})
 
     kind: Annotated[str, Choice("an antenna", ANTENNAS)] = Field(
         default="dipole",
@@ -149,7 +147,7 @@ def with_harmonics(table: PlainTable, path: Path) -> tuple[PlainTable, tuple[str
 _DIGITAL = "digital combining, which nullpose solves with a bound (analogue combining has none)"
 
 
-class Array(Section):
+class Array(Section, header="a table with elements, layout and spacing_wavelengths", unstated=("combining",)):
     """Upright dipoles on a horizontal vehicle, in a row or on a circle, with yaw free.
 
     Args:
@@ -158,9 +156,6 @@ class Array(Section):
         spacing_wavelengths: distance between neighbours in wavelengths.
         combining: digital.
     """
-
-    header: ClassVar[str] = "a table with elements, layout and spacing_wavelengths"
-    unstated: ClassVar[frozenset[str]] = frozenset({"combining"})
 
     elements: Annotated[int, Count("a number of elements", 1, 64, "count the dipoles")] = Field(
         description="Number of upright dipoles.", examples=[4]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,17 @@ _OF_ONE = ("name", "courtyards_m", "courtyards_lat_lon_deg", "base_m")
 _OF_FILES = ("storey_height_m", "missing_height_m", "height_unit", "roof_property", "ground_property")
 
 
-class Building(Section):
+class Building(
+    Section,
+    header="a building, in a table of its own headed [[buildings]]",
+    letter="B",
+    ways=(
+        Ways((("polygon_m", "height_m"), ("buildings_from",)), twins=(("polygon_lat_lon_deg", "polygon_m"),)),
+        Ways((("polygon_m",), ("polygon_lat_lon_deg",)), fewest=0, most=2),
+        Ways((("courtyards_m",), ("courtyards_lat_lon_deg",)), fewest=0, most=2),
+    ),
+    unstated=("base_m", "clearance_m"),
+):
     """An upright prism that shadows links and that the vehicle may not enter; or a file of such.
 
     A scenario with an origin fills in the metres of what is stated on the Earth.
@@ -65,15 +75,6 @@ class Building(Section):
         height_unit: what bare numbers of the file are in;
         roof_property, ground_property: the names under which it states both over one datum.
     """
-
-    header: ClassVar[str] = "a building, in a table of its own headed [[buildings]]"
-    letter: ClassVar[str] = "B"
-    unstated: ClassVar[frozenset[str]] = frozenset({"base_m", "clearance_m"})
-    ways: ClassVar[tuple[Ways, ...]] = (
-        Ways((("polygon_m", "height_m"), ("buildings_from",)), twins=(("polygon_lat_lon_deg", "polygon_m"),)),
-        Ways((("polygon_m",), ("polygon_lat_lon_deg",)), fewest=0, most=2),
-        Ways((("courtyards_m",), ("courtyards_lat_lon_deg",)), fewest=0, most=2),
-    )
 
     name: Label = Field(
         default="",

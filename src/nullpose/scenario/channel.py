@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import BeforeValidator, Field, SkipValidation
 
@@ -27,7 +27,7 @@ SHADOW_MARGIN_M = 0.5
 """How far around the drone the line of sight counts, where it is not stated [m]."""
 
 
-class Channel(Section):
+class Channel(Section, ways=(Ways((("environment",), _NUMBERS), fewest=0),)):
     """How the power of a link falls with distance and elevation.
 
     Args:
@@ -40,8 +40,6 @@ class Channel(Section):
         blocked_loss_db: loss of a link that a building blocks [dB].
         shadow_margin_m: distance from the drone within which the worst line of sight counts [m].
     """
-
-    ways: ClassVar[tuple[Ways, ...]] = (Ways((("environment",), _NUMBERS), fewest=0),)
 
     model: Annotated[str, Choice("a channel model", CHANNELS)] = Field(
         default="free-space",

@@ -14,7 +14,7 @@ from nullpose.channel.profile import MOST_ROWS, mean_gain
 from nullpose.files import PlainTable
 from nullpose.scenario.channel import NamedChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place
-from nullpose.scenario.radio import NOISE, POWER, Noisy, Powered, Uncertain
+from nullpose.scenario.radio import Noisy, Powered, Uncertain
 from nullpose.scenario.rules import Choice, Limits, ListOf
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.track import MOTION, Track, Velocity, track_faults, with_start
@@ -68,7 +68,7 @@ ALTITUDE = at_most_one(*ALTITUDE_KEYS)
 """The ways to state the altitude of a place on the Earth."""
 
 
-class GroundPoint(Section):
+class GroundPoint(Section, ways=(PLACE, ALTITUDE, MOTION), unstated=("antenna", "gain_dbi")):
     """Someone at a place, with an antenna.
 
     Args:
@@ -91,8 +91,6 @@ class GroundPoint(Section):
         channel: of its link with the drone; None for the scenario's.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION)
-    unstated: ClassVar[frozenset[str]] = frozenset({"antenna", "gain_dbi"})
     is_interferer: ClassVar[bool] = True
     """Whether its link is unwanted."""
 
@@ -272,10 +270,7 @@ class GroundPoint(Section):
         )
 
 
-_JAMMING = at_most_one("jamming_w", "jamming_dbm")
-
-
-class Terminal(Noisy):
+class Terminal(Noisy, ways=(at_most_one("jamming_w", "jamming_dbm"),)):
     """An end of a link that counts: what it asks for, and what its receiver gets beside the signal.
 
     Args:
@@ -343,7 +338,16 @@ else:  # the key is a word of Python's own
     )
 
 
-class Node(Terminal, Powered, _Listener, GroundPoint):
+class Node(
+    Terminal,
+    Powered,
+    _Listener,
+    GroundPoint,
+    header="a node, in a table of its own headed [[nodes]]",
+    letter="S",
+    # A node need not transmit where the drone does; a scenario judges whether it has to.
+    ways=(at_most_one("power_w", "power_dbm"),),
+):
     """A legitimate node, whose signal the vehicle is to receive or which is to receive the vehicle's.
 
     Args beside those of a ground point and of a terminal:
@@ -351,18 +355,6 @@ class Node(Terminal, Powered, _Listener, GroundPoint):
         power_dbm: the same in dBm; both may be left out where the drone transmits.
         from: name of the source that it listens to; None for the only one.
     """
-
-    header: ClassVar[str] = "a node, in a table of its own headed [[nodes]]"
-    letter: ClassVar[str] = "S"
-    # A node need not transmit where the drone does; a scenario judges whether it has to.
-    ways: ClassVar[tuple[Ways, ...]] = (
-        PLACE,
-        ALTITUDE,
-        MOTION,
-        at_most_one("power_w", "power_dbm"),
-        NOISE,
-        _JAMMING,
-    )
 
     @property
     def source_name(self) -> str | None:
@@ -377,8 +369,6 @@ class Destination(Terminal, GroundPoint):
     Its keys are those of a ground point and of a terminal.
     """
 
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, NOISE, _JAMMING)
-
     name: Label = Field(
         default="destination",
         description="Name, unique among all points on the ground. Left out: destination.",
@@ -386,16 +376,23 @@ class Destination(Terminal, GroundPoint):
     )
 
 
-class Jammer(Uncertain, Powered, GroundPoint):
+class Jammer(
+    Uncertain,
+    Powered,
+    GroundPoint,
+    header="a jammer, in a table of its own headed [[jammers]]",
+    letter="M",
+):
     """A jammer whose signal drowns the nodes: a ground point that transmits and may be uncertain."""
 
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, POWER)
 
-    header: ClassVar[str] = "a jammer, in a table of its own headed [[jammers]]"
-    letter: ClassVar[str] = "M"
-
-
-class Eavesdropper(Noisy, Uncertain, GroundPoint):
+class Eavesdropper(
+    Noisy,
+    Uncertain,
+    GroundPoint,
+    header="an eavesdropper, in a table of its own headed [[eavesdroppers]]",
+    letter="E",
+):
     """A receiver that is not to hear what the drone sends; it may be uncertain.
 
     Args beside those of a ground point:
@@ -405,12 +402,8 @@ class Eavesdropper(Noisy, Uncertain, GroundPoint):
         noise_figure_db: from which the noise follows; that of [receiver] when all are left out.
     """
 
-    header: ClassVar[str] = "an eavesdropper, in a table of its own headed [[eavesdroppers]]"
-    letter: ClassVar[str] = "E"
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, NOISE)
 
-
-class Source(Powered, GroundPoint):
+class Source(Powered, GroundPoint, header="a source, in a table of its own headed [[sources]]", letter="A"):
     """A transmitter on the ground that a node listens to, while the drone jams those who listen in.
 
     Args beside those of a ground point:
@@ -419,7 +412,4 @@ class Source(Powered, GroundPoint):
         channel: of its links with nodes and eavesdroppers, of which the distance alone counts.
     """
 
-    header: ClassVar[str] = "a source, in a table of its own headed [[sources]]"
-    letter: ClassVar[str] = "A"
     is_interferer: ClassVar[bool] = False
-    ways: ClassVar[tuple[Ways, ...]] = (PLACE, ALTITUDE, MOTION, POWER)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +36,20 @@ def unplaced(table: Section, raw: Mapping[str, object]) -> Iterator[tuple[Place,
             )
 
 
-class NoFlyZone(Section):
+class NoFlyZone(
+    Section,
+    header="a no-fly zone, in a table of its own headed [[airspace.no_fly]]",
+    letter="Z",
+    ways=(
+        Ways(
+            (("x_m", "y_m"), ("centre_m", "radius_m"), ("polygon_m",)),
+            twins=(("centre_lat_lon_deg", "centre_m"), ("polygon_lat_lon_deg", "polygon_m")),
+        ),
+        Ways((("centre_m",), ("centre_lat_lon_deg",)), fewest=0, most=2),
+        Ways((("polygon_m",), ("polygon_lat_lon_deg",)), fewest=0, most=2),
+        ALTITUDES,
+    ),
+):
     """An upright solid that the vehicle may not enter; its border is allowed.
 
     Exactly one shape is given: ``x_m`` and ``y_m``, or ``centre_m`` and ``radius_m``, or ``polygon_m``. A
@@ -55,18 +68,6 @@ class NoFlyZone(Section):
         altitude_m: lowest and highest altitude of the zone above the origin [m]; None for all altitudes.
         altitude_msl_m, altitude_ellipsoid_m: the same over the sea or over the ellipsoid.
     """
-
-    header: ClassVar[str] = "a no-fly zone, in a table of its own headed [[airspace.no_fly]]"
-    letter: ClassVar[str] = "Z"
-    ways: ClassVar[tuple[Ways, ...]] = (
-        Ways(
-            (("x_m", "y_m"), ("centre_m", "radius_m"), ("polygon_m",)),
-            twins=(("centre_lat_lon_deg", "centre_m"), ("polygon_lat_lon_deg", "polygon_m")),
-        ),
-        Ways((("centre_m",), ("centre_lat_lon_deg",)), fewest=0, most=2),
-        Ways((("polygon_m",), ("polygon_lat_lon_deg",)), fewest=0, most=2),
-        ALTITUDES,
-    )
 
     name: Label = Field(
         default="",

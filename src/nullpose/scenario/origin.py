@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import reduce
 from operator import getitem
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,7 +51,7 @@ _PLACEHOLDERS: PlainTable = {  # of what cannot be told; such a scenario is refu
 }
 
 
-class Origin(Section):
+class Origin(Section, ways=(Ways((("alt_m",), ("alt_msl_m",)), most=2),)):
     """The place on the Earth (WGS-84) where east, north and up are zero.
 
     Args:
@@ -60,8 +60,6 @@ class Origin(Section):
         alt_m: altitude over the ellipsoid [m], not over the sea or the ground; or else
         alt_msl_m: altitude over the sea [m]; both where altitudes of both kinds are stated or wanted.
     """
-
-    ways: ClassVar[tuple[Ways, ...]] = (Ways((("alt_m",), ("alt_msl_m",)), most=2),)
 
     lat_deg: Latitude = Field(
         description="Latitude of the origin in degrees (WGS-84), north positive.", examples=[50.0]

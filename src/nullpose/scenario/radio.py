@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import Field
 
@@ -23,14 +23,12 @@ from nullpose.scenario.units import (
 from nullpose.scenario.ways import Ways, exactly_one
 
 _NOISE = (("noise_w",), ("noise_dbm",), ("bandwidth_hz", "noise_figure_db"))
-NOISE = Ways(_NOISE, fewest=0)
-"""The ways to state the noise of a receiver that may have that of [receiver]."""
 _BOLTZMANN_J_PER_K = 1.380649e-23  # exact by definition of the kelvin
 _STANDARD_K = 290.0  # the temperature of noise figures (IEEE)
 
 
-class Noisy(Section):
-    """What receives.
+class Noisy(Section, ways=(Ways(_NOISE, fewest=0),)):
+    """What receives, with noise of its own or that of [receiver].
 
     Args:
         noise_w: noise power in the receiver's bandwidth [W]; or else
@@ -66,7 +64,11 @@ class Noisy(Section):
         return thermal_w * ratio_from_db(self.noise_figure_db or 0.0)
 
 
-class Receiver(Noisy):
+class Receiver(
+    Noisy,
+    ways=(Ways(_NOISE), exactly_one("reference_gain_db", "frequency_hz")),
+    unstated=("attitude_error_deg", "position_error_m"),
+):
     """The receiver's noise, the path gain at 1 m, and how well the vehicle holds a pose.
 
     Args beside those of the noise:
@@ -75,12 +77,6 @@ class Receiver(Noisy):
         attitude_error_deg: largest angle between the true antenna axis and the commanded one [deg].
         position_error_m: largest distance between the true position and the commanded one [m].
     """
-
-    ways: ClassVar[tuple[Ways, ...]] = (
-        Ways(_NOISE),
-        exactly_one("reference_gain_db", "frequency_hz"),
-    )
-    unstated: ClassVar[frozenset[str]] = frozenset({"attitude_error_deg", "position_error_m"})
 
     reference_gain_db: Decibels | None = optional(
         "Path gain at a distance of 1 m, in dB. Either this or frequency_hz.", 0.0
@@ -117,15 +113,13 @@ POWER = exactly_one("power_w", "power_dbm")
 """The keys of a transmit power."""
 
 
-class Powered(Section):
+class Powered(Section, ways=(POWER,)):
     """What transmits.
 
     Args:
         power_w: transmit power [W]; or else
         power_dbm: the same in dBm.
     """
-
-    ways: ClassVar[tuple[Ways, ...]] = (POWER,)
 
     power_w: Watts | None = optional("Transmit power in watts. Either this or power_dbm.", 1.0)
     power_dbm: DecibelMilliwatts | None = optional("Transmit power in dBm. Either this or power_w.", 20.0)

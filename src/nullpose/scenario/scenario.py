@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from numpy.typing import ArrayLike
 from pydantic import Field, PlainSerializer
@@ -43,16 +43,18 @@ class _Objective(Choice):
         return value if isinstance(value, Custom) else super().read(value)
 
 
-class Scenario(Section, PointArrays):
+class Scenario(
+    Section,
+    PointArrays,
+    header="a table with the keys of a scenario file",
+    ways=(Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),),
+    unstated=("objective", "eavesdroppers", "sources", "buildings"),
+):
     """Nodes, jammers, a receiver and an airspace, in one world frame: east, north, up (ENU), in metres.
 
     Raises:
         ScenarioError: with every fault of the values together.
     """
-
-    header: ClassVar[str] = "a table with the keys of a scenario file"
-    unstated: ClassVar[frozenset[str]] = frozenset({"objective", "eavesdroppers", "sources", "buildings"})
-    ways: ClassVar[tuple[Ways, ...]] = (Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),)
 
     name: Title = Field(
         default="",

@@ -39,7 +39,11 @@ _MOST_UNKNOWN = 20  # keys of a table that are judged one by one
 
 
 class Section(BaseModel):
-    """A frozen table with named keys; building a faulty one raises ScenarioError with every fault."""
+    """A frozen table with named keys; building a faulty one raises ScenarioError with every fault.
+
+    What a kind of table states of itself stands in the line of its class:
+    ``class Jammer(GroundPoint, letter="M")``.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -51,6 +55,29 @@ class Section(BaseModel):
     """Keys that belong together."""
     unstated: ClassVar[frozenset[str]] = frozenset()
     """Keys that ``to_dict`` leaves out while they have their default."""
+
+    def __init_subclass__(
+        cls,
+        *,
+        header: str | None = None,
+        letter: str | None = None,
+        ways: Iterable[Ways] = (),
+        unstated: Iterable[str] = (),
+    ) -> None:
+        """State a kind of table; it has the ways and the unstated keys of its bases too.
+
+        Args:
+            header: as the attribute, unless that stands in the class; likewise
+            letter: and
+            ways: of which one takes the place of a base's with the same keys, and
+            unstated: names of keys.
+        """
+        super().__init_subclass__()
+        own, bases = vars(cls), [base for base in reversed(cls.__bases__) if issubclass(base, Section)]
+        cls.header, cls.letter = header or cls.header, letter or cls.letter
+        listed = chain(*(base.ways for base in bases), own.get("ways", ways))
+        cls.ways = tuple({each.groups: each for each in listed}.values())
+        cls.unstated = cls.unstated.union(unstated, *(base.unstated for base in bases))
 
     def __init__(self, /, *nameless: object, **data: object) -> None:
         if nameless:
