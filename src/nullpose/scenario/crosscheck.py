@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from nullpose.files import PlainTable
 from nullpose.objectives import RECORDS, Custom
 from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.channel import CustomChannel
-from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults, path_of, unknown
+from nullpose.scenario.faults import ONLY_LOCAL, Place, faults_of, key_faults, path_of, unknown
 from nullpose.scenario.ground_points import SAME_PLACE_M, GroundPoint, Node, Terminal
 from nullpose.scenario.motion import flight_faults, motion_faults
 from nullpose.scenario.origin import POINT_LISTS, is_placed, origin_faults
@@ -88,11 +89,11 @@ def scenario_faults(scenario: Scenario, raw: PlainTable) -> Iterator[tuple[Place
                 yield from flight_faults(scenario, outside, positioned)
 
 
-def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> list[tuple[Place, str]]:
-    """List what does not go with an array, and dipoles that do not go with the drone's antenna."""
+def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
+    """Yield what does not go with an array, and dipoles that do not go with the drone's antenna."""
     has_array, antenna = scenario.array is not None, scenario.antenna_record
     is_tilted = scenario.airframe is not None and scenario.axis_band != (1.0, 1.0)
-    faults: list[tuple[bool, Place, str]] = [
+    yield from faults_of(
         (
             has_array and is_tilted,
             ("array",),
@@ -104,9 +105,9 @@ def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> 
             ("antenna",),
             "the elements of an array are short dipoles; remove this table or [array]",
         ),
-    ]
+    )
     for place, point in points.items():
-        faults += [
+        yield from faults_of(
             (
                 point.antenna == "profile" and isinstance(point.channel or scenario.channel, CustomChannel),
                 (*place, "antenna"),
@@ -124,8 +125,7 @@ def _antenna_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> 
                 "a dipole on the ground goes with a dipole on the drone, whose polarisation is known; that "
                 f'of antenna.kind = "{antenna.name}" is not; write "circular" or "isotropic"',
             ),
-        ]
-    return [(place, message) for is_wrong, place, message in faults if is_wrong]
+        )
 
 
 def _gain_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
@@ -165,34 +165,35 @@ def _channel_faults(
     receiver: Receiver | None = scenario.receiver
     keep_out_m = getattr(scenario.airspace, "keep_out_m", None)
     channels = {place: table.channel for place, table in tables.items() if table.channel is not None}
-    yield from (
-        ((*place, "channel", "shadow_margin_m"), "counts for all points; write it in the table [channel]")
-        for place, channel in channels.items()
-        if place and channel.shadow_margin_m is not None
-    )
-    for place, channel in {} if scenario.buildings else channels.items():
-        if channel.model == "elevation" and channel.is_by_sight and channel.average is None:
-            words = "power, db or guaranteed, unless buildings decide on line of sight"
-            yield (
+    for place, channel in channels.items():
+        d0_m, key = channel.gain_distance_m, (*place, "channel", "reference_distance_m")
+        is_undecided = channel.model == "elevation" and channel.is_by_sight and channel.average is None
+        gain_db = 10.0 * np.log10(receiver.reference_gain) - 20.0 * np.log10(d0_m) if receiver else math.nan
+        yield from faults_of(
+            (
+                place and channel.shadow_margin_m is not None,
+                (*place, "channel", "shadow_margin_m"),
+                "counts for all points; write it in the table [channel]",
+            ),
+            (
+                is_undecided and not scenario.buildings,
                 (*place, "channel", "average"),
-                f'missing, but model = "elevation" needs it: {words}; add it',
-            )
-    for place in [place for place, channel in channels.items() if channel.states_law]:
-        d0_m = channels[place].gain_distance_m
-        key = (*place, "channel", "reference_distance_m")
-        if keep_out_m is not None and d0_m > keep_out_m:
-            yield (
+                'missing, but model = "elevation" needs it: power, db or guaranteed, unless buildings decide '
+                "on line of sight; add it",
+            ),
+            (
+                channel.states_law and keep_out_m is not None and d0_m > keep_out_m,
                 key,
-                f"got {d0_m:g}, must be at most airspace.keep_out_m = {keep_out_m:g}: a power law has no "
-                "meaning at a shorter distance; make keep_out_m longer",
-            )
-        if d0_m != 1.0 and receiver is not None and receiver.frequency_hz is not None:
-            gain_db = 10.0 * np.log10(receiver.reference_gain) - 20.0 * np.log10(d0_m)
-            yield (
+                f"got {d0_m:g}, must be at most airspace.keep_out_m = {keep_out_m or 0.0:g}: a power law has "
+                "no meaning at a shorter distance; make keep_out_m longer",
+            ),
+            (
+                channel.states_law and d0_m != 1.0 and receiver and receiver.frequency_hz is not None,
                 key,
                 f"got {d0_m:g}, but receiver.frequency_hz gives the gain at 1 m; state the gain at "
                 f"{d0_m:g} m in its place, in free space reference_gain_db = {gain_db:.2f}",
-            )
+            ),
+        )
 
 
 def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:

@@ -45,6 +45,11 @@ def plain(value: object) -> object:
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
+def value_of(table: object, key: str) -> Any:
+    """Return a value of a table, raw or not; None where it has none, or is no table."""
+    return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
+
+
 def described(value: object) -> str:
     """Put a given value into words: ``the text "abc"``, ``NaN``, ``a list of 2 values``."""
     match plain(value):
@@ -152,6 +157,11 @@ def raise_all(faults: Sequence[Fault], source: str = "") -> None:
 def key_faults(table: Mapping[str, object], keys: Iterable[str], message: str) -> Iterator[tuple[Place, str]]:
     """Yield a fault for each of some keys that a raw table states."""
     return (((key,), message) for key in keys if table.get(key) is not None)
+
+
+def faults_of(*checks: tuple[object, Place, str]) -> list[tuple[Place, str]]:
+    """List place and message of the checks that are true, each of whether something is wrong."""
+    return [(place, message) for is_wrong, place, message in checks if is_wrong]
 
 
 def call_each(function: Callable[[_Raw], _Read], members: Iterable[_Raw]) -> tuple[list[_Read], list[Fault]]:

@@ -24,8 +24,8 @@ from shapely.geometry.base import BaseGeometry
 
 from nullpose.errors import install_command
 from nullpose.files import PlainTable, read_bytes
-from nullpose.scenario.faults import EXCHANGED, call_each, described, raise_all, refusal, require
-from nullpose.scenario.geo_json import members_of, require_wgs84, value_of
+from nullpose.scenario.faults import EXCHANGED, call_each, described, raise_all, refusal, require, value_of
+from nullpose.scenario.geo_json import members_of, require_wgs84
 from nullpose.scenario.kml import kml_of_kmz, placemarks_of, root_of
 from nullpose.scenario.toml_file import decoded
 

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from nullpose.files import PlainTable, parse_json
-from nullpose.scenario.faults import described, refusal, require
+from nullpose.scenario.faults import described, refusal, require, value_of
 
 _GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon")
 _WGS84 = re.compile(r"(?:.*[:/])?(?:CRS84h?|4326|4979|4258)")
@@ -102,11 +102,6 @@ def _turned(places: object) -> object:
     if isinstance(places, list) and any(isinstance(each, list) for each in places):
         return [_turned(each) for each in places]
     return places[1::-1] if isinstance(places, list) else places
-
-
-def value_of(table: object, key: str) -> Any:
-    """Return a table's value; None where it has none, or is no table."""
-    return table.get(key) if isinstance(table, dict) else None
 
 
 def require_wgs84(system: str) -> None:

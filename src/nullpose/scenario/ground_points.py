@@ -13,15 +13,16 @@ from nullpose.antenna import GROUND_ANTENNAS, short_dipole
 from nullpose.channel.profile import MOST_ROWS, mean_gain
 from nullpose.files import PlainTable
 from nullpose.scenario.channel import NamedChannel
-from nullpose.scenario.faults import ONLY_LOCAL, Place
+from nullpose.scenario.faults import ONLY_LOCAL, Place, faults_of
 from nullpose.scenario.radio import Noisy, Powered, Uncertain
 from nullpose.scenario.rules import Choice, Limits, ListOf
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.track import MOTION, Track, Velocity, track_faults, with_start
+from nullpose.scenario.track import MOTION, Track, Velocity, place_of_start, track_faults
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
     GEODETIC_KEYS,
     MOST_OVER_FED_DB,
+    PLACE_KEYS,
     Altitude,
     AxisDirection,
     DecibelMilliwatts,
@@ -190,19 +191,23 @@ class GroundPoint(Section, ways=(PLACE, ALTITUDE, MOTION), unstated=("antenna", 
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Fill in the place at which a track in metres begins."""
-        return with_start(data)
+        if data.keys() & PLACE_KEYS or not data.keys() & {"track", "track_from"}:
+            return data
+        return {**data, "position_m": place_of_start(data) or [0.0, 0.0, 0.0]}  # refused then for its track
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """List the faults of the keys of an antenna where there is none, of a profile and of a track."""
         yield from super().faults(raw)
         yield from track_faults(self.track, raw)
-        for key, (noun, owner) in _PARTS.items():
-            if getattr(self, key) is not None and self.antenna in GROUND_ANTENNAS.keys() - {owner}:
-                yield (
-                    (key,),
-                    f'given, but antenna = "{self.antenna}" has no {noun}; remove it, or write antenna = '
-                    f'"{owner}"',
-                )
+        yield from (
+            (
+                (key,),
+                f'given, but antenna = "{self.antenna}" has no {noun}; remove it, or write antenna = '
+                f'"{owner}"',
+            )
+            for key, (noun, owner) in _PARTS.items()
+            if getattr(self, key) is not None and self.antenna in GROUND_ANTENNAS.keys() - {owner}
+        )
         if self.antenna == "profile":
             yield from self._profile_faults(raw)
 
@@ -212,32 +217,31 @@ class GroundPoint(Section, ways=(PLACE, ALTITUDE, MOTION), unstated=("antenna", 
         is_whole = (deg[0], deg[-1]) == (-90.0, 90.0) and least_deg >= _LEAST_STEP_DEG
         over_fed_db = self.over_fed_db if is_whole else 0.0
         is_missing, is_unread = "antenna_profile" not in raw, self.antenna_file is not None
-        faults = (
+        return faults_of(
             (
                 self.gain_dbi,
-                "gain_dbi",
+                ("gain_dbi",),
                 f"got {self.gain_dbi}, but a profile's gains are in dBi: it would add to them; remove it",
             ),
-            (is_missing and is_unread, "antenna_file", f"{ONLY_LOCAL}; load that file by its path"),
+            (is_missing and is_unread, ("antenna_file",), f"{ONLY_LOCAL}; load that file by its path"),
             (
                 is_missing and not is_unread,
-                "antenna_profile",
+                ("antenna_profile",),
                 'missing, but antenna = "profile" needs it, or antenna_file; add either',
             ),
             (
                 not is_whole,
-                "antenna_profile",
+                ("antenna_profile",),
                 f"elevations go from {deg[0]:g} to {deg[-1]:g} degrees, must rise from -90, right below, to "
                 f"90 by {_LEAST_STEP_DEG:g} or more a row; state what the antenna does there",
             ),
             (
                 over_fed_db > MOST_OVER_FED_DB,
-                "antenna_profile",
+                ("antenna_profile",),
                 f"its gain averages to {over_fed_db:.1f} dB over the sphere: it would radiate more than it "
                 "is fed; must be 0 dB at most. Are its gains in dBi?",
             ),
         )
-        return [((key,), message) for is_wrong, key, message in faults if is_wrong]
 
     @property
     def largest_gain(self) -> float:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, reduce
 from itertools import chain
 from operator import getitem
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import numpy as np
@@ -18,15 +17,15 @@ from nullpose.errors import ScenarioError, UsageError, require_usage
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import BORDER_M, Airspace
 from nullpose.scenario.arrays import Floats, read_only
-from nullpose.scenario.faults import EXCHANGED, Place
+from nullpose.scenario.faults import EXCHANGED, Place, faults_of, value_of
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.scenario.ground_points import PLACE, SAME_PLACE_M, GroundPoint
 from nullpose.scenario.origin import FARTHEST_M, POINT_LISTS, Origin, in_metres
 from nullpose.scenario.reach import free_distance_m
 from nullpose.scenario.rules import Limits
 from nullpose.scenario.section import Section
-from nullpose.scenario.track import MOTION, place_of_start
-from nullpose.scenario.units import ALTITUDE_KEYS, PLACE_KEYS
+from nullpose.scenario.track import MOTION
+from nullpose.scenario.units import ALTITUDE_KEYS
 
 if TYPE_CHECKING:
     from nullpose.scenario.scenario import Scenario
@@ -55,21 +54,23 @@ class Time(Section):
         description="From one instant to the next, in seconds; the last step may be shorter.", examples=[1.0]
     )
 
-    def faults(self, raw: PlainTable) -> Iterator[tuple[Place, str]]:
-        """Yield a step that is longer than the scene, or so short that it has too many instants."""
+    def faults(self, raw: PlainTable) -> list[tuple[Place, str]]:
+        """List a step that is longer than the scene, or so short that it has too many instants."""
         if self.duration_s is None or self.step_s is None:
-            return
-        if self.step_s > self.duration_s:
-            yield (
+            return []
+        return faults_of(
+            (
+                self.step_s > self.duration_s,
                 ("step_s",),
                 f"got {self.step_s:g}, must be at most duration_s = {self.duration_s:g}; make it shorter",
-            )
-        elif self._steps >= MOST_INSTANTS:
-            yield (
+            ),
+            (
+                self._steps >= MOST_INSTANTS,
                 ("step_s",),
                 f"got {self.step_s:g}, with which there are {self._steps + 1:,} instants, must be at most "
                 f"{MOST_INSTANTS:,}; make it longer, or duration_s shorter",
-            )
+            ),
+        )
 
     @property
     def _steps(self) -> int:
@@ -111,7 +112,7 @@ def _track_m(point: GroundPoint, origin: Origin | None) -> Floats:
     if point.lat_deg is None:
         return places
     table = dict(zip(("lat_deg", "lon_deg", _altitude_key(point)), places.T, strict=True))
-    found = {} if origin is None else in_metres(SimpleNamespace(**table), origin)
+    found = {} if origin is None else in_metres(table, origin)
     return np.asarray(found.get("position_m", np.empty((0, 3))))
 
 
@@ -119,44 +120,8 @@ def _altitude_key(point: GroundPoint) -> str:
     return next((key for key in ALTITUDE_KEYS if getattr(point, key) is not None), ALTITUDE_KEYS[0])
 
 
-def started(data: Mapping[str, object]) -> Mapping[str, object]:
-    """Return a raw scenario with the places on the Earth at which tracks begin, where points are stated so.
-
-    That is so in a scenario with an origin in which no point states its place in metres alone.
-
-    Args:
-        data: the raw scenario.
-    """
-    kinds = {key: data[key] for key in (*POINT_LISTS, "destination") if key in data}
-    lists = [each if isinstance(each, list | tuple) else [each] for each in kinds.values()]
-    in_metres_alone = [
-        table
-        for table in chain(*lists)
-        if _value(table, "position_m") is not None and _value(table, "lat_deg") is None
-    ]
-    if (origin := data.get("origin")) is None or in_metres_alone:
-        return data
-    keys = ("lat_deg", "lon_deg", "alt_msl_m" if _value(origin, "alt_m") is None else "alt_m")
-    return {**data} | {
-        key: [_with_start(table, keys) for table in each]
-        if isinstance(each, list | tuple)
-        else _with_start(each, keys)
-        for key, each in kinds.items()
-    }
-
-
-def _with_start(table: object, keys: Sequence[str]) -> object:
-    if not isinstance(table, Mapping) or table.keys() & PLACE_KEYS or not (place := place_of_start(table)):
-        return table
-    return {**table, **dict(zip(keys, place, strict=True))}
-
-
 def _keys_in(table: object, keys: Sequence[str]) -> list[str]:
-    return [key for key in keys if _value(table, key) is not None]
-
-
-def _value(table: object, key: str) -> Any:
-    return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
+    return [key for key in keys if value_of(table, key) is not None]
 
 
 def time_of(scenario: Scenario, purpose: str) -> Time:
@@ -231,13 +196,19 @@ def motion_faults(
                 "or remove this key",
             )
         return
-    if raw.get("at_s") is not None:
-        yield ("at_s",), "given, but the scene has a [time] and so many instants; remove either"
-    if not moves and not any(_keys_in(reduce(getitem, place, raw), _MOTION) for place in points):
-        yield (
+    moves_when_read = any(_keys_in(reduce(getitem, place, raw), _MOTION) for place in points)
+    yield from faults_of(
+        (
+            raw.get("at_s") is not None,
+            ("at_s",),
+            "given, but the scene has a [time] and so many instants; remove either",
+        ),
+        (
+            not moves and not moves_when_read,
             ("time",),
             "given, but nothing moves; give a point velocity_m_s, track or track_from, or remove this table",
-        )
+        ),
+    )
     for place, point in points.items():
         if point.track is not None:
             yield from _track_faults(place, point, scenario.origin, time)
@@ -321,7 +292,10 @@ def move_points(scenario: Scenario, places_m: Mapping[str, Floats]) -> Scenario:
     Raises:
         ScenarioError: a place is no place, or one where no point may be: that of another, say.
     """
-    moved = BaseModel.model_copy(scenario, update=_points_at(scenario, places_m, _unjudged))
+    update = _points_at(
+        scenario, places_m, lambda point, at_m: BaseModel.model_copy(point, update={"position_m": at_m})
+    )
+    moved = BaseModel.model_copy(scenario, update=update)
     for name in vars(moved).keys() - type(scenario).model_fields.keys():
         if not name.endswith(_OF_NO_PLACE):
             del vars(moved)[name]
@@ -332,7 +306,11 @@ def move_points(scenario: Scenario, places_m: Mapping[str, Floats]) -> Scenario:
         and not any(building.holds(place_m) for building in scenario.buildings for place_m in at_m)
         and not (scenario.is_uncertain or any(point.lat_deg is not None for point in scenario.points))
     )
-    return moved if is_sound else scenario.model_copy(update=_points_at(scenario, places_m, _to_judge))
+    if is_sound:
+        return moved
+    earthly = dict.fromkeys(PLACE.others("position_m"))
+    update = _points_at(scenario, places_m, lambda point, at_m: dict(point) | earthly | {"position_m": at_m})
+    return scenario.model_copy(update=update)
 
 
 def _points_at(
@@ -345,11 +323,3 @@ def _points_at(
         made = tuple(map(make, points, map(tuple, at_m.tolist())))
         moved[kind] = made[0] if kind == "destination" else made
     return moved
-
-
-def _unjudged(point: GroundPoint, place_m: Sequence[float]) -> GroundPoint:
-    return BaseModel.model_copy(point, update={"position_m": place_m})
-
-
-def _to_judge(point: GroundPoint, place_m: Sequence[float]) -> dict[str, object]:
-    return {**dict(point), **dict.fromkeys(PLACE.others("position_m")), "position_m": place_m}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import reduce
+from itertools import chain
 from operator import getitem
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,16 +17,18 @@ from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.buildings import Building
-from nullpose.scenario.faults import EXCHANGED, Place, path_of
+from nullpose.scenario.faults import EXCHANGED, Place, path_of, value_of
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.section import Section, optional
+from nullpose.scenario.track import place_of_start
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,
     EARTHLY,
     EARTHLY_CORNERS,
     EARTHLY_RANGES,
+    PLACE_KEYS,
     Altitude,
     Latitude,
     Longitude,
@@ -131,7 +133,7 @@ class Origin(Section, ways=(Ways((("alt_m",), ("alt_msl_m",)), most=2),)):
             f"over what the origin states, or alt_agl_m; add {altitude} to [origin]",
         )
         lat_deg, lon_deg = place["lat_deg"], place["lon_deg"]
-        found_m = in_metres(SimpleNamespace(**place), self)["position_m"]
+        found_m = in_metres(place, self)["position_m"]
         require_usage(
             abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and size_m(found_m) <= FARTHEST_M,
             f"lat_deg, lon_deg: given {lat_deg:g}, {lon_deg:g}; allowed: within "
@@ -153,31 +155,52 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
         origin = Origin.model_validate(data.get("origin"))
     except ValidationError:
         origin = None
-    kinds: dict[str, type[Section]] = dict.fromkeys(POINT_LISTS, GroundPoint)
-    kinds |= {"destination": GroundPoint, "buildings": Building, "airspace": Airspace}
-    whole = {**data} | {key: _located(kinds[key], data[key], origin) for key in kinds if key in data}
+    kinds: dict[str, type[Section]] = dict.fromkeys((*POINT_LISTS, "destination"), GroundPoint)
+    kinds |= {"buildings": Building, "airspace": Airspace}
+    start = _keys_of_starts(data)
+    whole = {**data} | {key: _located(kinds[key], data[key], origin, start) for key in kinds if key in data}
     if isinstance(airspace := whole.get("airspace"), Mapping) and "no_fly" in airspace:
         whole["airspace"] = {**airspace, "no_fly": _located(NoFlyZone, airspace["no_fly"], origin)}
     return whole
 
 
-def _located(kind: type[Section], raw: object, origin: Origin | None) -> Any:
-    """Return a raw table, or a list of such, with the metres that follow from what it states on the Earth."""
+def _keys_of_starts(data: Mapping[str, object]) -> Sequence[str]:
+    """List the keys of the place at which the tracks of a raw scenario begin on the Earth; none in metres.
+
+    They are on the Earth in a scenario with an origin in which no point states its place in metres alone.
+    """
+    listed = [data.get(key) for key in (*POINT_LISTS, "destination")]
+    points = chain.from_iterable(each if isinstance(each, list | tuple) else [each] for each in listed)
+    is_metric = any(
+        value_of(each, "position_m") is not None and value_of(each, "lat_deg") is None for each in points
+    )
+    if is_metric or (origin := data.get("origin")) is None:
+        return ()
+    return "lat_deg", "lon_deg", "alt_msl_m" if value_of(origin, "alt_m") is None else "alt_m"
+
+
+def _located(kind: type[Section], raw: object, origin: Origin | None, start: Sequence[str] = ()) -> Any:
+    """Return a raw table, or a list of such, with the metres that follow from what it states on the Earth.
+
+    A point that states no place is where its track begins.
+    """
     if isinstance(raw, list | tuple):
-        return [_located(kind, each, origin) for each in raw]
+        return [_located(kind, each, origin, start) for each in raw]
     if not isinstance(raw, Mapping):
         return raw
+    if start and not raw.keys() & PLACE_KEYS and (place := place_of_start(raw)):
+        raw = {**raw, **dict(zip(start, place, strict=True))}
     earthly = {key: raw[key] for key in EARTHLY if raw.get(key) is not None}
     if not (wanted := [EARTHLY[key] for key in earthly if raw.get(EARTHLY[key]) is None]):
         return raw
-    sound = kind._sound_part(earthly)
+    sound = dict(kind._sound_part(earthly))
     found = {} if origin is None else in_metres(sound, origin)
     near: dict[str, Any] = {
         key: value.tolist()
         for key, value in found.items()
         if key == "altitude_m" or size_m(value) <= FARTHEST_M
     }
-    if rings := getattr(sound, "courtyards_lat_lon_deg", None):
+    if rings := sound.get("courtyards_lat_lon_deg"):
         near["courtyards_m"] = [
             yard["polygon_m"]
             for yard in (_located(kind, {"polygon_lat_lon_deg": ring}, origin) for ring in rings)
@@ -185,31 +208,31 @@ def _located(kind: type[Section], raw: object, origin: Origin | None) -> Any:
     return {**raw} | {key: near.get(key, _PLACEHOLDERS[key]) for key in wanted}
 
 
-def in_metres(table: object, origin: Origin) -> dict[str, Floats]:
+def in_metres(table: Mapping[str, Any], origin: Origin) -> dict[str, Floats]:
     """Convert the keys of a table that state places on the Earth to metres, by key.
 
     Args:
-        table: a point, an airspace or a zone, in which None stands for what is not stated or at fault.
+        table: of a point, an airspace or a zone; None stands for what is not stated or at fault.
         origin: where the metres count from.
     """
     *_, base_m = origin.geodetic
     found: dict[str, Floats] = {
         metric: enu_from_geodetic(np.insert(corners, 2, base_m, axis=-1), origin.geodetic)[..., :2]
         for key, metric in EARTHLY_CORNERS.items()
-        if (corners := getattr(table, key, None)) is not None
+        if (corners := table.get(key)) is not None
     }
     heights_m = [
         value + (base_m - zero_m)
         for key in ALTITUDE_KEYS
-        if (value := getattr(table, key, None)) is not None
+        if (value := table.get(key)) is not None
         and (zero_m := 0.0 if key == "alt_agl_m" else getattr(origin, key)) is not None
     ]
-    place: list[Any] = [getattr(table, key, None) for key in ("lat_deg", "lon_deg")]
+    place: list[Any] = [table.get(key) for key in ("lat_deg", "lon_deg")]
     if heights_m and all(each is not None for each in place):
         whole = np.stack([*place, heights_m[0]], axis=-1)
         found["position_m"] = enu_from_geodetic(whole, origin.geodetic)
     for key, of_origin in EARTHLY_RANGES.items():
-        ends_m, zero_m = getattr(table, key, None), getattr(origin, of_origin)
+        ends_m, zero_m = table.get(key), getattr(origin, of_origin)
         if ends_m is not None and zero_m is not None:
             found["altitude_m"] = np.subtract(ends_m, zero_m)
     return found
@@ -252,7 +275,7 @@ def origin_faults(
             )
         return
     yield from _unknown_altitudes(origin, earthly)
-    metres = {place: in_metres(tables[place], origin) for place in earthly}
+    metres = {place: in_metres(dict(tables[place]), origin) for place in earthly}
     far = list(_far(metres))
     yield from far
     if not far:

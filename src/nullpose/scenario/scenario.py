@@ -25,7 +25,7 @@ from nullpose.scenario.channel import SHADOW_MARGIN_M, NamedChannel
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place, described
 from nullpose.scenario.ground_points import Destination, Eavesdropper, Jammer, Node, Source
-from nullpose.scenario.motion import Time, started, still_at, time_of
+from nullpose.scenario.motion import Time, still_at, time_of
 from nullpose.scenario.origin import Origin, located
 from nullpose.scenario.radio import Receiver, Transmitter
 from nullpose.scenario.rules import Choice, list_of_tables
@@ -214,7 +214,7 @@ class Scenario(
         antenna, name = data.get("antenna"), data.get("name", "")
         if isinstance(antenna, Mapping) and antenna.get("two_cuts") and ESTIMATE not in str(name):
             data = {**data, "name": f"{name} (antenna: {ESTIMATE})".strip()}
-        return located(started(data))
+        return located(data)
 
     def faults(self, raw: PlainTable) -> Iterable[tuple[Place, str]]:
         """Return the faults between the parts of the scenario, those that are None being at fault."""

@@ -38,13 +38,6 @@ def place_of_start(point: Mapping[str, object]) -> list[object] | None:
     return None
 
 
-def with_start(point: Mapping[str, object]) -> Mapping[str, object]:
-    """Return a raw point with the place at which its track in metres begins, where none is stated."""
-    if point.keys() & PLACE_KEYS or not point.keys() & {"track", "track_from"}:
-        return point
-    return {**point, "position_m": place_of_start(point) or [0.0, 0.0, 0.0]}  # refused then for its track
-
-
 def track_faults(track: Track | None, raw: PlainTable) -> Iterator[tuple[Place, str]]:
     """Yield a track that goes back in time, or begins later than a point whose place is not stated.
 

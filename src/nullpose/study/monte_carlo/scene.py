@@ -30,7 +30,7 @@ from nullpose.scenario import (
 )
 from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.faults import Place, key_faults
-from nullpose.scenario.motion import places_m, started
+from nullpose.scenario.motion import places_m
 from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section, optional
@@ -110,7 +110,7 @@ class SceneBase(Section):
     @classmethod
     def completed(cls, data: Mapping[str, object]) -> Mapping[str, object]:
         """Fill in the positions of points that are stated by latitude and longitude."""
-        return located(started(data))
+        return located(data)
 
     def faults(self, raw: Mapping[str, object]) -> Iterable[tuple[Place, str]]:
         """Yield tables that are missing, or stated twice."""
