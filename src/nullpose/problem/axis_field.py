@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.errors import require_usage
 from nullpose.problem.records import AFFINE_AXIS, BAND_AXIS, CONE_AXIS, FREE_AXIS, NARROW_AXIS, Axes
-from nullpose.scenario.arrays import read_only
+from nullpose.scenario.section import read_only
 
 _NARROW = 0.1  # difference of a band's ends below which a straight step of the axis leaves it too soon
 

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.files import PlainTable
-from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import ONLY_LOCAL, Place, key_faults
 from nullpose.scenario.no_fly import ALTITUDES, NoFlyZone, unplaced
 from nullpose.scenario.polygon import (
@@ -25,7 +24,7 @@ from nullpose.scenario.polygon import (
     offset_outlines_m,
 )
 from nullpose.scenario.rules import Limits, list_of_tables
-from nullpose.scenario.section import Section, optional
+from nullpose.scenario.section import Section, optional, read_only
 from nullpose.scenario.units import Label, MarginMetres, Range
 from nullpose.scenario.ways import Ways
 

@@ -16,13 +16,13 @@ from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
 from nullpose.scenario.altitude_limits import RANGES, Ground, shift_m
 from nullpose.scenario.areas import STAY_OUT, Area, areas_of, notes_on, polygons_of
-from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import described, refusal, require
 from nullpose.scenario.geo_file import Feature
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu, wrapped
 from nullpose.scenario.no_fly import NoFlyZone
 from nullpose.scenario.origin import Origin
 from nullpose.scenario.polygon import MOST_CORNERS
+from nullpose.scenario.section import Floats
 from nullpose.scenario.shapes import DISC_SIDES, corners_of, disc
 from nullpose.scenario.units import EARTHLY_RANGES
 

@@ -1,57 +1,58 @@
-"""Arrays of a scenario's numbers, each made once and read-only."""
+"""The tables of a scenario, and arrays of their numbers, each made once and read-only."""
+
+# Its arrays are made by descriptors and are no fields; pydantic, which refuses what is neither, knows them.
+# mypy: disable-error-code="pydantic-field"
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pydantic import Field, PlainSerializer
 
 from nullpose.antenna import GroundAntennas, unit_axis
-from nullpose.channel import Custom, LinkChannel, PointChannels
-from nullpose.channel.buildings import Prisms
+from nullpose.channel import Custom as CustomLaw, LinkChannel, PointChannels
+from nullpose.channel.buildings import Prisms, prisms_of
 from nullpose.channel.elevation import with_profile
 from nullpose.channel.model import CONSTANT
 from nullpose.channel.power_law import power_law
-from nullpose.errors import UsageError, require_usage
-from nullpose.scenario.channel import BLOCKED_DB, Channel, CustomChannel
-from nullpose.scenario.units import power_w, ratio_from_db
+from nullpose.errors import require_usage
+from nullpose.objectives import RECORDS, USUAL, Custom, ObjectiveRecord
+from nullpose.scenario.airframe import NamedAirframe
+from nullpose.scenario.airspace import Airspace
+from nullpose.scenario.antenna import Antenna, Array
+from nullpose.scenario.buildings import MOST_BUILDINGS, Building
+from nullpose.scenario.channel import BLOCKED_DB, SHADOW_MARGIN_M, Channel, CustomChannel, NamedChannel
+from nullpose.scenario.ground_points import (
+    Destination,
+    Eavesdropper,
+    GroundPoint,
+    Jammer,
+    Node,
+    Source,
+    Terminal,
+)
+from nullpose.scenario.motion import Time
+from nullpose.scenario.origin import Origin
+from nullpose.scenario.radio import Receiver, Transmitter
+from nullpose.scenario.rules import Choice, list_of_tables
+from nullpose.scenario.section import Floats, Section, optional, read_only
+from nullpose.scenario.units import Label, Seconds, Title, power_w, ratio_from_db
+from nullpose.scenario.ways import Ways
 
-if TYPE_CHECKING:
-    from nullpose.objectives import ObjectiveRecord
-    from nullpose.scenario.ground_points import (
-        Destination,
-        Eavesdropper,
-        GroundPoint,
-        Jammer,
-        Node,
-        Source,
-        Terminal,
-    )
-    from nullpose.scenario.motion import Time
-    from nullpose.scenario.radio import Receiver
-
-
-Floats = NDArray[np.float64]
 _IN_MOTION = (
     "scenario: given a scene in motion; allowed: a still one; call .at(t) with a time in seconds, as in "
     "scenario.at(0.0), or .instants_s for all times; solve(scenario, hover=True) holds one pose for all"
 )
 
 
-def read_only(values: ArrayLike, shape: Sequence[int]) -> NDArray[np.float64]:
-    """Return the values as a float64 array of the given shape that refuses to be written to."""
-    array = np.array(values, dtype=np.float64).reshape(shape)
-    array.flags.writeable = False
-    return array
-
-
 def _stacked(kinds: str, key: str, *shape: int) -> cached_property[Floats]:
     """Make the array of what the points of some kinds have; of a scene in motion there are no positions."""
 
-    def stack(table: PointArrays) -> Floats:
+    def stack(table: ScenarioTables) -> Floats:
         require_usage(key != "position_m" or table.time is None, _IN_MOTION)
         return read_only([getattr(point, key) for point in _points_of(table, kinds)], (-1, *shape))
 
@@ -77,7 +78,7 @@ def _antennas(kinds: str) -> cached_property[GroundAntennas | None]:
 def _channels(kinds: str) -> cached_property[PointChannels | None]:
     """Make the channels of the points of some kinds; None where all are in free space with line of sight."""
 
-    def stack(table: PointArrays) -> PointChannels | None:
+    def stack(table: ScenarioTables) -> PointChannels | None:
         points = _points_of(table, kinds)
         links = [table.channel_of(point) for point in points]
         if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links) and table.prisms is None:
@@ -98,26 +99,94 @@ def _points_of(table: object, kinds: str) -> list[GroundPoint]:
     return [point for kind in kinds.split() for point in getattr(table, kind)]
 
 
-class PointArrays:
-    """What a scenario has of its points; sources are the nodes, then the jammers."""
+class _Objective(Choice):
+    """One of the objectives by name, or a function in Python, which no file can hold."""
 
-    if TYPE_CHECKING:
-        nodes: tuple[Node, ...]
-        jammers: tuple[Jammer, ...]
-        eavesdroppers: tuple[Eavesdropper, ...]
-        sources: tuple[Source, ...]
-        destination: Destination | None
-        receiver: Receiver
-        channel: Channel | None
-        time: Time | None
+    def read(self, value: object) -> Any:
+        """Return either, or raise the fault that names the words."""
+        return value if isinstance(value, Custom) else super().read(value)
 
-        @property
-        def objective_record(self) -> ObjectiveRecord:
-            """What the objective states of itself."""
 
-        @cached_property
-        def prisms(self) -> Prisms | None:
-            """The buildings in convex pieces."""
+class ScenarioTables(
+    Section,
+    header="a table with the keys of a scenario file",
+    ways=(Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),),
+    unstated=("objective", "eavesdroppers", "sources", "buildings"),
+):
+    """The tables of a scenario, and arrays of its points; of arrays sources are the nodes, then the jammers."""
+
+    name: Title = Field(
+        default="",
+        description="Title of the scenario, for tables and figures.",
+        examples=["Harbour, north quay"],
+    )
+    objective: Annotated[Any, _Objective("an objective", RECORDS), PlainSerializer(str)] = Field(
+        default=USUAL,
+        description="The objective to maximise: "
+        + ", or ".join(f"{record.name}, {record.summary}" for record in RECORDS.values())
+        + ".",
+        examples=list(RECORDS),
+    )
+    nodes_from: Label | None = optional(
+        "Name of a CSV or geographic file (GeoJSON, KML, GeoPackage and others) "
+        "that lists the nodes, relative to this file's folder. "
+        "Either this or tables headed [[nodes]].",
+        "nodes.geojson",
+    )
+    time: Time | None = optional(
+        "A table headed [time]: how long the scene lasts, where points move. Left out: nothing moves."
+    )
+    at_s: Seconds | None = optional(
+        "Of a still scene that a scene in motion was at one instant: the time of that, in seconds.", 30.0
+    )
+    origin: Origin | None = optional(
+        "A table headed [origin]: the place on the Earth (WGS-84) where positions are [0, 0, 0]. "
+        "Left out: nowhere in particular."
+    )
+    airspace: Airspace = Field(description="A table headed [airspace]: where the vehicle may be, in metres.")
+    airframe: NamedAirframe | None = optional(
+        "A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted; or a "
+        "preset's name. Left out: every axis is reached.",
+        "quadrotor",
+    )
+    antenna: Antenna | None = optional(
+        "A table headed [antenna]: which antenna the drone carries. Left out: a short dipole."
+    )
+    array: Array | None = optional(
+        "A table headed [array]: upright dipoles on a horizontal vehicle, in place of the one."
+    )
+    receiver: Receiver = Field(
+        description="A table headed [receiver]: noise power (W or dBm) and path gain at 1 m (dB, or from a "
+        "frequency in Hz)."
+    )
+    channel: NamedChannel | None = optional(
+        "A table headed [channel]: how the power of a link falls with distance and elevation. Left out: free "
+        "space with line of sight."
+    )
+    transmitter: Transmitter | None = optional(
+        "A table headed [transmitter]: the drone's own power (W or dBm), where it transmits."
+    )
+    destination: Destination | None = optional(
+        "A table headed [destination]: the point that the drone sends to, where it is a relay."
+    )
+    nodes: Annotated[tuple[Node, ...], list_of_tables("nodes", fewest=1)] = Field(
+        description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
+    )
+    jammers: Annotated[tuple[Jammer, ...], list_of_tables("jammers")] = Field(
+        default=(), description="Tables headed [[jammers]], one for each jammer; none if left out."
+    )
+    eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
+        default=(), description="Tables headed [[eavesdroppers]], one for each; where the drone transmits."
+    )
+    sources: Annotated[tuple[Source, ...], list_of_tables("sources")] = Field(
+        default=(),
+        description="Tables headed [[sources]], one for each transmitter on the ground that nodes listen to; "
+        "where the drone jams eavesdroppers.",
+    )
+    buildings: Annotated[tuple[Building, ...], list_of_tables("buildings", most=MOST_BUILDINGS)] = Field(
+        default=(),
+        description="Tables headed [[buildings]], one for each building or file of some; none if left out.",
+    )
 
     node_positions_m = _stacked("nodes", "position_m", 3)
     """Positions of the nodes [m], (n_nodes, 3)."""
@@ -195,6 +264,25 @@ class PointArrays:
     """Positions of all points [m], (n, 3)."""
 
     @property
+    def objective_record(self) -> ObjectiveRecord:
+        """What the objective states of itself."""
+        return self.objective.record if isinstance(self.objective, Custom) else RECORDS[self.objective]
+
+    @cached_property
+    def prisms(self) -> Prisms | None:
+        """The buildings in convex pieces; None without any that is higher than its base."""
+        if all(building.heights_m[1] <= building.base_m for building in self.buildings):
+            return None
+        margin_m = None if self.channel is None else self.channel.shadow_margin_m
+        return prisms_of(
+            [building.outline_m for building in self.buildings],
+            [building.courtyard_outlines_m for building in self.buildings],
+            [building.floor_m for building in self.buildings],
+            [building.heights_m for building in self.buildings],
+            SHADOW_MARGIN_M if margin_m is None else margin_m,
+        )
+
+    @property
     def destinations(self) -> tuple[Destination, ...]:
         """The destination of a relay; none under another objective."""
         return () if self.destination is None else (self.destination,)
@@ -244,7 +332,7 @@ class PointArrays:
         changes = (np.any(each.rows[:, 0] != CONSTANT) for each in channels if each is not None)
         return self.prisms is not None or any(changes)
 
-    def custom_law(self, point: GroundPoint) -> Custom | None:
+    def custom_law(self, point: GroundPoint) -> CustomLaw | None:
         """Return the function in Python that the channel of a point is, if it is one."""
         channel = point.channel or self.channel
         return channel.law if isinstance(channel, CustomChannel) else None
@@ -345,50 +433,3 @@ class PointArrays:
         if self.jammer_channels is not None:
             powers_w = powers_w * self.jammer_channels.strengths
         return float(np.sum(powers_w / distance_squared))
-
-
-def rows_of_points(
-    kind: str, points_m: ArrayLike, power_w: ArrayLike | None, power_dbm: ArrayLike | None
-) -> list[dict[str, object]]:
-    """Return the tables of points that are given as arrays.
-
-    Args:
-        kind: ``"node"`` or ``"jammer"``, for messages.
-        points_m: positions east, north, up [m], shape (n, 3), or an empty list.
-        power_w: transmit powers [W], shape (n,) or one for all; 1 if neither these are given nor
-        power_dbm: the same in dBm.
-
-    Raises:
-        UsageError: shapes that do not go together.
-    """
-    places = _numbers(f"{kind}s_m", points_m)
-    require_usage(
-        places.size == 0 or places.shape[1:] == (3,),
-        f"{kind}s_m: given shape {places.shape}; allowed: (n, 3), a row of east, north and up in metres "
-        "for each; try its transpose .T, [[east, north, up]] for one point, or zeros for heights",
-    )
-    columns = {"position_m": places.reshape(-1, 3)}
-    powers = {"power_w": 1.0 if power_w is None and power_dbm is None else power_w, "power_dbm": power_dbm}
-    count = len(columns["position_m"])
-    for key, values in powers.items():
-        if values is not None:
-            power = _numbers(f"{kind}_{key}", values)
-            require_usage(
-                power.shape in ((), (count,)),
-                f"{kind}_{key}: given shape {power.shape} with {count} {kind}s; allowed: one number, or "
-                f"shape ({count},)",
-            )
-            columns[key] = np.broadcast_to(power, count)
-    return [
-        dict(zip(columns, row, strict=True))
-        for row in zip(*map(np.ndarray.tolist, columns.values()), strict=True)
-    ]
-
-
-def _numbers(name: str, values: ArrayLike) -> Floats:
-    try:
-        return np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise UsageError(
-            f"{name}: given values that make no array of numbers; allowed: numbers, in rows of equal length"
-        ) from None

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, TypeAdapter
 
 from nullpose.files import PlainTable
-from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import Place, key_faults, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone, unplaced
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m
 from nullpose.scenario.rules import Choice, Limits, ListOf, NumberOr, ascending
-from nullpose.scenario.section import Section, optional
+from nullpose.scenario.section import Floats, Section, optional
 from nullpose.scenario.units import Label, MarginMetres
 from nullpose.scenario.ways import Ways
 

@@ -16,14 +16,13 @@ from pydantic import BaseModel, Field
 from nullpose.errors import ScenarioError, UsageError, require_usage
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import BORDER_M, Airspace
-from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.faults import EXCHANGED, Place, faults_of, value_of
 from nullpose.scenario.geodesy import geodetic_from_enu
 from nullpose.scenario.ground_points import PLACE, SAME_PLACE_M, GroundPoint
 from nullpose.scenario.origin import FARTHEST_M, POINT_LISTS, Origin, in_metres
 from nullpose.scenario.reach import free_distance_m
 from nullpose.scenario.rules import Limits
-from nullpose.scenario.section import Section
+from nullpose.scenario.section import Floats, Section, read_only
 from nullpose.scenario.track import MOTION
 from nullpose.scenario.units import ALTITUDE_KEYS
 

@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from nullpose.files import PlainTable
-from nullpose.scenario.arrays import read_only
 from nullpose.scenario.faults import Place
 from nullpose.scenario.polygon import EarthlyPolygon, Polygon, counter_clockwise_m, depth_m, offset_outlines_m
-from nullpose.scenario.section import Section, optional
+from nullpose.scenario.section import Section, optional, read_only
 from nullpose.scenario.units import EARTHLY, Label, LatLon, PlanePoint, RadiusMetres, Range
 from nullpose.scenario.ways import Ways
 

@@ -15,13 +15,12 @@ from pydantic import Field, ValidationError
 from nullpose.errors import require_usage
 from nullpose.files import PlainTable
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.buildings import Building
 from nullpose.scenario.faults import EXCHANGED, Place, path_of, value_of
 from nullpose.scenario.geodesy import enu_from_geodetic, geodetic_from_enu
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.no_fly import NoFlyZone
-from nullpose.scenario.section import Section, optional
+from nullpose.scenario.section import Floats, Section, optional, read_only
 from nullpose.scenario.track import place_of_start
 from nullpose.scenario.units import (
     ALTITUDE_KEYS,

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import AfterValidator
 
-from nullpose.scenario.arrays import Floats, read_only
 from nullpose.scenario.faults import require_value
 from nullpose.scenario.rules import ListOf
+from nullpose.scenario.section import Floats, read_only
 from nullpose.scenario.units import LatLon, PlanePoint
 
 if TYPE_CHECKING:

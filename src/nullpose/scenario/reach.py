@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import Place, path_of
 from nullpose.scenario.ground_points import GroundPoint
 from nullpose.scenario.polygon import MOST_CORNERS
 from nullpose.scenario.radio import Uncertain
+from nullpose.scenario.section import Floats
 
 _TOUCHING = 1e-9  # relative to the box; a part this small that cannot be ruled out counts as found
 _BATCH = 256

@@ -5,129 +5,31 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import Annotated, Any
 
+import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, PlainSerializer
 
 from nullpose.antenna import SHORT_DIPOLE, AnyAntenna
 from nullpose.antenna.from_file import ESTIMATE
-from nullpose.channel.buildings import Prisms, prisms_of
-from nullpose.errors import WrongTypeError, checked
+from nullpose.errors import UsageError, WrongTypeError, checked, require_usage
 from nullpose.files import PlainTable
-from nullpose.objectives import RECORDS, USUAL, Custom, ObjectiveRecord
-from nullpose.scenario.airframe import NamedAirframe
 from nullpose.scenario.airspace import Airspace
-from nullpose.scenario.antenna import Antenna, Array
-from nullpose.scenario.arrays import Floats, PointArrays, rows_of_points
-from nullpose.scenario.buildings import MOST_BUILDINGS, Building
-from nullpose.scenario.channel import SHADOW_MARGIN_M, NamedChannel
+from nullpose.scenario.arrays import ScenarioTables
 from nullpose.scenario.crosscheck import scenario_faults
 from nullpose.scenario.faults import Place, described
-from nullpose.scenario.ground_points import Destination, Eavesdropper, Jammer, Node, Source
-from nullpose.scenario.motion import Time, still_at, time_of
-from nullpose.scenario.origin import Origin, located
-from nullpose.scenario.radio import Receiver, Transmitter
-from nullpose.scenario.rules import Choice, list_of_tables
-from nullpose.scenario.section import Section, optional
+from nullpose.scenario.motion import still_at, time_of
+from nullpose.scenario.origin import located
+from nullpose.scenario.section import Floats, Section
 from nullpose.scenario.toml_file import toml_text
-from nullpose.scenario.units import Label, Seconds, Title, ratio_from_db
-from nullpose.scenario.ways import Ways
+from nullpose.scenario.units import ratio_from_db
 
 
-class _Objective(Choice):
-    """One of the objectives by name, or a function in Python, which no file can hold."""
-
-    def read(self, value: object) -> Any:
-        """Return either, or raise the fault that names the words."""
-        return value if isinstance(value, Custom) else super().read(value)
-
-
-class Scenario(
-    Section,
-    PointArrays,
-    header="a table with the keys of a scenario file",
-    ways=(Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),),
-    unstated=("objective", "eavesdroppers", "sources", "buildings"),
-):
+class Scenario(ScenarioTables):
     """Nodes, jammers, a receiver and an airspace, in one world frame: east, north, up (ENU), in metres.
 
     Raises:
         ScenarioError: with every fault of the values together.
     """
-
-    name: Title = Field(
-        default="",
-        description="Title of the scenario, for tables and figures.",
-        examples=["Harbour, north quay"],
-    )
-    objective: Annotated[Any, _Objective("an objective", RECORDS), PlainSerializer(str)] = Field(
-        default=USUAL,
-        description="The objective to maximise: "
-        + ", or ".join(f"{record.name}, {record.summary}" for record in RECORDS.values())
-        + ".",
-        examples=list(RECORDS),
-    )
-    nodes_from: Label | None = optional(
-        "Name of a CSV or geographic file (GeoJSON, KML, GeoPackage and others) "
-        "that lists the nodes, relative to this file's folder. "
-        "Either this or tables headed [[nodes]].",
-        "nodes.geojson",
-    )
-    time: Time | None = optional(
-        "A table headed [time]: how long the scene lasts, where points move. Left out: nothing moves."
-    )
-    at_s: Seconds | None = optional(
-        "Of a still scene that a scene in motion was at one instant: the time of that, in seconds.", 30.0
-    )
-    origin: Origin | None = optional(
-        "A table headed [origin]: the place on the Earth (WGS-84) where positions are [0, 0, 0]. "
-        "Left out: nowhere in particular."
-    )
-    airspace: Airspace = Field(description="A table headed [airspace]: where the vehicle may be, in metres.")
-    airframe: NamedAirframe | None = optional(
-        "A table headed [airframe]: how far the vehicle tilts and how the dipole is mounted; or a "
-        "preset's name. Left out: every axis is reached.",
-        "quadrotor",
-    )
-    antenna: Antenna | None = optional(
-        "A table headed [antenna]: which antenna the drone carries. Left out: a short dipole."
-    )
-    array: Array | None = optional(
-        "A table headed [array]: upright dipoles on a horizontal vehicle, in place of the one."
-    )
-    receiver: Receiver = Field(
-        description="A table headed [receiver]: noise power (W or dBm) and path gain at 1 m (dB, or from a "
-        "frequency in Hz)."
-    )
-    channel: NamedChannel | None = optional(
-        "A table headed [channel]: how the power of a link falls with distance and elevation. Left out: free "
-        "space with line of sight."
-    )
-    transmitter: Transmitter | None = optional(
-        "A table headed [transmitter]: the drone's own power (W or dBm), where it transmits."
-    )
-    destination: Destination | None = optional(
-        "A table headed [destination]: the point that the drone sends to, where it is a relay."
-    )
-    nodes: Annotated[tuple[Node, ...], list_of_tables("nodes", fewest=1)] = Field(
-        description="Tables headed [[nodes]], one for each legitimate node; at least one. Or nodes_from."
-    )
-    jammers: Annotated[tuple[Jammer, ...], list_of_tables("jammers")] = Field(
-        default=(), description="Tables headed [[jammers]], one for each jammer; none if left out."
-    )
-    eavesdroppers: Annotated[tuple[Eavesdropper, ...], list_of_tables("eavesdroppers")] = Field(
-        default=(), description="Tables headed [[eavesdroppers]], one for each; where the drone transmits."
-    )
-    sources: Annotated[tuple[Source, ...], list_of_tables("sources")] = Field(
-        default=(),
-        description="Tables headed [[sources]], one for each transmitter on the ground that nodes listen to; "
-        "where the drone jams eavesdroppers.",
-    )
-    buildings: Annotated[tuple[Building, ...], list_of_tables("buildings", most=MOST_BUILDINGS)] = Field(
-        default=(),
-        description="Tables headed [[buildings]], one for each building or file of some; none if left out.",
-    )
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], *, allow_outside: bool = False) -> Scenario:
@@ -186,8 +88,8 @@ class Scenario(
             Scenario('paper': 2 nodes, 1 jammer, min-sinr, altitude 8 to 30 m)
         """
         points = {
-            "nodes": rows_of_points("node", nodes_m, node_power_w, node_power_dbm),
-            "jammers": rows_of_points("jammer", jammers_m, jammer_power_w, jammer_power_dbm),
+            "nodes": _rows_of_points("node", nodes_m, node_power_w, node_power_dbm),
+            "jammers": _rows_of_points("jammer", jammers_m, jammer_power_w, jammer_power_dbm),
         }
         receiver = {"noise_w": noise_w, "noise_dbm": noise_dbm, "frequency_hz": frequency_hz}
         receiver |= {"reference_gain_db": reference_gain_db}
@@ -285,11 +187,6 @@ class Scenario(
     __str__ = __repr__
 
     @property
-    def objective_record(self) -> ObjectiveRecord:
-        """What the objective states of itself."""
-        return self.objective.record if isinstance(self.objective, Custom) else RECORDS[self.objective]
-
-    @property
     def antenna_record(self) -> AnyAntenna:
         """What the drone's antenna states of itself."""
         return SHORT_DIPOLE if self.antenna is None else self.antenna.record
@@ -314,20 +211,6 @@ class Scenario(
         """The airspace less the buildings, which are no-fly zones in it."""
         return self.airspace.outside(building.zone for building in self.buildings)
 
-    @cached_property
-    def prisms(self) -> Prisms | None:
-        """The buildings in convex pieces; None without any that is higher than its base."""
-        if all(building.heights_m[1] <= building.base_m for building in self.buildings):
-            return None
-        margin_m = None if self.channel is None else self.channel.shadow_margin_m
-        return prisms_of(
-            [building.outline_m for building in self.buildings],
-            [building.courtyard_outlines_m for building in self.buildings],
-            [building.floor_m for building in self.buildings],
-            [building.heights_m for building in self.buildings],
-            SHADOW_MARGIN_M if margin_m is None else margin_m,
-        )
-
     @property
     def has_margins(self) -> bool:
         """Whether any node, or the destination, states a weight or a required SINR."""
@@ -351,3 +234,50 @@ class Scenario(
     def axis_band(self) -> tuple[float, float]:
         """Least and greatest ``u_z^2`` of the axes that the airframe reaches; (0, 1) for all of them."""
         return (0.0, 1.0) if self.airframe is None else self.airframe.axis_band
+
+
+def _rows_of_points(
+    kind: str, points_m: ArrayLike, power_w: ArrayLike | None, power_dbm: ArrayLike | None
+) -> list[dict[str, object]]:
+    """Return the tables of points that are given as arrays.
+
+    Args:
+        kind: ``"node"`` or ``"jammer"``, for messages.
+        points_m: positions east, north, up [m], shape (n, 3), or an empty list.
+        power_w: transmit powers [W], shape (n,) or one for all; 1 if neither these are given nor
+        power_dbm: the same in dBm.
+
+    Raises:
+        UsageError: shapes that do not go together.
+    """
+    places = _numbers(f"{kind}s_m", points_m)
+    require_usage(
+        places.size == 0 or places.shape[1:] == (3,),
+        f"{kind}s_m: given shape {places.shape}; allowed: (n, 3), a row of east, north and up in metres "
+        "for each; try its transpose .T, [[east, north, up]] for one point, or zeros for heights",
+    )
+    columns = {"position_m": places.reshape(-1, 3)}
+    powers = {"power_w": 1.0 if power_w is None and power_dbm is None else power_w, "power_dbm": power_dbm}
+    count = len(columns["position_m"])
+    for key, values in powers.items():
+        if values is not None:
+            power = _numbers(f"{kind}_{key}", values)
+            require_usage(
+                power.shape in ((), (count,)),
+                f"{kind}_{key}: given shape {power.shape} with {count} {kind}s; allowed: one number, or "
+                f"shape ({count},)",
+            )
+            columns[key] = np.broadcast_to(power, count)
+    return [
+        dict(zip(columns, row, strict=True))
+        for row in zip(*map(np.ndarray.tolist, columns.values()), strict=True)
+    ]
+
+
+def _numbers(name: str, values: ArrayLike) -> Floats:
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"{name}: given values that make no array of numbers; allowed: numbers, in rows of equal length"
+        ) from None

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from itertools import chain
-from typing import Any, ClassVar, Self, get_args
+from typing import Any, ClassVar, Self, TypeAlias, get_args
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from pydantic import (
     BaseModel,
     ConfigDict,
@@ -35,6 +37,7 @@ from nullpose.scenario.faults import (
 from nullpose.scenario.rules import MOST_MEMBERS
 from nullpose.scenario.ways import Ways
 
+Floats: TypeAlias = NDArray[np.float64]
 _MOST_UNKNOWN = 20  # keys of a table that are judged one by one
 
 
@@ -231,6 +234,13 @@ class Section(BaseModel):
         return type(self) is type(other) and all(
             getattr(self, key) == getattr(other, key) for key in type(self).model_fields
         )
+
+
+def read_only(values: ArrayLike, shape: Sequence[int]) -> Floats:
+    """Return the values as a float64 array of the given shape that refuses to be written to."""
+    array = np.array(values, dtype=np.float64).reshape(shape)
+    array.flags.writeable = False
+    return array
 
 
 def optional(description: str, *examples: object) -> Any:

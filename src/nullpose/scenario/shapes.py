@@ -10,9 +10,9 @@ import shapely
 from shapely import LinearRing, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from nullpose.scenario.arrays import Floats
 from nullpose.scenario.faults import require
 from nullpose.scenario.geodesy import geodetic_from_enu, wrapped
+from nullpose.scenario.section import Floats
 
 _SAME_CORNER_DEG = 9e-8  # a centimetre
 _STRAIGHT_DEG = 0.02  # an edge of this length, straight in degrees, is within 0.2 m of straight in metres
