@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from nullpose.objectives.custom import Custom
 from nullpose.objectives.downlink import DOWNLINK
-from nullpose.objectives.friendly_jamming import FRIENDLY_JAMMING
 from nullpose.objectives.means import PROPORTIONAL_FAIR, SUM_RATE
 from nullpose.objectives.min_sinr import MIN_SINR
 from nullpose.objectives.ratios import FloatArray, IntArray, Ratios
 from nullpose.objectives.record import LEAST_RATE_BPS_HZ, ObjectiveRecord, Quantity
 from nullpose.objectives.relay import RELAY
-from nullpose.objectives.secrecy_rate import SECRECY_RATE
+from nullpose.objectives.secrecy import FRIENDLY_JAMMING, SECRECY_RATE
 
 __all__ = [
     "LEAST_RATE_BPS_HZ",

@@ -113,7 +113,7 @@ class ScenarioTables(
     ways=(Ways((("nodes",), ("nodes_from",)), fewest=0, most=2),),
     unstated=("objective", "eavesdroppers", "sources", "buildings"),
 ):
-    """The tables of a scenario, and arrays of its points; of arrays sources are the nodes, then the jammers."""
+    """The tables of a scenario, and arrays of its points: sources are the nodes, then the jammers."""
 
     name: Title = Field(
         default="",
