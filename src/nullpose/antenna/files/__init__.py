@@ -1,4 +1,4 @@
-"""Files of radiation patterns: seven formats, one file each, read into one table over the sphere."""
+"""Files of radiation patterns: seven formats, read into one table over the sphere."""
 
 from __future__ import annotations
 

@@ -13,9 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from nullpose.antenna.files.block import Block, Lines, gridded, refuse, require
-from nullpose.antenna.files.cst import read_cst, read_ffs
 from nullpose.antenna.files.csv_table import profile_of, read_csv
-from nullpose.antenna.files.hfss import read_ffd
+from nullpose.antenna.files.far_fields import read_cst, read_ffd, read_ffs
 from nullpose.antenna.files.msi import read_msi
 from nullpose.antenna.files.nec import read_mininec, read_nec
 from nullpose.antenna.harmonics import (
