@@ -26,13 +26,15 @@ _SAME_M = 1e-9  # an offset smaller than this is lost in the coordinates
 
 def unplaced(table: Section, raw: Mapping[str, object]) -> Iterator[tuple[Place, str]]:
     """Yield the keys of an airspace or a zone that mean nothing without the origin of a scenario."""
-    for key, metric in EARTHLY.items():
-        if getattr(table, key, None) is not None and raw.get(metric) is None:
-            yield (
-                (key,),
-                f"needs the [origin] of a scenario; state {metric} here, or give the scenario as a "
-                "file or as plain data (Scenario.from_dict)",
-            )
+    return (
+        (
+            (key,),
+            f"needs the [origin] of a scenario; state {metric} here, or give the scenario as a "
+            "file or as plain data (Scenario.from_dict)",
+        )
+        for key, metric in EARTHLY.items()
+        if getattr(table, key, None) is not None and raw.get(metric) is None
+    )
 
 
 class NoFlyZone(
