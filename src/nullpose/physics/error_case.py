@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from nullpose.errors import require_usage
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
+from nullpose.scenario.section import read_only
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -41,8 +42,7 @@ class ErrorCase:
                 array.shape[-len(wanted) :] == wanted and np.all(np.isfinite(array)),
                 f"error case {field.name} must be finite, of shape {wanted}; given {array.tolist()}",
             )
-            array.flags.writeable = False
-            object.__setattr__(self, field.name, array)
+            object.__setattr__(self, field.name, read_only(array, array.shape))
 
     @classmethod
     def none(cls, scenario: Scenario) -> ErrorCase:

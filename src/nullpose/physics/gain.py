@@ -12,10 +12,6 @@ from nullpose.physics.types import FloatArray
 from nullpose.scenario import GroundPoint, Scenario, Terminal
 
 
-def _unit(vectors: FloatArray) -> FloatArray:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
-
-
 def antenna_gain(
     position_m: ArrayLike, axis: ArrayLike, points_m: ArrayLike, antenna: AnyAntenna = SHORT_DIPOLE
 ) -> FloatArray:
@@ -40,7 +36,8 @@ def antenna_gain(
     """
     to_points = np.asarray(points_m, dtype=float) - np.asarray(position_m, dtype=float)[..., None, :]
     if not antenna.is_quadratic:
-        return antenna.gain(np.matmul(_unit(to_points), np.asarray(axis, dtype=float)))
+        directions = to_points / np.linalg.norm(to_points, axis=-1, keepdims=True)
+        return antenna.gain(np.matmul(directions, np.asarray(axis, dtype=float)))
     u = np.asarray(axis, dtype=float)
     x, y, z = to_points[..., 0], to_points[..., 1], to_points[..., 2]
     ux, uy, uz = u[..., 0, None], u[..., 1, None], u[..., 2, None]

@@ -20,6 +20,7 @@ from nullpose.physics.rotation import (
 )
 from nullpose.physics.types import FloatArray
 from nullpose.scenario import Scenario
+from nullpose.scenario.section import read_only
 
 FARTHEST_M = 1e100
 """How far from the origin a pose may be, along each axis [m]: the square of a distance is still a number."""
@@ -84,8 +85,7 @@ class Pose:
             all(map(math.isfinite, angles)),
             f"{', '.join(names)}: given {angles}; allowed: finite angles, radians",
         )
-        position_m.flags.writeable = False
-        object.__setattr__(self, "position_m", position_m)
+        object.__setattr__(self, "position_m", read_only(position_m, (3,)))
         for name, angle in zip(names, angles, strict=True):
             object.__setattr__(self, name, angle)
 

@@ -76,6 +76,10 @@ _REMEDY = (
     "correct it in the file, or write missing_height_m = 9 or [4, 12] beside buildings_from, which counts "
     "for all that cannot be read"
 )
+_NO_HEIGHT = (
+    "it states no height (height, or building:levels with storey_height_m){}; write storey_height_m = 3, or "
+    "missing_height_m = 9 or [4, 12] for those that state none, beside buildings_from"
+)
 
 
 class BuildingHeight(NamedTuple):
@@ -242,7 +246,9 @@ def buildings_of(
 
     each, faults = call_each(areas_with_height, marked)
     found: list[tuple[Area, BuildingHeight]] = list(chain.from_iterable(each))
-    faults += _without_height([area.place for area, height in found if not height.by])
+    unstated = [area.place for area, height in found if not height.by]
+    more = f", and so {len(unstated) - 1} more" if unstated[1:] else ""
+    faults += [Fault(place, _NO_HEIGHT.format(more)) for place in unstated[:1]]  # once for all
     raise_all(faults)
     total = sum(len(area.polygons) for area, _ in found)
     require(
@@ -257,16 +263,6 @@ def buildings_of(
         for index, place in enumerate([area.place for area, _ in found for _ in area.polygons], first)
     }
     return tables, list(_notes(found, counts, gone)), places
-
-
-def _without_height(places: Sequence[str]) -> list[Fault]:
-    """List, once for all, that buildings state no height and no rule says which to assume."""
-    message = (
-        "it states no height (height, or building:levels with storey_height_m)"
-        f"{f', and so {len(places) - 1} more' if places[1:] else ''}; write storey_height_m = 3, or "
-        "missing_height_m = 9 or [4, 12] for those that state none, beside buildings_from"
-    )
-    return [Fault(place, message) for place in places[:1]]
 
 
 def _tables(area: Area, height: BuildingHeight, rules: Building, names: set[str]) -> Iterator[PlainTable]:

@@ -146,11 +146,6 @@ class Channel(Section, ways=(Ways((("environment",), _NUMBERS), fewest=0),)):
         """The distance at which the reference gain holds [m]."""
         return self.reference_distance_m or 1.0
 
-    @property
-    def states_law(self) -> bool:
-        """Whether it states an exponent or a reference distance: it means nothing closer than this."""
-        return bool(self.exponent or self.reference_distance_m)
-
     def describe(self, *, among_buildings: bool) -> str:
         """Put into words what it is, as in ``elevation, environment urban, average power``.
 

@@ -167,6 +167,7 @@ def _channel_faults(
     channels = {place: table.channel for place, table in tables.items() if table.channel is not None}
     for place, channel in channels.items():
         d0_m, key = channel.gain_distance_m, (*place, "channel", "reference_distance_m")
+        states_law = bool(channel.exponent or channel.reference_distance_m)  # with no meaning closer than d0
         is_undecided = channel.model == "elevation" and channel.is_by_sight and channel.average is None
         gain_db = 10.0 * np.log10(receiver.reference_gain) - 20.0 * np.log10(d0_m) if receiver else math.nan
         yield from faults_of(
@@ -182,13 +183,13 @@ def _channel_faults(
                 "on line of sight; add it",
             ),
             (
-                channel.states_law and keep_out_m is not None and d0_m > keep_out_m,
+                states_law and keep_out_m is not None and d0_m > keep_out_m,
                 key,
                 f"got {d0_m:g}, must be at most airspace.keep_out_m = {keep_out_m or 0.0:g}: a power law has "
                 "no meaning at a shorter distance; make keep_out_m longer",
             ),
             (
-                channel.states_law and d0_m != 1.0 and receiver and receiver.frequency_hz is not None,
+                states_law and d0_m != 1.0 and receiver and receiver.frequency_hz is not None,
                 key,
                 f"got {d0_m:g}, but receiver.frequency_hz gives the gain at 1 m; state the gain at "
                 f"{d0_m:g} m in its place, in free space reference_gain_db = {gain_db:.2f}",
