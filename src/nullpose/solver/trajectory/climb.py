@@ -123,14 +123,17 @@ class Climb:
         spaces = half_spaces(
             domain, places_m[:-1], places_m[1:], self.points_m[:-1], self.points_m[1:], radius_m
         )
-        near, self.domains = spaces.slacks_m < _NEAR_M, []
-        for t in range(len(places_m)):
-            rows = [
-                np.column_stack([spaces.normals[s, near[s]], offsets[s, near[s]]])
-                for s, offsets in ((t - 1, spaces.ends), (t, spaces.starts))
-                if 0 <= s < len(near) and t not in self.held  # which may be on a border
-            ]
-            sides = np.insert(np.vstack([np.empty((0, 4)), *rows]), 0, 0.0, axis=1)
+        near, count = spaces.slacks_m < _NEAR_M, len(places_m)
+        planes = [
+            np.dstack([np.zeros(near.shape), spaces.normals, offsets])
+            for offsets in (spaces.starts, spaces.ends)
+        ]
+        none, self.domains = np.zeros((0, 5)), []
+        for t in range(count):
+            is_held = t in self.held  # which may be on a border
+            after = none if is_held or t == count - 1 else planes[0][t, near[t]]
+            before = none if is_held or t == 0 else planes[1][t - 1, near[t - 1]]
+            sides = np.concatenate([before, after])
             low_m, high_m = self.held.get(t, domain.low_m), self.held.get(t, domain.high_m)
             # pieces have one side each; balls and zones are among them
             self.domains.append(
@@ -148,7 +151,7 @@ class Climb:
             self._values(family, domain, pose)
             for family, domain, pose in zip(course.families, self.domains, poses, strict=True)
         ]
-        if not all(np.all(values > -math.inf) for values, _ in each):
+        if not np.all(np.concatenate([values for values, _ in each]) > -math.inf):
             return None
         levels = self._levels([values[rows] for values, rows in each])
         directions, system = np.zeros((count, 5, 6)), np.zeros((count, 6, 6))

@@ -21,7 +21,8 @@ _POINTS = 700  # of the lattice, about
 _FINEST_M = 4.0
 _LONGEST = 8.0  # finest steps beyond the reach of an instant that a stride may have
 _CLEAR_M, _ON_BORDER_M = 1e-3, 1e-9
-_PLACES, _APART, _FINE_M = 8, 1.5, 0.3  # to hover at: how many, how many steps apart, and how fine
+_PLACES, _APART = 8, 1.5  # to hover at: how many at first, and how many steps apart
+_KEPT, _FINE_M = 2, 0.1  # how many at last, and how fine
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +89,7 @@ class Lattice:
         """Search for places to hover at, from the best of the lattice, (n, 3), the best first.
 
         Each is moved to the best of its neighbours, in a grid that is turned anew, half as far where none is
-        better.
+        better. The worst is dropped each time, until two are left.
 
         Args:
             is_worst: whether the least gain of all instants counts, or their sum.
@@ -115,7 +116,9 @@ class Lattice:
             chosen[is_better] = around_m.reshape(len(chosen), -1, 3)[is_better, top[is_better]]
             steps_m = np.where(is_better & (top != len(grid) // 2), steps_m, 0.5 * steps_m)
             best = np.maximum(best, np.max(totals, axis=1))
-        return chosen[np.argsort(-best, kind="stable")]
+            order = np.argsort(-best, kind="stable")[: max(_KEPT, len(best) - 1)]
+            chosen, steps_m, best = chosen[order], steps_m[order], best[order]
+        return chosen
 
     def _stages(self, strides: float) -> tuple[IntArray, NDArray[np.bool_]]:
         """Choose instants so far apart that a path may turn; tell which positions are in reach, (m, m)."""

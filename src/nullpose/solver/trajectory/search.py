@@ -14,9 +14,10 @@ from nullpose.solver.trajectory.lattice import INSIDE, Lattice
 from nullpose.solver.trajectory.segments import half_spaces
 
 _STRIDES = 1.5, 2.5  # of the lattice's step
-_BARRIERS = {True: (1e-2, 1e-3), False: (1e-1, 1e-2)}  # by whether the worst instant counts: for all its rows
+_BARRIERS = {True: (1e-3, 1e-2), False: (1e-2, 1e-1)}  # by whether the worst instant counts: for all its rows
 _ROUGH, _END = 1e-3, {True: 3e-7, False: 3e-6}
 _FINISHED = 2  # of the rough climbs, the best
+_NEAR, _REACHED = 2e-2, 1e-5  # below the best at each instant, of a rough climb and of a finished one
 _AT_REST_M_S = 1e-4
 _MARGIN = 1e-3  # of the airspace's height that starts keep from its floor, at most 1 cm
 _MARGIN_M = 1e-2
@@ -67,27 +68,29 @@ def best_flight(course: Course, best_poses: FloatArray, deadline: float) -> tupl
         The trajectory, if one was found, and the lattice.
     """
     lattice, is_worst = Lattice.around(course, best_poses[:, :3]), course.aim.is_worst
-    paths = [lattice.best_path(worst, strides) for worst in (is_worst, not is_worst) for strides in _STRIDES]
     slower = replace(course, speed_max_m_s=INSIDE * course.speed_max_m_s)
-    paths.append(greedy(slower, best_poses).poses[:, :3])
+    paths = [greedy(slower, best_poses).poses[:, :3]]
+    paths += [lattice.best_path(worst, strides) for worst in (is_worst, not is_worst) for strides in _STRIDES]
     climbs = [
         (Climb(course, poses), mu)
         for poses in (inside(course, path) for path in _distinct(paths))
         if is_allowed(course, poses[:, :3])
         for mu in _BARRIERS[is_worst]
     ]
-    rough = [
-        (climb, climb.run(mu, _ROUGH, deadline))
-        for i, (climb, mu) in enumerate(climbs)
-        if i == 0 or limit_clock() < deadline
-    ]
-    found = [(course.aim.score(course.logs(poses)), i) for i, (_, poses) in enumerate(rough)]
-    finished = [
-        flight_of(course, rough[i][0].run(_ROUGH, _END[is_worst], deadline), rough[i][0])
-        for _, i in sorted(found, reverse=True)[:_FINISHED]
-    ]
-    finished = [each for each in finished if each.score > -np.inf]
-    return max(finished, key=lambda each: each.score, default=None), lattice
+
+    def finished(climb: Climb) -> Flight:
+        return flight_of(course, climb.run(_ROUGH, _END[is_worst], deadline), climb)
+
+    ceiling, rough = course.aim.score(course.logs(best_poses)), list[tuple[float, int]]()
+    for i, (climb, mu) in enumerate(climbs):
+        if i == 0 or limit_clock() < deadline:
+            rough.append((course.aim.score(course.logs(climb.run(mu, _ROUGH, deadline))), i))
+            is_near = rough[-1][0] > ceiling - _NEAR
+            if is_near and (flight := finished(climb)).score > ceiling - _REACHED:
+                return flight, lattice  # the best at each instant that counts
+    flights = [finished(climbs[i][0]) for _, i in sorted(rough, reverse=True)[:_FINISHED]]
+    flights = [each for each in flights if each.score > -np.inf]
+    return max(flights, key=lambda each: each.score, default=None), lattice
 
 
 def hovering(course: Course, lattice: Lattice, deadline: float) -> Flight | None:
@@ -100,14 +103,13 @@ def hovering(course: Course, lattice: Lattice, deadline: float) -> Flight | None
     """
     fixed_m = [each for each in course.ends_m if each is not None]
     is_worst, count, best = course.aim.is_worst, len(course.times_s), None
-    places_m = [
-        np.tile(place_m, (count, 1)) for place_m in fixed_m[:1] or lattice.best_places(is_worst, deadline)
-    ]
-    if not fixed_m:
+    places_m = fixed_m[:1] or lattice.best_places(is_worst, deadline)
+    places_m = [np.tile(place_m, (count, 1)) for place_m in places_m]
+    if not fixed_m and is_clear(course, places_m[0]):
         held = replace(course, speed_max_m_s=_AT_REST_M_S)
-        starts = [Climb(held, inside(held, each)) for each in places_m[:_FINISHED] if is_clear(course, each)]
-        ends_m = [climb.run(_BARRIERS[is_worst][0], _END[is_worst], deadline)[:, :3] for climb in starts]
-        places_m += [np.tile(each.mean(axis=0), (count, 1)) for each in ends_m]
+        climb = Climb(held, inside(held, places_m[0]))
+        end_m = np.mean(climb.run(_BARRIERS[is_worst][1], _END[is_worst], deadline)[:, :3], axis=0)
+        places_m.append(np.tile(end_m, (count, 1)))
     for each in places_m:
         if is_allowed(course, each) and (best is None or limit_clock() < deadline):
             climb = Climb(course, _posed(course, each), turns_only=True)
@@ -153,7 +155,7 @@ def seeing_ahead(course: Course, window_s: float, start: Flight, deadline: float
         last = int(np.searchsorted(course.times_s, course.times_s[t] + window_s, side="right"))
         part = course.part(t, max(last, t + 2), poses[t, :3])
         ahead = inside(part, np.tile(poses[t, :3], (len(part.times_s), 1)))
-        poses[t + 1] = Climb(part, ahead).run(_BARRIERS[False][1], _ROUGH)[1]
+        poses[t + 1] = Climb(part, ahead).run(_BARRIERS[False][0], _ROUGH)[1]
     return flight_of(course, poses)
 
 
