@@ -3,7 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
+from sizes import few_examples
 from tests.certificate.plain import boxes_at, seeds
 
 from nullpose.certificate.boxes import Boxes
@@ -64,7 +65,7 @@ def value_at(bound: Taylor, i: int, shift: np.ndarray) -> float:
     return float(value + slopes @ shift + 0.5 * bends[:3] @ shift**2)
 
 
-@settings(max_examples=40)
+@few_examples(15)
 @given(seed=seeds)
 def test_allowed_positions_meet_an_alternative(seed: int, paper: Callable) -> None:
     """Whatever the zone: what it allows meets all constraints of an alternative."""

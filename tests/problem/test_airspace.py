@@ -4,7 +4,8 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 
 from nullpose.problem.airspace import airspace_zones, convex_parts, hull_and_pockets
 from nullpose.problem.records import Domain
@@ -69,7 +70,7 @@ def in_zones(zones: dict[str, np.ndarray], positions: np.ndarray) -> np.ndarray:
     return np.array([any(in_zone(domain, z, p) for z in range(count)) for p in positions])
 
 
-@settings(max_examples=50)
+@few_examples(20)
 @given(seed=SEEDS, zones=st.integers(0, 3), fenced=st.booleans())
 def test_pieces_and_zones_forbid_what_the_airspace_forbids(seed: int, zones: int, fenced: bool) -> None:
     """In the box, a position is allowed exactly if it is outside of all pieces, and of all zones."""
@@ -159,7 +160,7 @@ def test_shapes_are_cut_into_convex_parts(name: str) -> None:
         check(np.roll(polygon, first, axis=0), rng)
 
 
-@settings(max_examples=50)
+@few_examples(20)
 @given(seed=SEEDS, count=st.integers(3, 12))
 def test_stars_are_cut_into_convex_parts(seed: int, count: int) -> None:
     """Random star-shaped polygons of up to twelve vertices."""

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from scipy.optimize import differential_evolution
+from sizes import few_examples
 
 from nullpose import Scenario, apply_overrides, certificate_of, load, solve, verify
 from nullpose.channel.elevation import AVERAGES
@@ -89,7 +90,7 @@ def test_poses_at_random_never_exceed_the_bound_of_a_pattern() -> None:
 LOSSES_DB = st.floats(0.0, 15.0)
 
 
-@settings(max_examples=40)
+@few_examples(12)
 @given(
     seed=st.integers(0, 2**32 - 1),
     average=st.sampled_from(AVERAGES),

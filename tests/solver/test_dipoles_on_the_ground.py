@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from sizes import and_slow, chosen, few_examples
+from sizes import and_slow, chosen, diagonal, few_examples
 
 from nullpose.certificate import verify
 from nullpose.physics import objective_value
@@ -45,13 +45,9 @@ def test_whips_have_their_known_optimum(ratio: float, value: float, paper: Calla
     assert verify(certificate_of(solution)).proved
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize(
-    ("kinds", "null_depth_db"),
-    and_slow(
-        [(("nodes",), None), (("nodes", "jammers"), 25.0)],
-        [(("nodes",), 25.0), (("jammers",), None), (("jammers",), 25.0), (("nodes", "jammers"), None)],
-    ),
+    ("scheme", "kinds", "null_depth_db"),
+    diagonal(SCHEMES, [("nodes",), ("jammers",), ("nodes", "jammers")], [None, 25.0]),
 )
 def test_every_case_is_certified(
     scheme: str, kinds: tuple[str, ...], null_depth_db: float | None, paper: Callable

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 
 from nullpose import load
 from nullpose.errors import ScenarioError
@@ -92,7 +93,7 @@ EDITS = st.one_of(
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-@settings(max_examples=30, deadline=None)
+@few_examples(8)
 @given(edits=st.lists(EDITS, min_size=1, max_size=6))
 def test_what_is_saved_loads_as_it_was_and_keeps_its_comments(name: str, edits: list[Edit]) -> None:
     """After any edits, by themselves; its heading stays."""

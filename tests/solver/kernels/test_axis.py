@@ -5,9 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from scipy.linalg import sqrtm
 from scipy.optimize import minimize
+from sizes import few_examples
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -85,7 +86,7 @@ def searched(family: Family, p: np.ndarray, rng: np.random.Generator, refined: i
     return math.exp(best)
 
 
-@settings(max_examples=25)
+@few_examples(12)
 @given(seed=SEEDS, nodes=st.sampled_from([1, 2, 3, 4, 5, 10, 30]), jammers=st.integers(0, 3))
 def test_no_search_finds_a_better_axis(seed: int, nodes: int, jammers: int, random_scene: Callable) -> None:
     """A dense search of the sphere refined by SLSQP comes to the same value and never above it."""

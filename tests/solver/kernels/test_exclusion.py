@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from sizes import and_slow
+from sizes import and_slow, diagonal
 
 from nullpose.problem.airspace import airspace_zones
 from nullpose.problem.axis_field import AxisField
@@ -277,8 +277,9 @@ AFFINE_FIELDS = ["vertical", "towards", "broadside"]
 
 
 @pytest.mark.parametrize(("cases", "share", "by_sum"), and_slow([(24, 0.5, 0.25)], [(64, 0.6, 0.4)]))
-@pytest.mark.parametrize("border", ["none", "ball", "zone", "fence"])
-@pytest.mark.parametrize("family", ["shared", "groups", "turned"])
+@pytest.mark.parametrize(
+    ("family", "border"), diagonal(["shared", "groups", "turned"], ["none", "ball", "zone", "fence"])
+)
 def test_the_best_pose_of_a_box_is_not_excluded(
     family: str, border: str, cases: int, share: float, by_sum: float
 ) -> None:

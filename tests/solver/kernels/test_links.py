@@ -7,7 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 from tests.reference.plain_kernels import plain
 
 from nullpose.certificate.pose_value import exact, link
@@ -129,7 +130,7 @@ def test_log_ratios_beside_the_null(offset: float, paper: Callable) -> None:
         np.testing.assert_allclose(log_values(family, p, u), expected, atol=1e-13)
 
 
-@settings(max_examples=15)
+@few_examples(8)
 @given(seed=SEEDS, ratios=st.integers(1, 3), groups=st.integers(1, 2))
 def test_derivatives_are_exact(seed: int, ratios: int, groups: int, random_family: Callable) -> None:
     """Gradients and weighted Hessian agree with exact differences to rounding, several denominators too."""

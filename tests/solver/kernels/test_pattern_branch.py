@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 
 from nullpose.antenna.caps import pattern_arrays
 from nullpose.antenna.dipoles import half_wave_harmonics
@@ -78,7 +79,7 @@ def rotation_at(family: Family, cell: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("which", range(len(PATTERNS)))
-@settings(max_examples=60)
+@few_examples(20)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_a_pose_keeps_its_cell(which: int, seed: int) -> None:
     """Whatever the cell's size, the branch and bound never empties it below the value of a pose inside."""
@@ -104,7 +105,7 @@ THIN = half_wave_harmonics()
 
 
 @pytest.mark.parametrize("even", [True, False], ids=["even", "uneven"])
-@settings(max_examples=100)
+@few_examples(25)
 @given(seed=st.integers(0, 2**32 - 1), tilt=st.floats(0.0, 1.5), share=st.floats(-1.0, 1.0))
 def test_a_pose_within_reach_keeps_its_cell(even: bool, seed: int, tilt: float, share: float) -> None:
     """So it is for antennas that are the same all round, by any anchor and at the ends of the reach."""

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -22,7 +23,7 @@ def box_of(family: Family, level: float) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-@settings(max_examples=40)
+@few_examples(20)
 @given(seed=SEEDS, nodes=st.integers(1, 6), jammers=st.integers(0, 2))
 def test_no_better_pose_lies_outside_the_box(
     seed: int, nodes: int, jammers: int, random_scene: Callable

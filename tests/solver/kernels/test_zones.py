@@ -4,7 +4,8 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 from tests.reference.plain_kernels import plain
 
 from nullpose.problem.airspace import airspace_zones
@@ -136,7 +137,7 @@ LATTICE = {
 }
 
 
-@settings(max_examples=60)
+@few_examples(20)
 @given(seed=SEEDS, name=st.sampled_from(sorted(LATTICE)), is_fence=st.booleans())
 def test_borders_on_the_faces_of_boxes(seed: int, name: str, is_fence: bool) -> None:
     """Edges and vertices that lie exactly on faces, edges and corners of boxes are neither lost nor invented.

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 
 from nullpose import Scenario
 from nullpose.solver.kernels.bounds import branch, node
@@ -64,7 +65,7 @@ def is_excluded(course: Course, tilt: np.ndarray, low_m: np.ndarray, high_m: np.
 
 
 @pytest.mark.parametrize(("aim", "airframe"), list(COURSES))
-@settings(max_examples=60)
+@few_examples(20)
 @given(seed=st.integers(0, 10**6))
 def test_no_box_is_excluded_that_has_what_is_sought(aim: Aim, airframe: str, seed: int) -> None:
     """Whatever the price, the size of the box, and what is subtracted there."""

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
+from sizes import few_examples
 
 import nullpose
 from nullpose import Scenario, Trajectory
@@ -76,7 +77,7 @@ def test_it_keeps_to_the_speed_and_the_airspace(found: Trajectory) -> None:
     assert np.all((heights_m >= 8.0 - 1e-9) & (heights_m <= 30.0 + 1e-9))
 
 
-@settings(max_examples=40)
+@few_examples(12)
 @given(seed=st.integers(0, 10**6))
 def test_no_random_flight_exceeds_the_bound(found: Trajectory, seed: int) -> None:
     """Flights near the best one, as fast as allowed, with other attitudes."""
@@ -149,7 +150,7 @@ def test_no_flight_that_misses_the_end_takes_its_place() -> None:
     assert found.baselines["window"] is None
 
 
-@settings(max_examples=6, deadline=None)
+@few_examples(5)
 @given(east_m=st.floats(-12.0, 12.0), north_m=st.floats(15.0, 35.0), speed_m_s=st.sampled_from([4.0, 10.0]))
 def test_no_segment_cuts_a_mast(east_m: float, north_m: float, speed_m_s: float) -> None:
     """A mast 1 m wide is thinner than what is flown in a step."""

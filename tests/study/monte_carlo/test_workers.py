@@ -15,9 +15,18 @@ import pandas as pd
 import psutil
 import pytest
 from sizes import and_slow
+from typer.testing import CliRunner
 
+from nullpose.cli.app import app
 from nullpose.errors import ClusterError
-from nullpose.study.monte_carlo import StudyProgress, StudySpec, read_study, run_study, study_status
+from nullpose.study.monte_carlo import (
+    StudyProgress,
+    StudySpec,
+    load_spec,
+    read_study,
+    run_study,
+    study_status,
+)
 from nullpose.study.monte_carlo.chunk import KILLED
 
 Rows = Callable[[Path], pd.DataFrame]
@@ -107,14 +116,12 @@ def test_an_address_without_a_scheduler(quick: Spec, tmp_path: Path, address: st
         server.shutdown()
 
 
-def test_an_address_where_nobody_listens(farm: Any, spec_file: SpecFile, tmp_path: Path) -> None:
+def test_an_address_where_nobody_listens(spec_file: SpecFile, tmp_path: Path) -> None:
     """The command ends with what to try, and no folder is left that looks like a study."""
-    farm.address = "tcp://127.0.0.1:1"
-    client = farm.client(spec_file(tmp_path), tmp_path / "out")
-    said, _ = client.communicate(timeout=farm.LONGEST_S)
-    assert client.returncode == 2
-    assert "dask worker tcp://127.0.0.1:1 --nthreads 1" in said
-    assert "Traceback" not in said
+    arguments = ("--out", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:1")
+    done = CliRunner().invoke(app, ["study", "run", *map(str, (spec_file(tmp_path), *arguments))])
+    assert done.exit_code == 2
+    assert "dask worker tcp://127.0.0.1:1 --nthreads 1" in " ".join(done.stderr.split())
     assert not (tmp_path / "out" / "manifest.json").exists()
 
 
@@ -151,13 +158,11 @@ def test_a_client_killed_several_times(
     assert seen == sorted(seen)
     assert 0 < seen[0] <= seen[-1] < SCENES, seen
     assert times == 1 or seen[0] < seen[-1]
-    last = farm.start(*command)
-    said, _ = last.communicate(timeout=farm.LONGEST_S)
-    assert last.returncode == 0, said
-    assert study_status(out).complete
+    assert run_study(load_spec(spec), out, workers=0).complete
     pd.testing.assert_frame_equal(rows(out), whole)
 
 
+@pytest.mark.grid
 def test_a_worker_of_a_cluster_killed(
     farm: Any, spec_file: SpecFile, tmp_path: Path, whole: pd.DataFrame, rows: Rows
 ) -> None:
@@ -215,6 +220,7 @@ def test_a_scene_that_no_worker_survives(
     pd.testing.assert_frame_equal(found[others], whole[:20][others])
 
 
+@pytest.mark.grid
 def test_a_scheduler_that_goes_away(
     farm: Any, spec_file: SpecFile, tmp_path: Path, whole: pd.DataFrame, rows: Rows
 ) -> None:
