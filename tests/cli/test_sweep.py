@@ -85,15 +85,15 @@ BY_HAND = ["channel.a=9.61", "channel.b=0.16", "channel.los_loss_db=1", "channel
 @pytest.mark.parametrize(
     ("file", "fixed", "path", "ends"),
     [
-        ("paper.toml", LAW[:1], "channel.exponent", (2.0, 3.5)),
+        pytest.param("paper.toml", LAW[:1], "channel.exponent", (2.0, 3.5), marks=pytest.mark.grid),
         ("paper.toml", LAW, "channel.reference_distance_m", (0.5, 1.0)),
         pytest.param(
             "town.toml", ["channel={}", *LAW], "channel.blocked_loss_db", (10.0, 30.0), marks=pytest.mark.slow
         ),
-        ("urban.toml", BY_HAND[1:], "channel.a", (5.0, 12.0)),
+        pytest.param("urban.toml", BY_HAND[1:], "channel.a", (5.0, 12.0), marks=pytest.mark.grid),
         ("urban.toml", BY_HAND, "channel.b", (0.1, 0.4)),
-        ("urban.toml", BY_HAND, "channel.los_loss_db", (0.0, 3.0)),
-        ("urban.toml", BY_HAND[:3], "channel.nlos_loss_db", (10.0, 30.0)),
+        pytest.param("urban.toml", BY_HAND, "channel.los_loss_db", (0.0, 3.0), marks=pytest.mark.grid),
+        pytest.param("urban.toml", BY_HAND[:3], "channel.nlos_loss_db", (10.0, 30.0), marks=pytest.mark.grid),
         pytest.param("town.toml", [], "buildings[0].height_m", (20.0, 60.0), marks=pytest.mark.slow),
         ("town.toml", [], "buildings.church.height_m", (20.0, 60.0)),
     ],

@@ -259,15 +259,13 @@ def test_other_claims_are_rejected(certificate: Certificate) -> None:
     others = {"min-sinr", *MEANS} - {certificate.scenario.objective}
     changes: list[dict[str, Any]] = [{"objective": other} for other in sorted(others)]
     nodes = certificate.scenario.nodes
-    for index, weight in ((0, 1.0), (0, 1.51), (1, 0.9), (2, 1.2), (2, 30.0)):
+    for index, weight in ((0, 1.51), (1, 0.9), (2, 30.0)):
         heavier = nodes[index].model_copy(update={"weight": weight})
         changes.append({"nodes": (*nodes[:index], heavier, *nodes[index + 1 :])})
     for change in changes:
         changed = certificate.scenario.model_copy(update=change)
         assert not verify(replace(certificate, scenario=changed)).proved, change
-    between = certificate.value + np.array([0.0, 0.2, 0.5, 0.8, 0.99]) * (
-        certificate.upper_bound - certificate.value
-    )
+    between = certificate.value + np.array([0.0, 0.5, 0.99]) * (certificate.upper_bound - certificate.value)
     for bound in between:
         assert not verify(replace(certificate, upper_bound=float(bound))).proved
 
@@ -275,10 +273,9 @@ def test_other_claims_are_rejected(certificate: Certificate) -> None:
 def test_lower_levels_and_other_multipliers_are_rejected(certificate: Certificate) -> None:
     """Leaves near the optimum hold at their level with their multipliers, and not below it or with others."""
     leaves = certificate.trees[0].leaves
-    for share in (0.9, 0.999):
-        assert not verify(_leaves(certificate, level=leaves.level * share)).proved
+    assert not verify(_leaves(certificate, level=leaves.level * 0.999)).proved
     used = [index for index, mix in enumerate(leaves.mixes) if mix]
-    for ratio, factor in ((0, 0.5), (1, 2.0), (2, 0.0)):
+    for ratio, factor in ((1, 2.0), (2, 0.0)):
         mixes = list(leaves.mixes)
         for index in used:
             mixes[index] = {k: q * (factor if k == ratio else 1.0) for k, q in mixes[index].items()}

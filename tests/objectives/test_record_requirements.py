@@ -128,7 +128,7 @@ def test_other_requirements_are_rejected() -> None:
     """A certificate proves nothing about weaker requirements, and nothing with a multiplier left out."""
     certificate = certificate_of(solve(demanding("sum-rate", 0.0, 0.0), gap=1e-3))
     assert verify(certificate).proved
-    for least_db in (None, -0.5, -0.01):
+    for least_db in (None, -0.01):
         nodes = certificate.scenario.nodes
         weaker = (nodes[0], nodes[1].model_copy(update={"min_sinr_db": least_db}))
         changed = certificate.scenario.model_copy(update={"nodes": weaker})

@@ -8,7 +8,7 @@ import pytest
 from benchmarks.soundness.check import check_scene
 from benchmarks.soundness.features import make_feature_scene
 from hypothesis import given, strategies as st
-from sizes import and_slow, few_examples
+from sizes import and_slow, chosen, few_examples
 
 from nullpose.certificate import verify
 from nullpose.physics import Pose, destination_snr, evaluate, node_snr, objective_value, sinr
@@ -70,7 +70,7 @@ def test_a_strong_drone_leaves_the_first_hop(scheme: str) -> None:
     assert strong.objective.value == pytest.approx(solve(hears, scheme).objective.value, rel=2e-6)
 
 
-@pytest.mark.parametrize("number", [0, 1, 2, 3, 4, 5])
+@pytest.mark.parametrize("number", chosen(range(6), [0, 1, 3]))
 def test_no_relay_is_better_than_a_hop_alone(number: int) -> None:
     """What a relay gives is at most the bound of each hop that is alone in the same airspace."""
     (scenario,) = relays(number)
@@ -168,7 +168,7 @@ def town() -> Scenario:
 
 def test_buildings_hide_the_destination_like_a_node(town: Scenario) -> None:
     """Its link is clear and blocked where that of a node at its place is, and no pose exceeds the bound."""
-    rng, result = np.random.default_rng(5), solve(town, gap=0.3)
+    rng, result = np.random.default_rng(5), solve(town, gap=1.0)
     low_m, high_m = [-100.0, -100.0, 20.0], [100.0, 100.0, 120.0]
     positions_m = rng.uniform(low_m, high_m, (2000, 3))
     positions_m[1000:] = rng.normal(result.pose.position_m, 5.0, (1000, 3)).clip(low_m, high_m)

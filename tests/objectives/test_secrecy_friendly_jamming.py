@@ -210,7 +210,7 @@ def certificate() -> Certificate:
     more = {"nodes": [{"position_m": [40.0, 0.0, 0.0]}, {"position_m": [5.0, 30.0, 0.0]}]}
     listeners = [{"position_m": [45.0, 28.0, 0.0]}, {"position_m": [30.0, 50.0, 0.0]}]
     scenario = jammed((45.0, 28.0), 3.0, eavesdroppers=listeners, **more)
-    return certificate_of(solve(scenario, gap=1e-2))
+    return certificate_of(solve(scenario, gap=0.1))
 
 
 def test_a_certificate_with_other_multipliers_is_rejected(certificate: Certificate) -> None:

@@ -59,7 +59,7 @@ def test_the_grid_lies_and_is_turned_at_random(spec: Spec) -> None:
     """The turn is uniform over a right angle, and no place is more often built on than another."""
     study = spec(scenes=10**6, buildings=FAR | {"environment": "urban"})
     turns, shares = [], []
-    for index in range(150):
+    for index in range(100):
         shapes = _shapes(draw_scene(study, index))
         (x0, y0), (x1, y1) = shapes[0].exterior.coords[:2]
         turns.append(math.atan2(y1 - y0, x1 - x0) % (math.pi / 2.0) / (math.pi / 2.0))

@@ -56,11 +56,9 @@ def test_numbers_and_names_are_drawn_as_stated(spec: Spec) -> None:
     """An exponent evenly between its ends, each environment as often as another."""
     exponents = [channel.exponent for channel in _channels(spec, 400, **LAW)]
     assert stats.kstest((np.array(exponents) - 2.0) / 1.5, "uniform").pvalue > 0.01
-    in_towns = [channel.exponent for channel in _channels(spec, 400, **TOWNS, exponent=LAW["exponent"])]
-    assert in_towns == exponents
-    names, counts = np.unique(
-        [channel.environment for channel in _channels(spec, 400, **TOWNS)], return_counts=True
-    )
+    in_towns = _channels(spec, 400, **TOWNS, exponent=LAW["exponent"])
+    assert [channel.exponent for channel in in_towns] == exponents
+    names, counts = np.unique([channel.environment for channel in in_towns], return_counts=True)
     assert list(names) == ["suburban", "urban"]
     assert stats.chisquare(counts).pvalue > 0.01
 
