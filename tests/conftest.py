@@ -194,10 +194,10 @@ def channel(request: pytest.FixtureRequest) -> LinkChannel | None:
 
 @pytest.fixture(scope="session")
 def reproduction(tmp_path_factory: pytest.TempPathFactory) -> "Reproduction":
-    """The paper's figures from two jamming levels a decade."""
+    """The paper's figures from a jamming level a decade, and one below that where the needle begins."""
     from nullpose.paper import reproduce
 
-    levels = [10.0 ** (exponent / 2) for exponent in range(-6, 13)]
+    levels = sorted([*(10.0**exponent for exponent in range(-3, 7)), 0.3])
     folder = tmp_path_factory.mktemp("reproduction")
     return reproduce(folder, levels=levels, printed_levels=[1e-3, 1.0, 1e5, 1e6])
 

@@ -36,7 +36,7 @@ def test_what_is_proved_as_data(reproduction: Reproduction) -> None:
     assert data["provenance"]["seed"] == 0
     assert list(data["figure2"]) == ["optimum", "zero-interference", "maximum-gain", "vertical"]
     for counts in data["figure2"].values():
-        assert counts["certified"] == counts["values"] == 19
+        assert counts["certified"] == counts["values"] == 11
         assert counts["largest_relative_gap"] <= 1e-6
 
 
@@ -128,7 +128,7 @@ def test_figure2_says_what_is_certified(reproduction: Reproduction) -> None:
     first, *others = reproduction.table.rows
     doubtful = replace(first, status="gap-not-reached")
     figure = draw_figure2(ResultTable(reproduction.table.path, (doubtful, *others)))
-    assert "not reached at 1 of 19 points" in figure.get_supxlabel()
+    assert "not reached at 1 of 11 points" in figure.get_supxlabel()
 
 
 def test_poses_are_drawn_to_scale(reproduction: Reproduction) -> None:

@@ -1,6 +1,7 @@
 """Peers, provers and workloads: their problem is the physics', their claims are judged by the poses."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
@@ -13,17 +14,21 @@ from benchmarks.peers import PEERS, Budget, climb
 from benchmarks.provers import FINISHED, NOT_CLOSED, Problem
 from benchmarks.provers.problem import Scaled
 from benchmarks.scenes import Scene, field_scenes
+from tests.reference.plain_kernels import plain
 
-from benchmarks import certified, fields, proofs, tracker
+from benchmarks import certified, fields, five_pose, proofs, tracker
 from nullpose.physics import Pose, min_sinr, sinr
 
 SCENE = Scene(nodes=5, jammers=3, jamming_ratio=10.0, seed=1)
 
 
 @pytest.fixture(scope="module")
-def problem() -> FivePose:
-    """One scene for all tests of peers."""
-    return FivePose.of(SCENE.scenario())
+def problem() -> Iterator[FivePose]:
+    """One scene for all tests of peers, its kernels as Python runs them."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("cost", "costs", "ratios_and_slopes"):
+            patch.setattr(five_pose, name, plain(getattr(five_pose, name)))
+        yield FivePose.of(SCENE.scenario())
 
 
 def points(count: int) -> np.ndarray:
@@ -58,7 +63,7 @@ def test_climb_never_loses(problem: FivePose) -> None:
 @pytest.mark.parametrize("name", [name for name in PEERS if not name.startswith("CMA")])
 def test_peer_gets_better_and_repeats(name: str, problem: FivePose) -> None:
     """A peer's answers get better from stage to stage and repeat with the seed."""
-    budget = Budget(evaluations=2_000, starts=8)
+    budget = Budget(evaluations=500, starts=4)
     runs = [[problem.cost(x) for _, x in PEERS[name](problem, budget, 0)] for _ in range(2)]
     assert runs[0] == runs[1] == sorted(runs[0], reverse=True)
 

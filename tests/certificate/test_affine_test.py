@@ -134,7 +134,7 @@ def test_negative_quadratics_are_negative() -> None:
     """What passes is negative at every position tried, also with the Hessian at its bounds; not in vain."""
     rng = np.random.default_rng(7)
     passed = missed = 0
-    for _ in range(400):
+    for _ in range(200):
         value, gradient, hessian = quadratic(rng)
         half = 10.0 ** rng.uniform(-2, 2, 3)
         slack = 10.0 ** rng.uniform(-8, -1) * np.abs(hessian).max()
@@ -152,7 +152,7 @@ def test_negative_quadratics_are_negative() -> None:
             assert tops.max() < 0.0
         elif tops.max() < 0.0:
             missed += 1
-    assert passed > 100
+    assert passed > 50
     assert missed < passed
 
 

@@ -84,7 +84,7 @@ def excluded(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> 
 def test_no_allowed_pose_of_an_excluded_box_reaches_the_level(field: AxisField) -> None:
     """At levels that forbidden positions of a box may reach, and allowed ones may or may not."""
     helped, count = 0, 60
-    for seed in range(5):
+    for seed in range(3):
         rng = np.random.default_rng(seed)
         family = zoned(random_family(rng, 1, 2))
         boxes, zone = boxes_at_borders(rng, count)
@@ -108,7 +108,7 @@ def test_no_allowed_pose_of_an_excluded_box_reaches_the_level(field: AxisField) 
             for p in boxes.centre[b] + shifts * boxes.half[b]:
                 if allows(int(zone[b]), p):
                     assert greatest(field, dense_forms(family, p)) < level[b]
-    assert helped > 12
+    assert helped > 7
 
 
 @pytest.mark.parametrize("field", [AxisField.free(), AxisField.vertical()])

@@ -28,6 +28,7 @@ def folder(tmp_path: Path) -> Path:
 # A fork for each command, so that nothing is imported twice.
 FORKS = """
 import json, os, sys
+import nullpose.solver.api, nullpose.report.scenario
 from nullpose.cli.app import main
 for number, words in enumerate(json.loads(sys.argv[1])):
     if not os.fork():

@@ -56,7 +56,7 @@ def test_half_wave(power_w: float, value: float) -> None:
 
 def test_lobed_pattern() -> None:
     """A pattern without symmetry: the known value, certified; roll, pitch and yaw all matter."""
-    result = solve(with_antenna(PAPER, {"kind": "pattern", "harmonics": pattern_rows(lobed, 4)}))
+    result = solve(with_antenna(PAPER, {"kind": "pattern", "harmonics": pattern_rows(lobed, 4)}), gap=1e-2)
     assert result.status == "certified"
     assert result.objective.value == pytest.approx(1.33940, abs=1e-5)
     assert result.rigour == "floating-point"
@@ -71,7 +71,7 @@ def test_a_dipole_as_a_pattern_is_a_dipole() -> None:
     scenario = with_antenna(
         PAPER, {"kind": "pattern", "harmonics": pattern_rows(lambda x, y, z: 1 - z**2, 2)}
     )
-    dipole, pattern = solve(PAPER), solve(scenario, gap=1e-2)
+    dipole, pattern = solve(PAPER), solve(scenario, gap=0.1)
     assert pattern.objective.value == pytest.approx(dipole.objective.value, rel=1e-6)
     assert pattern.objective.upper_bound >= dipole.objective.value
     assert min_sinr(PAPER, pattern.pose) == pytest.approx(pattern.objective.value, rel=1e-9)
@@ -83,7 +83,7 @@ def test_airframe(kind: str) -> None:
     rows = {"harmonics": pattern_rows(lobed, 4)} if kind == "pattern" else {}
     free = with_antenna(PAPER, {"kind": kind} | rows)
     tilted = apply_overrides(free, ["airframe.tilt_max_deg=20", "airframe.mount_deg=30"])
-    whole, less = solve(free, gap=0.1), solve(tilted, gap=0.1)
+    whole, less = solve(free, gap=0.3), solve(tilted, gap=0.3)
     assert less.pose.tilt_rad <= math.radians(20.0) + 1e-9
     assert less.objective.value <= whole.objective.upper_bound
     for roll, pitch, yaw, x, y in np.random.default_rng(1).uniform(-1.0, 1.0, (2000, 5)):

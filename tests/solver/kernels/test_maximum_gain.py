@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from paper_schemes import maximum_gain_axis, maximum_gain_sinr
 from scipy.optimize import minimize
+from sizes import diagonal
 
 from nullpose.problem.build import build_family
 from nullpose.problem.family import Family
@@ -51,8 +52,7 @@ def best_level(family: Family, p: np.ndarray, rng: np.random.Generator) -> float
     return best
 
 
-@pytest.mark.parametrize("nodes", [1, 3, 5])
-@pytest.mark.parametrize("jammers", [0, 1, 3])
+@pytest.mark.parametrize(("nodes", "jammers"), diagonal([1, 3, 5], [0, 1, 3]))
 def test_the_axis_serves_the_nodes_best(nodes: int, jammers: int, random_scene: Callable) -> None:
     """No axis gives the worst node more; the value is the smallest ratio at the axis."""
     rng = np.random.default_rng(10 * nodes + jammers)
