@@ -161,5 +161,10 @@ def frame_m(scenario: Scenario) -> FloatArray:
     corners = np.clip(airspace_outline_m(scenario), low - 0.5 * size_m, high + 0.5 * size_m)
     ends_m = airspace.lower_m[2], min(airspace.upper_m[2], size_m)
     ground = [[x, y, 0.0] for x in (low[0], high[0]) for y in (low[1], high[1])]
-    ticks = [[x, y, 0.0] for _, x, y in ticks_m(scenario)]
-    return np.vstack([ground, *(np.insert(corners, 2, end_m, axis=1) for end_m in ends_m), ticks])
+    return np.vstack(
+        [
+            ground,
+            *(np.insert(corners, 2, end_m, axis=1) for end_m in ends_m),
+            [[x, y, 0.0] for _, x, y in ticks_m(scenario)],
+        ]
+    )

@@ -55,18 +55,20 @@ class PoseCase:
         Args:
             scenario: as stated.
         """
-        sentences = []
-        if scenario.array is not None:
-            sentences.append("The array of the file is not shown: this is the pose of one antenna.")
-        if scenario.is_uncertain and not self.robust:
-            refused = ROBUST.missing(scenario)
-            advice = (
-                "the case Robust pose guards against them"
-                if refused is None
-                else f"robust poses do not allow for its {refused.partition(':')[0]}"
-            )
-            sentences.append(f"The errors of the file are left out; {advice}.")
-        return " ".join(sentences)
+        array = (
+            ""
+            if scenario.array is None
+            else "The array of the file is not shown: this is the pose of one antenna. "
+        )
+        if self.robust or not scenario.is_uncertain:
+            return array
+        refused = ROBUST.missing(scenario)
+        advice = (
+            "the case Robust pose guards against them"
+            if refused is None
+            else f"robust poses do not allow for its {refused.partition(':')[0]}"
+        )
+        return f"{array}The errors of the file are left out; {advice}."
 
 
 OPTIMUM = PoseCase(label="Optimum pose")

@@ -235,17 +235,15 @@ Shapes = dict[str, Shape]
 """All or a part of a scene, by the names in its tree."""
 
 
-def frame(position_m: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None) -> Shape:
+def frame(position_m: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike = _SAME_AXES) -> Shape:
     """Describe a frame that others are part of.
 
     Args:
         position_m: (3,) metres.
-        rotation: (3, 3); None for the parent's axes.
+        rotation: (3, 3) in the parent's axes.
     """
-    values = {"show_axes": False, "position": np.asarray(position_m)}
-    if rotation is not None:
-        values["wxyz"] = np.roll(Rotation.from_matrix(np.asarray(rotation)).as_quat(), 1)  # real part first
-    return Shape("frame", values)
+    wxyz = np.roll(Rotation.from_matrix(np.asarray(rotation)).as_quat(), 1)  # real part first
+    return Shape("frame", {"show_axes": False, "position": np.asarray(position_m), "wxyz": wxyz})
 
 
 def mesh(surface: Mesh, colour: ArrayLike, **style: object) -> Shape:
@@ -267,8 +265,6 @@ def coloured_mesh(surface: Mesh, colours: ArrayLike) -> Shape:
         surface: vertices and triangles.
         colours: (n, 3) red, green, blue in sRGB.
     """
-    import trimesh
-
     # without a material of its own the surface is of metal, which is dark where nothing is mirrored
     matt = trimesh.visual.material.PBRMaterial(metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
     visual = trimesh.visual.TextureVisuals(material=matt)
@@ -289,10 +285,14 @@ def lines(
         thickness: on the screen, pixels, or in the world, metres.
         units: which of the two.
     """
-    points, colours = np.asarray(segments_m, dtype=np.float32), np.asarray(colour, dtype=np.uint8)
     return Shape(
         "line_segments",
-        {"points": points, "colors": colours, "thickness": thickness, "thickness_units": units},
+        {
+            "points": np.asarray(segments_m, dtype=np.float32),
+            "colors": np.asarray(colour, dtype=np.uint8),
+            "thickness": thickness,
+            "thickness_units": units,
+        },
     )
 
 
@@ -305,5 +305,12 @@ def label(text: str, position_m: ArrayLike, scale: float = 0.9, anchor: str = "b
         scale: of its letters.
         anchor: the part of it that is at that place.
     """
-    style = {"font_screen_scale": scale, "anchor": anchor}
-    return Shape("label", {"text": text, "position": np.asarray(position_m, dtype=float)} | style)
+    return Shape(
+        "label",
+        {
+            "text": text,
+            "position": np.asarray(position_m, dtype=float),
+            "font_screen_scale": scale,
+            "anchor": anchor,
+        },
+    )

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
@@ -86,9 +87,8 @@ def lit(colour: str) -> str:
     Args:
         colour: as in "#d40000".
     """
-    hue, light, full = colorsys.rgb_to_hls(*(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)))
-    red, green, blue = (round(255 * part) for part in colorsys.hls_to_rgb(hue, 1.0 - 0.8 * light, full))
-    return either(colour, css((red, green, blue)))
+    hue, light, full = colorsys.rgb_to_hls(*to_rgb(colour))
+    return either(colour, to_hex(colorsys.hls_to_rgb(hue, 1.0 - 0.8 * light, full)))
 
 
 def css(colour: Iterable[int]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from nullpose.report.geometry import axis_angle_rad, distance_m
 from nullpose.studio.answer import Answer, signed
 from nullpose.studio.edits import ADDED, with_added, with_fence
 from nullpose.studio.state import Key, State
+from nullpose.study import Field
 
 FENCE = "fence"
 """The tool that draws a fence, whose corners are clicked one after the other."""
@@ -73,10 +75,12 @@ def picked(state: State, size_m: float, eye_m: ArrayLike, direction: ArrayLike) 
         return list(points)[int(np.argmin(off_rad))]
     if (ground_m := ground_place_m(size_m, eye_m, direction)) is None:
         return None
-    for i, zone in enumerate(state.scenario.airspace.no_fly):
-        if zone.depth_m([*ground_m, np.clip(0.0, zone.floor_m, zone.ceiling_m)]) >= 0.0:
-            return "no_fly", i
-    return None
+    zones: Iterator[Key] = (
+        ("no_fly", i)
+        for i, zone in enumerate(state.scenario.airspace.no_fly)
+        if zone.depth_m([*ground_m, np.clip(0.0, zone.floor_m, zone.ceiling_m)]) >= 0.0
+    )
+    return next(zones, None)
 
 
 def ground_place_m(
@@ -138,27 +142,28 @@ def reading(
     place_m = ground_place_m(size_m, eye_m, direction, 0.0 if field is None else field.altitude_m)
     if place_m is None:
         return None, []
-    lines = ["{} m east, {} m north".format(*(signed(number, 1) for number in place_m))]
-    if state.corners_m:
-        lines.append(f"{np.linalg.norm(place_m - state.corners_m[-1]):.1f} m from the last corner")
-    value = math.nan
-    if field is not None:
-        (value,) = interpn(
-            (field.north_m, field.east_m),
-            field.values,
-            place_m[::-1],
-            bounds_error=False,
-            fill_value=math.nan,
-        )
-        lines = [f"{signed(float(value))} {field.unit}"] * math.isfinite(value) + lines
-    return None, lines if state.tool or math.isfinite(value) else []
+    values = [] if field is None else _value_lines(field, place_m)
+    if not (values or state.tool):
+        return None, []
+    place = "{} m east, {} m north".format(*(signed(number, 1) for number in place_m))
+    away_m = [np.linalg.norm(place_m - corner_m) for corner_m in state.corners_m[-1:]]
+    return None, [*values, place, *(f"{metres:.1f} m from the last corner" for metres in away_m)]
+
+
+def _value_lines(field: Field, place_m: NDArray[np.float64]) -> list[str]:
+    """Write the value of a map at a place, (2,); no line where it has none."""
+    axes = field.north_m, field.east_m
+    (value,) = interpn(axes, field.values, place_m[::-1], bounds_error=False, fill_value=math.nan)
+    return [f"{signed(float(value))} {field.unit}"] * math.isfinite(value)
 
 
 def _link_lines(answer: Answer, key: Key, point_m: ArrayLike) -> list[str]:
     pose, antenna = answer.result.pose, answer.result.scenario.antenna_record
-    lines = [f"SINR {signed(answer.result.links[key[1]].sinr_db)} dB"] if key[0] == "nodes" else []
-    lines.append(f"{distance_m(pose, point_m):.1f} m from the drone")
-    if antenna.is_quadratic:
-        lines.append(f"{math.degrees(axis_angle_rad(pose, point_m)):.1f}\u00b0 off the null")
     (gain,) = antenna_gain(pose.position_m, pose.orientation(antenna), np.atleast_2d(point_m), antenna)
-    return [*lines, f"gain {signed(float(to_db(gain)))} dB"]
+    off_null = f"{math.degrees(axis_angle_rad(pose, point_m)):.1f}\u00b0 off the null"
+    return [
+        *([f"SINR {signed(answer.result.links[key[1]].sinr_db)} dB"] if key[0] == "nodes" else []),
+        f"{distance_m(pose, point_m):.1f} m from the drone",
+        *([off_null] if antenna.is_quadratic else []),
+        f"gain {signed(float(to_db(gain)))} dB",
+    ]

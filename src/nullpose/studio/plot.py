@@ -60,8 +60,13 @@ def power_plot_svg(
     if POWER_DB[0] <= power_db <= POWER_DB[1]:
         x, y = frame.at(power_db, math.nan if value is None else value)
         now = x, y if math.isfinite(y) else None
-    is_old = curve is None or curve.version != version
-    state = "outdated" if is_old else "current" if curve is not None and curve.complete else "growing"
+    state = (
+        "outdated"
+        if curve is None or curve.version != version
+        else "current"
+        if curve.complete
+        else "growing"
+    )
     powers = [
         (frame.at(tick_db, 0.0)[0], f"{tick_db:g}".replace("-", MINUS))
         for tick_db in np.arange(POWER_DB[0], POWER_DB[1] + 1.0, 10.0)

@@ -77,11 +77,11 @@ def node_rows(answer: Answer) -> Iterator[tuple[str, list[str], bool]]:
                 signed(quantity.in_unit(number)) for number in (quantity.at(link), quantity.of_ratio(lower))
             ]
         else:
-            numbers = [f"{signed(link.sinr_db)} dB"]
-            if link.margin_db is not None:
-                numbers.append(f"margin {signed(link.margin_db)} dB")
-            if quantity.is_rate:
-                numbers.append(f"{quantity.at(link):.3f} bits/s/Hz")
+            numbers = [
+                f"{signed(link.sinr_db)} dB",
+                *([] if link.margin_db is None else [f"margin {signed(link.margin_db)} dB"]),
+                *([f"{quantity.at(link):.3f} bits/s/Hz"] if quantity.is_rate else []),
+            ]
         yield link.node, numbers, link.node in answer.worst_nodes
 
 
@@ -189,9 +189,7 @@ class Bar(NamedTuple):
     @property
     def share(self) -> float:
         """How much of the bar is open, per cent, on a log scale between the ends."""
-        least, widest = _GAPS
-        gap = min(max(self.gap, least), widest)
-        return _CLOSED + (100.0 - _CLOSED) * (math.log(gap / least) / math.log(widest / least))
+        return float(np.interp(math.log(max(self.gap, _GAPS[0])), np.log(_GAPS), (_CLOSED, 100.0)))
 
 
 def proof(state: State) -> Bar:
