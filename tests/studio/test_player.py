@@ -139,7 +139,10 @@ def test_a_point_in_motion_is_not_put_elsewhere() -> None:
 
 
 def test_only_a_scene_in_motion_has_a_slider(paper: Scenario) -> None:
-    """It goes to the last instant by the scene's step, and is at the instant that is shown."""
+    """It goes to the last instant by the scene's step, and is at the instant that is shown.
+
+    A flight is planned only for a vehicle with a speed.
+    """
     gui = MagicMock()
     for add in (gui.add_multi_slider, gui.add_text, gui.add_button):
         add.side_effect = lambda *_, **__: MagicMock()
@@ -147,7 +150,13 @@ def test_only_a_scene_in_motion_has_a_slider(paper: Scenario) -> None:
     panel.render(History(State(scenario=paper)))
     assert not panel.time.visible
     assert not panel.play.visible
+    assert not panel.plan.visible
+    slow = MOTION.airframe.model_copy(update={"speed_max_m_s": None})
+    panel.render(History(opened(MOTION.model_copy(update={"airframe": slow}))))
+    assert panel.play.visible
+    assert not panel.plan.visible
     panel.render(History(opened().at_time(7.0)))
     assert panel.time.visible
     assert panel.play.visible
+    assert panel.plan.visible
     assert (panel.time.value, panel.time.max, panel.time.step) == ((7.0,), 60.0, 1.0)

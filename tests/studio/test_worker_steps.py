@@ -2,12 +2,13 @@
 
 import pytest
 
-from nullpose import load
+from nullpose import apply_overrides, load
 from nullpose.scenario import Scenario
 from nullpose.solver import Status, solve
+from nullpose.studio.answer import Flight
 from nullpose.studio.case import cases_of
 from nullpose.studio.state import State
-from nullpose.studio.worker import least_tilts, power_curves, quick_answers
+from nullpose.studio.worker import flights, least_tilts, power_curves, quick_answers
 
 
 @pytest.mark.parametrize("power_db", [-30.0, 0.0, 20.0, 40.0])
@@ -49,7 +50,7 @@ def test_a_curve_asks_before_every_search(paper: Scenario) -> None:
     assert len(calls) == 3
 
 
-def test_a_new_scene_ends_the_least_tilt() -> None:
+def test_a_new_scene_ends_the_least_tilt_and_the_planning() -> None:
     """In the middle of a proof."""
 
     def go_on(*_: object) -> None:
@@ -57,3 +58,16 @@ def test_a_new_scene_ends_the_least_tilt() -> None:
 
     with pytest.raises(Enough):
         next(least_tilts(State(scenario=load("examples/field.toml")), go_on))
+    motion = load("examples/moving_jammer.toml")
+    state = State(scenario=motion.still(), motion=motion)
+    with pytest.raises(Enough):
+        next(flights(state.with_event(Flight(version=1, motion=motion, words=())), go_on))
+
+
+def test_where_there_is_no_flight_its_place_says_why() -> None:
+    """As the solver does."""
+    motion = apply_overrides(load("examples/moving_jammer.toml"), ["airframe.speed_max_m_s=0"])
+    state = State(scenario=motion.still(), motion=motion)
+    (flight,) = flights(state.with_event(Flight(version=1, motion=motion, words=())))
+    assert flight.found is None
+    assert flight.words[0].startswith("no flight: airframe.speed_max_m_s: given 0")

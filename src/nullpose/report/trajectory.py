@@ -83,8 +83,8 @@ def write_trajectory(flight: Trajectory, samples: FloatArray, folder: Path) -> l
     return paths
 
 
-def trajectory_view(flight: Trajectory, samples: FloatArray) -> View:
-    """Set a trajectory as tables: value and bound, what planning is worth, motion, and the instants.
+def flight_words(flight: Trajectory, samples: FloatArray) -> tuple[str, ...]:
+    """Say what a trajectory has: its value, how low it falls between the instants, and lines on the bound.
 
     Args:
         flight: the trajectory.
@@ -92,7 +92,10 @@ def trajectory_view(flight: Trajectory, samples: FloatArray) -> View:
     """
     unit, what, is_worst = flight.unit, instant_words(flight), flight.maximise.is_worst
     words = f"{what} at the worst instant" if is_worst else f"mean {what} of the instants"
-    lines = (
+    lowest, loss = _lowest_sample(flight, samples)
+    return (
+        f"{words} {flight.value:z.4f} {unit}",
+        *([f"between the instants it falls to {lowest} (estimate)"] if loss > _NOTABLE else []),
         f"upper bound {math.ceil(1e4 * flight.upper_bound) / 1e4:z.4f} {unit} (gap {flight.gap:.2g} {unit}), "
         f"from {_BOUNDS[flight.bound_name]}",
         flight.status.message.removeprefix("certified ") + (flight.reason and f": {flight.reason}"),
@@ -100,11 +103,19 @@ def trajectory_view(flight: Trajectory, samples: FloatArray) -> View:
         f"the bound is of {'any flight in continuous time' if is_worst else 'the mean of the instants only'}",
         f"{len(flight.poses)} instants; {flight.stats.wall_s:.2g} s",
     )
-    lowest, loss = _lowest_sample(flight, samples)
-    warning = [f"between the instants it falls to {lowest} (estimate)"] if loss > _NOTABLE else []
+
+
+def trajectory_view(flight: Trajectory, samples: FloatArray) -> View:
+    """Set a trajectory as tables: value and bound, what planning is worth, motion, and the instants.
+
+    Args:
+        flight: the trajectory.
+        samples: times and values at and between the instants, (2, n).
+    """
+    value, *lines = flight_words(flight, samples)
     step = -(-len(flight.poses) // _SHOWN)
     return document(
-        head(flight.scenario.name, "Trajectory", f"{words} {flight.value:z.4f} {unit}", (*warning, *lines)),
+        head(flight.scenario.name, "Trajectory", value, lines),
         table("What planning is worth", _worth(flight)),
         pairs("Motion", _motion(flight, samples)),
         table("Instants", _instants(flight)[::step]),

@@ -9,8 +9,10 @@ from decimal import Decimal
 from nullpose.report.links import binding_nodes
 from nullpose.report.numbers import MINUS, rounded_up
 from nullpose.report.sensitivity import sensitivity_words, sizes_words
+from nullpose.scenario import Scenario
 from nullpose.solver import Result, Rigour, Status
 from nullpose.solver.robust import GuardedPose, RobustDetails
+from nullpose.solver.trajectory import Trajectory
 from nullpose.studio.case import PoseCase
 from nullpose.study import MountTilt, ResultTable
 
@@ -54,8 +56,7 @@ class Answer(Event):
     @property
     def shown_value(self) -> float:
         """The value in the unit that is shown: dB, or bits/s/Hz."""
-        objective = self.result.objective
-        return objective.quantity.in_unit(objective.value)
+        return self.result.objective.quantity.in_unit(self.result.objective.value)
 
     @property
     def unit(self) -> str:
@@ -106,6 +107,21 @@ class Progress(Event):
     case: PoseCase
     gap: float
     boxes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Flight(Event):
+    """A flight through a scene in motion, whose instants are all one to it.
+
+    Args:
+        motion: the scene in motion.
+        words: on the flight, its value first; that it is planned, or why there is none.
+        found: the flight; None while it is planned, or if there is none.
+    """
+
+    motion: Scenario
+    words: tuple[str, ...]
+    found: Trajectory | None = None
 
 
 def signed(number: float, digits: int = 2) -> str:

@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from nullpose.antenna import AnyAntenna
 from nullpose.physics import Pose, rotation_world_from_body
+from nullpose.report.figures.trajectory import marked_instants
 from nullpose.report.geometry import axis_angle_rad
 from nullpose.solver import Result
+from nullpose.studio.answer import signed
 from nullpose.studio.drawing import (
     BODY,
     ROD,
@@ -44,6 +46,7 @@ _LABEL_AT = ((0.0, 0.0, 0.17), (0.0, 0.14, -0.045))  # above, and to the right, 
 _ANCHORS = ("bottom-center", "center-left")
 _WIDTHS = np.array([0.003, 0.005, 0.0075, 0.01])  # of links by the quarter of the colours' range, likewise
 _OUTLINE = 0.0022  # beyond both sides of a link, likewise
+_FLOWN, _AXIS = 0.005, 0.045  # width of a flight's line, and half an antenna's axis there, likewise
 _BEAM = revolved_mesh([0.0, math.sqrt(_FAINT / (1.0 - _FAINT))], [0.0, -1.0], 40)
 """The cone about the null within which a dipole has that little gain, one long; it faces inwards."""
 _TUBE = revolved_mesh([1.0, 1.0], [0.0, 1.0], 8)
@@ -92,6 +95,39 @@ def drone_shapes(state: State, slot: int, size_m: float, eye_m: ArrayLike, look:
     return {f"/drone-{'ab'[slot]}/{name}": shape for name, shape in shapes.items()}
 
 
+def flight_shapes(state: State, size_m: float, look: Look) -> Shapes:
+    """Draw a flight: a line, dark to bright in time, the antenna's axis at intervals, a drone at the instant.
+
+    Args:
+        state: of the page.
+        size_m: of the scene, from which the sizes of what is drawn follow.
+        look: the page's colours.
+    """
+    if state.flight is None or (found := state.flight.found) is None or state.scenario.at_s is None:
+        return {}
+    now, marked = int(np.abs(found.times_s - state.scenario.at_s).argmin()), marked_instants(found)
+    pose, places_m, half_m = found.poses[now], found.positions_m, _AXIS * size_m
+    colours = linear_colours(scale_colours(found.times_s, *found.times_s[[0, -1]]))
+    steps_m = np.stack([places_m[:-1], places_m[1:]], axis=1)
+    ends_m = [places_m[i] + np.outer([-half_m, half_m], found.poses[i].antenna_axis) for i in marked]
+    value = f"flight {signed(found.quantity.in_unit(float(found.values[now])))} {found.quantity.unit}"
+    outline = _tubes(steps_m, np.full(len(steps_m), (0.5 * _FLOWN + _OUTLINE) * size_m))
+    return {
+        "/flight/outline": mesh(outline, look.colours["outline"], side="back"),
+        "/flight/line": lines(
+            steps_m, np.stack([colours[:-1], colours[1:]], axis=1), _FLOWN * size_m, "world"
+        ),
+        "/flight/axes": lines(ends_m, look.colours["null"], 0.5 * _FLOWN * size_m, "world"),
+        "/flight/drone": frame(
+            pose.position_m, rotation_world_from_body(pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
+        ),
+        "/flight/drone/hull": mesh(
+            BODY, look.colours["compared"], flat_shading=True, scale=0.055 * size_m, opacity=0.5
+        ),
+        "/flight/label": label(value, pose.position_m - [0.0, 0.0, 0.1 * size_m], 1.2, "top-center"),
+    }
+
+
 @lru_cache(8)
 def _pattern(antenna: AnyAntenna, towards_rad: float) -> Shape:
     """Draw a pattern of size one, open towards the camera."""
@@ -119,9 +155,11 @@ def _null(
         ),
     }
     if is_first:
-        others = result.scenario.interferers  # which alone a null is for
-        angle_rad, name = min(
-            [(axis_angle_rad(result.pose, point.position_m), point.name) for point in others],
+        angle_rad, name = min(  # a null is for interferers alone
+            [
+                (axis_angle_rad(result.pose, point.position_m), point.name)
+                for point in result.scenario.interferers
+            ],
             default=(0.0, ""),
         )
         off = f" {math.degrees(angle_rad):z.1f}\u00b0 off {name}" if name else ""

@@ -158,8 +158,10 @@ def ticks_m(scenario: Scenario) -> list[tuple[str, float, float]]:
 def _grid(scenario: Scenario, look: Look) -> Shapes:
     low, high, step_m = grid_m(scenario)
     east, north = (np.arange(lo, hi + 0.5 * step_m, step_m) for lo, hi in zip(low, high, strict=True))
-    segments = [[[x, low[1], 0.0], [x, high[1], 0.0]] for x in east]
-    segments += [[[low[0], y, 0.0], [high[0], y, 0.0]] for y in north]
+    segments = [
+        *([[x, low[1], 0.0], [x, high[1], 0.0]] for x in east),
+        *([[low[0], y, 0.0], [high[0], y, 0.0]] for y in north),
+    ]
     return {
         f"/ground/tick-{i}": label(text.replace("-", MINUS), (x, y, 0.0), 0.8, "center-center")
         for i, (text, x, y) in enumerate(ticks_m(scenario))

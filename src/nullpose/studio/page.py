@@ -11,7 +11,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from viser import ClientHandle, SceneClickEvent, UploadedFile
 
 from nullpose.errors import NullposeError, ScenarioError
@@ -56,7 +55,7 @@ class Page:
         self._gesture, self._slid_at = 0, 0.0
         self._late: threading.Timer | None = None
         self._aimed = (-1, False, 0)  # at which scene, whether with its drone, and beside how many cases
-        self._fit: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None  # canvas and position
+        self._fit = np.zeros(2), np.zeros(3)  # canvas and position of the camera when it was aimed
         self._grip_m = np.zeros(3)  # where a dragged point is held, from its position
         self._is_folded = False
         self._shown: History | None = None  # in the panel
@@ -183,6 +182,7 @@ class Page:
         }
         buttons: dict[str, Callable[[], object]] = {
             "play": self._player.press,
+            "plan": session.plan,
             "undo": session.undo,
             "redo": session.redo,
             "delete": self._delete,
@@ -289,11 +289,10 @@ class Page:
     async def _looked(self, _: object) -> None:
         """Aim again if only the canvas has another size, and turn the pattern towards the camera."""
         camera = self._client.camera
-        if self._fit is not None:
-            is_resized = not np.array_equal(self._fit[0], canvas_px(camera))
-            is_as_aimed = np.allclose(self._fit[1], camera.position, rtol=1e-3)
-            if is_resized and (is_as_aimed or self._is_folded):
-                self.aim()
+        is_resized = not np.array_equal(self._fit[0], canvas_px(camera))
+        is_as_aimed = np.allclose(self._fit[1], camera.position, rtol=1e-3)
+        if is_resized and (is_as_aimed or self._is_folded):
+            self.aim()
         self.stage.eye_m = camera.position
         self.render()
 

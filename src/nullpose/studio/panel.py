@@ -28,6 +28,15 @@ _GREY: dict[str, object] = {"color": "gray"}
 Control = tuple[str, str, str, dict[str, object]]
 """Kind, label, help, and more of viser's arguments."""
 
+_ABOVE: dict[str, Control] = {
+    # these three are not in the panel: the frame's script shows two, and tells where the pointer is
+    "overlay": ("html", "", "", {"visible": False}),
+    "tip": ("html", "", "", {"visible": False}),
+    "pointer": ("text", "Pointer", "", {"initial_value": "", "visible": False}),
+    "readout": ("html", "", "", {}),
+    "faults": ("html", "", "", {}),
+    "selected_values": ("folder", "Selected", "", {"visible": False}),
+}
 TABS: dict[str, dict[str, Control | dict[str, Control]]] = {
     "Scene": {
         "time": (
@@ -40,6 +49,12 @@ TABS: dict[str, dict[str, Control | dict[str, Control]]] = {
             "button",
             "Play or stop",
             "Go through the instants to the last, each when its pose is found, at most five a second.",
+            {"visible": False} | _GREY,
+        ),
+        "plan": (
+            "button",
+            "Plan flight",
+            "Find a flight through all instants within the vehicle's speed, and a bound that none exceeds.",
             {"visible": False} | _GREY,
         ),
         "power": (
@@ -162,13 +177,7 @@ class Panel(SimpleNamespace):
         gui.configure_theme(control_width="large", dark_mode=dark, show_logo=False, show_share_button=False)
         gui.main_panel.dock_right()
         gui.set_panel_label("nullpose studio")
-        # these three are not in the panel: the frame's script shows two, and tells where the pointer is
-        self.overlay = gui.add_html("", visible=False)
-        self.tip = gui.add_html("", visible=False)
-        self.pointer = gui.add_text("Pointer", "", visible=False)
-        self.readout = gui.add_html("")
-        self.faults = gui.add_html("")
-        self.selected_values = gui.add_folder("Selected", visible=False)
+        self._add(gui, _ABOVE)
         with self.selected_values:
             self.delete = gui.add_button(
                 "Delete", order=1e6, hint="Take it out of the scene (key: Delete).", color="gray"
@@ -212,6 +221,11 @@ class Panel(SimpleNamespace):
         shown: dict[str, dict[str, object]] = {
             "time": _time_values(state),
             "play": {"visible": state.motion is not None},
+            "plan": {
+                "visible": bool(
+                    state.motion and state.motion.airframe and state.motion.airframe.speed_max_m_s
+                )
+            },
             "case": {"options": labels, "value": state.case.label},
             "compared": {"options": others, "value": state.compared.label if state.compared else NO_CASE},
             "power": {"disabled": power_db is None},

@@ -6,9 +6,9 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from nullpose.studio.answer import Event
+from nullpose.studio.answer import Event, Flight
 from nullpose.studio.state import State
-from nullpose.studio.worker import REST_S, Worker
+from nullpose.studio.worker import FLIGHT_LIMIT_S, REST_S, Worker, answer_flight, answer_poses
 
 _MOST_STEPS = 200
 
@@ -108,18 +108,20 @@ class Session:
         self.still = threading.RLock()
         self._on_change, self._on_event = on_change, on_event
         self.history = History(state)
-        self._worker = Worker(self.take, rest_s=rest_s)
+        self._worker = Worker(self.take, answer_poses, rest_s=rest_s)
+        self._planner = Worker(self.take, answer_flight, name="planner")
 
     def start(self) -> None:
         """Ask for the first answers."""
         self._worker.request(self.state)
 
     def close(self, timeout_s: float = 5.0) -> bool:
-        """End the worker; True if it ended within a time.
+        """End the worker; True if it ended within a time. A search for a flight ends some seconds later.
 
         Args:
             timeout_s: the longest to wait, seconds.
         """
+        self._planner.close(0.0)
         return self._worker.close(timeout_s)
 
     @property
@@ -147,11 +149,20 @@ class Session:
         """Go one step forward again, if there is one."""
         self._go(History.redone)
 
+    def plan(self) -> None:
+        """Ask for a flight through the scene in motion; a change of it, but not of the instant, drops it."""
+        if (motion := self.state.motion) is not None:
+            words = (f"planning, {FLIGHT_LIMIT_S:g} s at most; the first time longer",)
+            self.take(Flight(version=self.state.version, motion=motion, words=words))
+            self._planner.request(self.state)
+
     def _go(self, change: Callable[[History], History]) -> None:
         with self.still:
-            version, self.history = self.state.version, change(self.history)
-            if self.state.version != version:
+            before, self.history = self.state, change(self.history)
+            if self.state.version != before.version:
                 self._worker.request(self.state)
+            if self.state.motion is not before.motion:
+                self._planner.request(self.state)
         self._on_change()
 
     def take(self, event: Event) -> None:

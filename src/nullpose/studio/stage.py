@@ -12,7 +12,7 @@ from viser import MeshHandle, SceneApi, SceneNodeDragEvent, SceneNodeHandle
 
 from nullpose.report.numbers import MINUS
 from nullpose.studio.drawing import FLAT, Shape, Shapes, label, lines
-from nullpose.studio.drone import drone_shapes
+from nullpose.studio.drone import drone_shapes, flight_shapes
 from nullpose.studio.field_map import Scale
 from nullpose.studio.ground import ground_shapes, scene_size_m, shadow_shapes
 from nullpose.studio.look import LIGHT, Look, Rgb, round_steps, scale_colours
@@ -64,6 +64,7 @@ class Stage:
             self.size_m = size_m
         shapes = ground_shapes(state, self.size_m, self._look)
         shapes |= shadow_shapes(state, self.size_m, self._look)
+        shapes |= flight_shapes(state, self.size_m, self._look)
         for slot in range(len(state.cases)):
             shapes |= drone_shapes(state, slot, self.size_m, self.eye_m, self._look)
         if state.scale is not None:
@@ -98,9 +99,10 @@ class Stage:
 
 def _narrowed(shapes: Shapes) -> Shapes:
     """Leave out the labels of contours and of the null, and make all others smaller."""
-    small = {"font_screen_scale": 0.75}
     return {
-        name: shape._replace(values={**shape.values, **small}) if shape.kind == "label" else shape
+        name: shape._replace(values={**shape.values, "font_screen_scale": 0.75})
+        if shape.kind == "label"
+        else shape
         for name, shape in shapes.items()
         if not name.startswith(("/map/level", "/drone-a/angle/"))
     }
@@ -166,9 +168,9 @@ def _contours(field: Field, low: float, high: float) -> dict[float, list[NDArray
     from contourpy import contour_generator
 
     generator = contour_generator(field.east_m, field.north_m, np.ma.masked_invalid(field.values))
-    contours = {}
-    for level in round_steps(low, high, 8):
-        lines = [np.asarray(line) for line in generator.lines(level) if len(line) > 4]
-        if lines and low <= level <= high:
-            contours[float(level)] = lines
-    return contours
+    contours = {
+        float(level): [np.asarray(line) for line in generator.lines(level) if len(line) > 4]
+        for level in round_steps(low, high, 8)
+        if low <= level <= high
+    }
+    return {level: found for level, found in contours.items() if found}

@@ -16,7 +16,7 @@ from nullpose.physics import from_db, to_db
 from nullpose.report.numbers import MINUS
 from nullpose.scenario import GroundPoint, NoFlyZone, Scenario
 from nullpose.scenario.motion import is_moving
-from nullpose.studio.answer import Answer, Event, Notice, status_words
+from nullpose.studio.answer import Answer, Event, Flight, Notice, status_words
 from nullpose.studio.case import OPTIMUM, PoseCase, cases_of
 from nullpose.studio.field_map import MAPS, FieldMap, Scale
 from nullpose.studio.look import scale_range
@@ -137,6 +137,12 @@ class State:
         return self.present(FieldMap)
 
     @property
+    def flight(self) -> Flight | None:
+        """The flight that was planned for the scene in motion as it is now, or None."""
+        flight = self.latest(Flight)
+        return flight if flight is not None and flight.motion is self.motion else None
+
+    @property
     def scale(self) -> Scale | None:
         """The map that is shown with its colours, or None."""
         maps = self.field_map
@@ -255,14 +261,13 @@ class State:
         if (now_db := self.power_db) is None or math.isclose(now_db, power_db, abs_tol=1e-9):
             return self
         by_db = power_db - now_db
-        powers = (  # each in the unit that it is stated in
-            {"power_w": float(f"{jammer.transmit_power_w * float(from_db(by_db)):.12g}")}
-            if jammer.power_dbm is None
-            else {"power_dbm": float(f"{jammer.power_dbm + by_db:.12g}")}
+        jammers = tuple(  # each in the unit that it is stated in
+            jammer.model_copy(
+                update={"power_w": float(f"{jammer.transmit_power_w * float(from_db(by_db)):.12g}")}
+                if jammer.power_dbm is None
+                else {"power_dbm": float(f"{jammer.power_dbm + by_db:.12g}")}
+            )
             for jammer in self.draft.jammers
-        )
-        jammers = tuple(
-            jammer.model_copy(update=power) for jammer, power in zip(self.draft.jammers, powers, strict=True)
         )
         return self.with_scenario(self.draft.model_copy(update={"jammers": jammers}))
 

@@ -14,10 +14,14 @@ import numpy as np
 
 from nullpose.errors import NullposeError
 from nullpose.objectives import Quantity
+from nullpose.report.numbers import MINUS
+from nullpose.report.trajectory import flight_words
 from nullpose.solver import Scheme, SolveKeywords, announce_compiling, solve
+from nullpose.solver.trajectory import solve_trajectory
 from nullpose.studio.answer import (
     Answer,
     Event,
+    Flight,
     Notice,
     PowerCurve,
     Progress,
@@ -30,6 +34,7 @@ from nullpose.studio.case import OPTIMUM, PoseCase
 from nullpose.studio.field_map import field_map, map_compiler
 from nullpose.studio.state import POWER_DB, AnyEvent, State
 from nullpose.study import ResultRow, ResultTable
+from nullpose.study.between_instants import sample_between
 from nullpose.study.least_tilt import tilt_search
 
 POWER_LABEL = "strongest jammer over strongest node (dB)"
@@ -40,6 +45,9 @@ _ROBUST_LIMIT_S = 20.0
 _TILT_LIMIT_S = 5.0  # of each proof
 _SHARE = 0.99  # of the best value, with which a tilt suffices
 _CURVE_POINTS = 15
+FLIGHT_LIMIT_S = 10.0
+"""How long search and proof of a flight take at most, seconds."""
+
 _QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
 
 
@@ -81,8 +89,11 @@ def proved_answers(
     """
     scenario = case.on(state.scenario)
     if not case.robust:
-        proved = solve(scenario, case.scheme, time_limit_s=_PROOF_LIMIT_S, on_progress=on_progress)
-        answer = answer_of(state.version, case, proved)
+        answer = answer_of(
+            state.version,
+            case,
+            solve(scenario, case.scheme, time_limit_s=_PROOF_LIMIT_S, on_progress=on_progress),
+        )
         yield answer
         yield with_errors(answer)
     for certify in (False, True) if case.robust else ():
@@ -135,6 +146,22 @@ def power_curves(state: State, go_on: Callable[[], None] = lambda: None) -> Iter
         )
 
 
+def flights(state: State, go_on: Callable[..., None] = lambda *_: None) -> Iterator[Flight]:
+    """Yield the flight that is asked for, or why there is none; nothing if none is.
+
+    Args:
+        state: with the scene in motion.
+        go_on: called now and then; what it raises ends the search.
+    """
+    if (asked := state.flight) is not None and asked.found is None:
+        try:
+            found = solve_trajectory(asked.motion, time_limit_s=FLIGHT_LIMIT_S, on_progress=go_on)
+            words = (each.replace(" -", f" {MINUS}") for each in flight_words(found, sample_between(found)))
+            yield replace(asked, words=tuple(words), found=found)
+        except NullposeError as error:
+            yield replace(asked, words=(f"no flight: {error}",))
+
+
 REST_S = 0.35
 """How long nothing must have changed before a proof begins, seconds."""
 
@@ -157,16 +184,24 @@ class Worker:
         publish: called from the thread with everything found, in order of its version. What a search found
             may come after a newer version was requested, so that poses follow a moving hand; a proof, a map
             or a curve of an outdated version does not.
+        serve: called in the thread with the worker and the newest state, to publish what answers it.
         rest_s: how long nothing must have changed before a proof begins, seconds; as long again, and the plot
             and the maps do.
+        name: of the thread.
     """
 
-    def __init__(self, publish: Callable[[Event], None], *, rest_s: float = REST_S) -> None:
-        self._publish, self._rest_s = publish, rest_s
-        self._changed = threading.Condition()
-        self._pending: State | None = None
-        self._closed = False
-        self._thread = threading.Thread(target=self._run, name="nullpose-studio-worker", daemon=True)
+    def __init__(
+        self,
+        publish: Callable[[Event], None],
+        serve: Callable[[Worker, State], None],
+        *,
+        rest_s: float = REST_S,
+        name: str = "worker",
+    ) -> None:
+        self._publish, self._serve, self._rest_s = publish, serve, rest_s
+        self._news, self._closed = threading.Event(), False
+        self._newest: State | None = None
+        self._thread = threading.Thread(target=self._run, name=f"nullpose-studio-{name}", daemon=True)
         self._thread.start()
 
     def request(self, state: State) -> None:
@@ -175,9 +210,8 @@ class Worker:
         Args:
             state: with the scene; its version is larger than any before.
         """
-        with self._changed:
-            self._pending = state
-            self._changed.notify()
+        self._newest = state
+        self._news.set()
 
     def close(self, timeout_s: float = 5.0) -> bool:
         """End the thread; True if it ended within a time.
@@ -185,85 +219,108 @@ class Worker:
         Args:
             timeout_s: the longest to wait, seconds.
         """
-        with self._changed:
-            self._closed = True
-            self._changed.notify()
+        self._closed = True
+        self._news.set()
         self._thread.join(timeout_s)
         return not self._thread.is_alive()
 
     def _run(self) -> None:
-        while True:
-            with self._changed:
-                self._changed.wait_for(self._is_superseded)
-                if self._closed or self._pending is None:
-                    return
-                state, self._pending = self._pending, None
+        while self._news.wait():
+            self._news.clear()  # first: what comes now is the newest, or ends the steps at once
+            if self._closed or (state := self._newest) is None:
+                return
             try:
                 with announce_compiling(
                     partial(self._publish, Notice(version=state.version, case=None, words=_COMPILING))
                 ):
-                    self._serve(state)
+                    self._serve(self, state)
             except _SupersededError:
                 continue
             except Exception:
                 _log.exception("the studio's worker met an unexpected fault")
 
-    def _serve(self, state: State) -> None:
-        for case in state.cases:
-            # published even if the hand has moved on since: else nothing would move while it does
-            self._publish_all(state, case, quick_answers(state, case), late=True)
-        self._rest()
-        proved = [
-            self._publish_all(state, case, proved_answers(state, case, self._progress(state, case)))
-            for case in state.cases
-        ]
-        self._rest()  # as long again: what takes longer than a proof would be in the way of the next move
-        self._publish_all(state, state.case, power_curves(state, self._go_on))
-        if (best := next(filter(None, proved), None)) is not None:
-            while map_compiler().is_busy():
-                self._rest()
-            self._publish_all(state, best.case, [field_map(best, self._go_on)])
-            self._publish_all(state, best.case, least_tilts(state, self._go_on))
-
-    def _publish_all(
-        self, state: State, case: PoseCase, events: Iterable[AnyEvent], *, late: bool = False
+    def publish_all(
+        self, state: State, case: PoseCase | None, events: Iterable[AnyEvent], *, late: bool = False
     ) -> AnyEvent | None:
-        """Publish events and return the last; a failure is published in their place, and None returned."""
+        """Publish events and return the last; a failure is published in their place, and None returned.
+
+        Args:
+            state: that they are of.
+            case: that they are of; None for no single one.
+            events: in turn.
+            late: whether they are published even if a newer version was requested.
+        """
         last = None
         try:
             for last in events:
                 if not late:
-                    self._go_on()
+                    self.go_on()
                 self._publish(last)
         except NullposeError as error:
-            self._go_on()
+            self.go_on()
             self._publish(Notice(version=state.version, case=case, words=f"no pose: {error}"))
             return None
         return last
 
-    def _progress(self, state: State, case: PoseCase) -> Callable[[float, int], None]:
-        """Return a callback for a proof, which publishes its progress ten times a second at most."""
+    def progress(self, state: State, case: PoseCase) -> Callable[[float, int], None]:
+        """Return a callback for a proof, which publishes its progress ten times a second at most.
+
+        Args:
+            state: that is solved.
+            case: that is proved.
+        """
         # the proof of a rate tells the gap of the ratio
         published_at, is_rate = time.monotonic(), Quantity.of(state.scenario).is_rate
 
         def on_progress(gap: float, boxes: int) -> None:
             nonlocal published_at
-            self._go_on()
+            self.go_on()
             if not is_rate and math.isfinite(gap) and time.monotonic() - published_at > _PROGRESS_S:
                 published_at = time.monotonic()
                 self._publish(Progress(version=state.version, case=case, gap=gap, boxes=boxes))
 
         return on_progress
 
-    def _is_superseded(self) -> bool:
-        return self._closed or self._pending is not None
-
-    def _go_on(self, *_: object) -> None:
+    def go_on(self, *_: object) -> None:
         """End the step if its scene is no longer the newest; takes whatever a solver says of its progress."""
-        if self._is_superseded():
+        if self._news.is_set():
             raise _SupersededError
 
-    def _rest(self) -> None:
-        with self._changed:
-            self._changed.wait_for(self._is_superseded, timeout=self._rest_s)
-        self._go_on()
+    def rest(self) -> None:
+        """Wait until nothing has changed for a while; ends the step if something does."""
+        self._news.wait(self._rest_s)
+        self.go_on()
+
+
+def answer_poses(worker: Worker, state: State) -> None:
+    """Answer a version of the scene: a search at once, at rest the proofs, then plot, maps and least tilt.
+
+    Args:
+        worker: publishes the answers.
+        state: with the scene.
+    """
+    for case in state.cases:
+        # published even if the hand has moved on since: else nothing would move while it does
+        worker.publish_all(state, case, quick_answers(state, case), late=True)
+    worker.rest()
+    proved = [
+        worker.publish_all(state, case, proved_answers(state, case, worker.progress(state, case)))
+        for case in state.cases
+    ]
+    worker.rest()  # as long again: what takes longer than a proof would be in the way of the next move
+    worker.publish_all(state, state.case, power_curves(state, worker.go_on))
+    if (best := next(filter(None, proved), None)) is not None:
+        while map_compiler().is_busy():
+            worker.rest()
+        worker.publish_all(state, best.case, [field_map(best, worker.go_on)])
+        worker.publish_all(state, best.case, least_tilts(state, worker.go_on))
+
+
+def answer_flight(worker: Worker, state: State) -> None:
+    """Answer with the flight that is asked for.
+
+    Args:
+        worker: publishes it.
+        state: with the scene in motion.
+    """
+    worker.publish_all(state, None, flights(state, worker.go_on))

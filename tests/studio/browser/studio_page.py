@@ -15,10 +15,11 @@ from playwright.sync_api import Browser
 from tests.studio.browser.hand import CERTIFIED, EXAMPLES, PAPER, Hand, drawn_share, opened
 from zstandard import ZstdDecompressor
 
-from nullpose import load, solve
-from nullpose.physics import evaluate
+from nullpose import apply_overrides, load, solve, solve_trajectory
+from nullpose.physics import evaluate, objective_of_links, to_db
 from nullpose.solver import Scheme
 from nullpose.studio.camera import CARD_PX
+from nullpose.studio.state import State
 
 ZSTD = b"\x28\xb5\x2f\xfd"  # how what zstd has compressed begins
 PATTERN = """() => {
@@ -262,3 +263,29 @@ def test_what_is_pointed_at_is_read(hand: Hand) -> None:
     hand.until(lambda: "/sketch/side-0" in hand.ours._client.scene._handle_from_node_name)
     side = hand.ours._client.scene._handle_from_node_name["/sketch/side-0"]
     assert float(side.text.removesuffix(" m")) == pytest.approx(10.0, abs=0.4)
+
+
+def test_a_flight_is_planned_and_an_edit_takes_it_away(hand: Hand) -> None:
+    """Its value is that of its poses and exceeds no bound; with the time a drone moves along its line."""
+    motion = apply_overrides(load(EXAMPLES / "moving_jammer.toml"), ["time.step_s=10"])
+    hand.session.change(lambda view: State(scenario=motion.still()).with_scenario(motion, ""))
+    hand.press("Plan flight")
+    hand.page.locator("[data-np=overlay-flight][data-value]").wait_for()
+    found, drawn = hand.session.state.flight.found, hand.ours._client.scene._handle_from_node_name
+    scenes = [motion.at(t_s) for t_s in motion.instants_s.tolist()]
+    pairs = zip(scenes, found.poses, strict=True)
+    values = [objective_of_links(scene, evaluate(scene, pose)) for scene, pose in pairs]
+    value_db, other = float(to_db(min(values))), solve_trajectory(motion)
+    words = hand.page.locator("[data-np=overlay-flight]").inner_text().replace("\u2212", "-")
+    shown_db, bound_db = map(float, re.findall(r"(?:instant|bound) (-?\d+\.\d{4}) dB", words))
+    assert hand.shown("overlay-flight") == pytest.approx(value_db, abs=1e-6)
+    assert shown_db == pytest.approx(value_db, abs=1e-4)
+    assert max(value_db, other.value) <= min(bound_db, other.upper_bound) + 1e-9
+    assert np.allclose(drawn["/flight/line"].points[:, 0], found.positions_m[:-1], atol=1e-4)
+    hand.page.wait_for_function("window.__viserMutable.nodeRefFromName['/flight/line']")
+    hand.session.change(lambda state: state.at_time(30.0))
+    hand.until(lambda: np.allclose(drawn["/flight/drone"].position, found.positions_m[3]))
+    hand.type("typed (dB)", "20")
+    hand.page.locator("[data-np=overlay-flight]").wait_for(state="detached")
+    hand.until(lambda: not [name for name in drawn if name.startswith("/flight/")])
+    hand.page.wait_for_function("!window.__viserMutable.nodeRefFromName['/flight/line']")

@@ -88,11 +88,15 @@ def write_film(flight: Trajectory, path: Path) -> None:
         writer.finish()
 
 
-def _draw_plan(figure: Figure, flight: Trajectory) -> None:
+def marked_instants(flight: Trajectory) -> IntArray:
+    """Return the indices of the instants that have marks, at even steps of way and time."""
     flown_m = np.append(0.0, np.cumsum(flight.speeds_m_s * np.diff(flight.times_s)))
     shares = flown_m / max(_LEAST_M, flown_m[-1]) + flight.times_s / flight.times_s[-1]
-    marked = np.unique(np.searchsorted(shares, np.linspace(0.0, shares[-1], _MARKS)))  # of way and time
-    axes = figure.add_subplot()
+    return np.unique(np.searchsorted(shares, np.linspace(0.0, shares[-1], _MARKS)))
+
+
+def _draw_plan(figure: Figure, flight: Trajectory) -> None:
+    axes, marked = figure.add_subplot(), marked_instants(flight)
     line, _, dots = _draw_scene(axes, flight, marked)
     for (dot, track_m), index in product((each for each in dots if np.ptp(each[1], axis=0).any()), marked):
         colour = to_hex(np.ravel(dot.get_facecolor())[:4].tolist())
