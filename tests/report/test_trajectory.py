@@ -1,19 +1,24 @@
 """A flight as tables, files, figures and a film: what is read back is what was flown."""
 
 import csv
+import io
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from earth import local_m
 from flown import ORIGIN, PLACES_M, TIMES_S, flown, moving
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
 from rich.console import Console
 from scipy.spatial.transform import Rotation
 
 from nullpose import Trajectory
 from nullpose.report.export.geojson import flight_geojson_file
+from nullpose.report.export.mcap import flight_mcap_file
 from nullpose.report.export.plan import flight_plan_file
 from nullpose.report.figures.trajectory import draw_flight
 from nullpose.report.trajectory import file_names, trajectory_view, write_trajectory
@@ -84,6 +89,26 @@ def test_a_map_has_the_flight_as_a_line_with_times(flight: Trajectory) -> None:
     assert line["properties"]["time_s"] == TIMES_S.tolist()
     found_m = [local_m(lat, lon, alt, ORIGIN) for lon, lat, alt in line["geometry"]["coordinates"]]
     np.testing.assert_allclose(found_m, PLACES_M, rtol=0, atol=1e-3)
+
+
+def test_a_recording_has_the_flight_as_ros_2_reads_it(flight: Trajectory) -> None:
+    """Each stamp has base_link's place and rotation in the ENU frame map, and its place on the Earth."""
+    found: dict[str, list[Any]] = {"/tf": [], "/fix": []}
+    reader = make_reader(io.BytesIO(flight_mcap_file(flight)), decoder_factories=[DecoderFactory()])
+    for _, channel, _, message in reader.iter_decoded_messages():
+        found[channel.topic].append(message)
+    instants = zip(found["/tf"], found["/fix"], flight.poses, TIMES_S, strict=True)
+    for (transform,), fix, pose, time_s in ((tf.transforms, *others) for tf, *others in instants):
+        moved = transform.transform
+        place, turn = moved.translation, moved.rotation
+        for stamp in (transform.header.stamp, fix.header.stamp):
+            assert stamp.sec + 1e-9 * stamp.nanosec == pytest.approx(time_s)
+        assert (transform.header.frame_id, transform.child_frame_id) == ("map", "base_link")
+        assert [place.x, place.y, place.z] == pose.position_m.tolist()
+        turned = Rotation.from_euler("ZYX", (pose.yaw_rad, pose.pitch_rad, pose.roll_rad))
+        assert (Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).inv() * turned).magnitude() < 1e-9
+        found_m = local_m(fix.latitude, fix.longitude, fix.altitude, ORIGIN)
+        assert found_m == pytest.approx(pose.position_m, abs=1e-3)
 
 
 def test_a_plan_flies_the_same_places_in_the_same_time(flight: Trajectory) -> None:

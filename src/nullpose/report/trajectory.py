@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 
@@ -13,6 +14,7 @@ from nullpose.files import json_text, prepare_folder, replacing
 from nullpose.physics.types import FloatArray
 from nullpose.report.document import View, document, head, pairs, table
 from nullpose.report.export.geojson import flight_geojson_file
+from nullpose.report.export.mcap import flight_mcap_file
 from nullpose.report.export.plain import flight_csv_file, flight_tum_file
 from nullpose.report.export.plan import flight_plan_file
 from nullpose.report.figures.style import write_figure
@@ -31,6 +33,7 @@ _FILES: Mapping[str, Callable[[Trajectory], bytes]] = MappingProxyType(
         "trajectory.tum": flight_tum_file,
         "trajectory.geojson": flight_geojson_file,
         "trajectory.plan": flight_plan_file,
+        "trajectory.mcap": flight_mcap_file,
     }
 )
 _FIGURES, _FILM, _MAPS = ("plan.png", "values.png", "attitude.png"), "flight.gif", (".geojson", ".plan")
@@ -54,12 +57,9 @@ _SHOWN, _NOTABLE = 15, 0.5  # rows of instants, and how far below the worst of t
 
 
 def file_names(scenario: Scenario) -> list[str]:
-    """List the files of a trajectory: those for maps only with an origin."""
-    return [
-        name
-        for name in (*_FILES, *_FIGURES, _FILM)
-        if scenario.origin is not None or not name.endswith(_MAPS)
-    ]
+    """List the files of a trajectory: those for maps only with an origin, MCAP only with its library."""
+    left_out = dict.fromkeys(_MAPS, scenario.origin is None) | {".mcap": find_spec("mcap_ros2") is None}
+    return [name for name in (*_FILES, *_FIGURES, _FILM) if not left_out.get(Path(name).suffix)]
 
 
 def write_trajectory(flight: Trajectory, samples: FloatArray, folder: Path) -> list[Path]:
