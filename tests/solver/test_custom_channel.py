@@ -12,6 +12,15 @@ from nullpose import Scenario
 from nullpose.channel import Custom
 from nullpose.channel.convex import FloatArray
 from nullpose.errors import ScenarioError, UsageError
+from nullpose.solver import position_search
+
+
+@pytest.fixture(autouse=True)
+def _coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Has positions searched from a quarter of the places, in which the paper's optimum is found too."""
+    monkeypatch.setattr(position_search, "_DRAWN", 250)
+    monkeypatch.setattr(position_search, "_CLIMBED", 1)
+
 
 FIELD: dict[str, Any] = {
     "nodes_m": [[0, 0, 0], [0, 50, 0]],

@@ -40,7 +40,7 @@ def test_no_other_mount_is_better(spec: Spec, tmp_path: Path) -> None:
     sorted((tmp_path / "best" / "parts").iterdir())[-1].unlink()
     run_study(study, tmp_path / "best", workers=0)
     assert _levels_db(tmp_path / "best") == found_db
-    others = sorted({*range(0, 91, 15), case.airframe.mount_deg - 1.0, case.airframe.mount_deg + 1.0})
+    others = sorted({*range(0, 91, 30), case.airframe.mount_deg - 1.0, case.airframe.mount_deg + 1.0})
     fixed = [
         {"name": str(mount), "airframe": {"tilt_max_deg": 0.0, "mount_deg": mount}, "certify": False}
         for mount in others
