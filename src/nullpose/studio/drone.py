@@ -42,7 +42,7 @@ _FAINT = 0.01  # gain over the largest: along an axis with more there is no null
 _FULL = 0.13  # of the pattern's largest gain, sizes of the scene
 _SAME = 0.02  # sizes of the scene, and radians: less apart two cones are one
 _ABOVE, _BELOW = 0.16, 1.5  # of the null's line, at most, sizes of the scene
-_LABEL_AT = ((0.0, 0.0, 0.17), (0.0, 0.14, -0.045))  # above, and to the right, sizes of the scene
+_LABEL_AT = ((0.0, 0.0, 0.17), (0.0, 0.14, -0.045), (0.0, 0.14, -0.13))  # above, right, lower: likewise
 _ANCHORS = ("bottom-center", "center-left")
 _WIDTHS = np.array([0.003, 0.005, 0.0075, 0.01])  # of links by the quarter of the colours' range, likewise
 _OUTLINE = 0.0022  # beyond both sides of a link, likewise
@@ -124,7 +124,7 @@ def flight_shapes(state: State, size_m: float, look: Look) -> Shapes:
         "/flight/drone/hull": mesh(
             BODY, look.colours["compared"], flat_shading=True, scale=0.055 * size_m, opacity=0.5
         ),
-        "/flight/label": label(value, pose.position_m - [0.0, 0.0, 0.1 * size_m], 1.2, "top-center"),
+        "/flight/label": label(value, pose.position_m + size_m * np.array(_LABEL_AT[2]), 1.2, _ANCHORS[1]),
     }
 
 

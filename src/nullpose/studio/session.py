@@ -152,7 +152,7 @@ class Session:
     def plan(self) -> None:
         """Ask for a flight through the scene in motion; a change of it, but not of the instant, drops it."""
         if (motion := self.state.motion) is not None:
-            words = (f"planning, {FLIGHT_LIMIT_S:g} s at most; the first time longer",)
+            words = (f"planning, about {FLIGHT_LIMIT_S:g} s; the first time longer",)
             self.take(Flight(version=self.state.version, motion=motion, words=words))
             self._planner.request(self.state)
 

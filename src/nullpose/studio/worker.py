@@ -46,7 +46,7 @@ _TILT_LIMIT_S = 5.0  # of each proof
 _SHARE = 0.99  # of the best value, with which a tilt suffices
 _CURVE_POINTS = 15
 FLIGHT_LIMIT_S = 10.0
-"""How long search and proof of a flight take at most, seconds."""
+"""The time limit of search and proof of a flight, seconds."""
 
 _QUICK_ROBUST = "Best pose where all is as stated; what it guarantees is worked out at rest"
 
