@@ -118,21 +118,3 @@ def test_points_in_degrees_as_metres(run: Run, paper: str) -> None:
         assert "close to the origin's latitude and longitude (50.2, 14.4)" in result.stderr
         assert "lat_deg, lon_deg and an altitude" in result.stderr
     assert run("check", paper, *origin).stderr == ""
-
-
-@pytest.mark.parametrize(
-    ("sides_m", "settings", "why"),
-    [
-        ((0.01, 0.005), (), "it is 0.01 m by 0.005 m, but the ground points are 50 m apart"),
-        ((0.4, 0.1), (), "so it must be 0.5 m or more across"),
-        ((1.5, 1.5), ("airspace.keep_out_m=200", "airspace.altitude_m=[8, 400]"), "but keep_out_m is 200 m"),
-    ],
-)
-def test_a_fence_in_another_unit(
-    run: Run, paper: str, sides_m: tuple[float, float], settings: tuple[str, ...], why: str
-) -> None:
-    """A fence a hundred times smaller than the spread of the points or the keep-out radius is refused."""
-    east, north = 2.0 + sides_m[0], 20.0 + sides_m[1]
-    fence = f"airspace.geofence_m=[[2.0, 20.0], [{east}, 20.0], [{east}, {north}], [2.0, {north}]]"
-    options = [word for setting in (*settings, fence) for word in ("--set", setting)]
-    refused(run("check", paper, *options), "airspace.geofence_m: ", why, "or the corners in metres")
