@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nullpose.antenna.harmonics import FloatArray, Harmonics, recurrence
+from nullpose.antenna.harmonics import FloatArray, Harmonics, directions, recurrence
 
 _ROWS = {24: 128, 48: 256}  # of the table up to a degree, twice as many columns: powers of two
 _ROUNDING = 1e-13  # of the sizes of a sum's terms: 450 units in the last place, at most 49 degrees
@@ -101,16 +101,8 @@ def _finest(harmonics: Harmonics) -> FloatArray:
     radius = math.hypot(step, step) / 2.0
     degree = max(1, harmonics.degree)
     angles = np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    st, ct, sp, cp = np.sin(theta), np.cos(theta), np.sin(phi), np.cos(phi)
-    south = np.stack([np.outer(ct, cp), np.outer(ct, sp), np.outer(-st, np.ones_like(phi))], axis=-1)
-    east = np.stack(
-        [
-            np.broadcast_to(-sp, south.shape[:2]),
-            np.broadcast_to(cp, south.shape[:2]),
-            np.zeros(south.shape[:2]),
-        ],
-        axis=-1,
-    )
+    south = directions(np.degrees(theta) + 90.0, np.degrees(phi))
+    east = directions([90.0], np.degrees(phi) + 90.0)
     found: _Rotated = {(0, 0, 0): _complex(harmonics)}
     gain, least = _values(found[0, 0, 0], theta, phi), []
     for order in range(1, _ORDER + 1):
@@ -154,14 +146,9 @@ def _padded(gain: FloatArray, slopes: list[FloatArray], radius: float, degree: i
 
 def _complex(harmonics: Harmonics) -> NDArray[np.complex128]:
     """Return coefficients by n and degree + m of the orthonormal complex harmonics, m of both signs."""
-    degree = harmonics.degree
-    found = np.zeros((degree + 1, 2 * degree + 1), dtype=complex)
-    found[:, degree] = harmonics.cosine[:, 0]
-    for m in range(1, degree + 1):
-        upper = (harmonics.cosine[:, m] - 1j * harmonics.sine[:, m]) / math.sqrt(2.0)
-        found[:, degree + m] = (-1) ** m * upper
-        found[:, degree - m] = np.conj(upper)
-    return found
+    signs = (-1.0) ** np.arange(1, harmonics.degree + 1)
+    upper = (harmonics.cosine[:, 1:] - 1j * harmonics.sine[:, 1:]) / math.sqrt(2.0)
+    return np.hstack([np.conj(upper[:, ::-1]), harmonics.cosine[:, :1], signs * upper])
 
 
 def _rotated_once_more(found: _Rotated) -> _Rotated:
@@ -183,10 +170,6 @@ def _rotated_once_more(found: _Rotated) -> _Rotated:
 
 def _values(c: NDArray[np.complex128], theta: FloatArray, phi: FloatArray) -> FloatArray:
     """Return a real function's values on a grid from its complex coefficients."""
-    degree = len(c) - 1
-    cosine, sine = np.zeros((2, degree + 1, degree + 1))
-    cosine[:, 0] = c[:, degree].real
-    for m in range(1, degree + 1):
-        upper = (-1) ** m * c[:, degree + m] * math.sqrt(2.0)
-        cosine[:, m], sine[:, m] = upper.real, -upper.imag
-    return Harmonics(cosine, sine).on_grid(theta, phi)
+    orders = np.arange(len(c))
+    upper = (-1.0) ** orders * np.where(orders > 0, math.sqrt(2.0), 1.0) * c[:, len(c) - 1 :]
+    return Harmonics(upper.real, -upper.imag * (orders > 0)).on_grid(theta, phi)

@@ -194,13 +194,12 @@ def missed_share(table: PatternTable, harmonics: Harmonics) -> float:
 def _fit_of_field(table: PatternTable, degree: int, half: int) -> Harmonics:
     """Return the harmonics of the power of a table's field, whose parts are fitted up to half the degree."""
     assert table.field is not None
-    theta, phi = np.deg2rad(table.theta_deg)[:, None], np.deg2rad(table.phi_deg)
-    along = np.array([np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), -np.sin(theta) + 0.0 * phi])
-    round_z = np.array([-np.sin(phi) + 0.0 * theta, np.cos(phi) + 0.0 * theta, 0.0 * (theta + phi)])
-    field = along * table.field[..., 0] + round_z * table.field[..., 1]
+    along = directions(table.theta_deg + 90.0, table.phi_deg)
+    round_z = directions([90.0], table.phi_deg + 90.0)
+    field = along * table.field[..., :1] + round_z * table.field[..., 1:]
     fine = np.linspace(0.0, 180.0, 4 * degree + 5), np.arange(0.0, 360.0, 360.0 / (4 * degree + 5))
     there = np.deg2rad(fine[0]), np.deg2rad(fine[1])
-    parts = [part for axis in field for part in (axis.real, axis.imag)]
+    parts = [part for axis in np.moveaxis(field, -1, 0) for part in (axis.real, axis.imag)]
     each = [_fit(table.theta_deg, table.phi_deg, part, half).on_grid(*there) for part in parts]
     return _fit(*fine, np.sum(np.square(each), axis=0), degree)
 

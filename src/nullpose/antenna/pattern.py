@@ -170,9 +170,8 @@ def axial_harmonics(gain: Callable[[FloatArray], FloatArray], degree: int) -> Ha
     nodes, weights = legendre.leggauss(4 * degree + 40)
     values = weights * gain(nodes)
     cosine = np.zeros((degree + 1, degree + 1))
-    for n in range(degree + 1):
-        mean = np.sum(values * legendre.legval(nodes, np.eye(degree + 1)[n])) / 2.0
-        cosine[n, 0] = mean * math.sqrt(2.0 * n + 1.0)
+    means = values @ legendre.legvander(nodes, degree) / 2.0
+    cosine[:, 0] = means * np.sqrt(2.0 * np.arange(degree + 1) + 1.0)
     return Harmonics(cosine, np.zeros_like(cosine))
 
 

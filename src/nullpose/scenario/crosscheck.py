@@ -305,17 +305,20 @@ def _shared_places(points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place,
     positions_m = np.array([point.position_m for point in points.values()]).reshape(-1, 3)
     if (np.diff(np.sort(positions_m, axis=0), axis=0) >= SAME_PLACE_M).all(axis=0).any():
         return
-    kinds = np.array([place[0] for place in placed])
-    # Who jams may listen as well: a jammer and an eavesdropper may be at one place.
-    may_be = {"jammers": "eavesdroppers", "eavesdroppers": "jammers"}
-    for index, place in enumerate(placed):
-        earlier_m = np.linalg.norm(positions_m[:index] - positions_m[index], axis=1)
-        earlier_m[kinds[:index] == may_be.get(str(place[0]), "")] = np.inf
-        if earlier_m.min(initial=np.inf) < SAME_PLACE_M:
-            owner = placed[int(earlier_m.argmin())]
-            yield (
-                (*place, "position_m"),
-                f"got {positions_m[index].tolist()}, the place of {path_of(owner)} already; "
-                f"{' and '.join(dict.fromkeys(str(each[0]) for each in (owner, place)))} must be at "
-                "different places; move or remove one",
-            )
+    from scipy.spatial import KDTree  # of most scenarios all points are apart along an axis
+
+    pairs = sorted(KDTree(positions_m).query_pairs(SAME_PLACE_M))
+    firsts = {
+        later: earlier
+        for earlier, later in reversed(pairs)
+        # Who jams may listen as well: a jammer and an eavesdropper may be at one place.
+        if {placed[earlier][0], placed[later][0]} != {"jammers", "eavesdroppers"}
+    }
+    for later, earlier in firsts.items():
+        place, owner = placed[later], placed[earlier]
+        yield (
+            (*place, "position_m"),
+            f"got {positions_m[later].tolist()}, the place of {path_of(owner)} already; "
+            f"{' and '.join(dict.fromkeys(str(each[0]) for each in (owner, place)))} must be at "
+            "different places; move or remove one",
+        )
