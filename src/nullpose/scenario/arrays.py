@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,60 +43,54 @@ from nullpose.scenario.section import Floats, Section, optional, read_only
 from nullpose.scenario.units import Label, Seconds, Title, power_w, ratio_from_db
 from nullpose.scenario.ways import Ways
 
+_Made = TypeVar("_Made")
 _IN_MOTION = (
     "scenario: given a scene in motion; allowed: a still one; call .at(t) with a time in seconds, as in "
     "scenario.at(0.0), or .instants_s for all times; solve(scenario, hover=True) holds one pose for all"
 )
 
 
-def _stacked(kinds: str, key: str, *shape: int) -> cached_property[Floats]:
-    """Make the array of what the points of some kinds have; of a scene in motion there are no positions."""
-
-    def stack(table: ScenarioTables) -> Floats:
-        require_usage(key != "position_m" or table.time is None, _IN_MOTION)
-        return read_only([getattr(point, key) for point in _points_of(table, kinds)], (-1, *shape))
-
-    return cached_property(stack)
+def _of(kinds: str, make: Callable[[ScenarioTables, list[Any]], _Made]) -> cached_property[_Made]:
+    """Make an attribute of a scenario, once, from it and its points of some kinds."""
+    return cached_property(
+        lambda table: make(table, [point for kind in kinds.split() for point in getattr(table, kind)])
+    )
 
 
-def _antennas(kinds: str) -> cached_property[GroundAntennas | None]:
-    """Make the antennas of the points of some kinds; None where all are isotropic."""
-
-    def stack(table: object) -> GroundAntennas | None:
-        points = _points_of(table, kinds)
-        if all(point.antenna == "isotropic" and point.gain_dbi == 0.0 for point in points):
-            return None
-        axes = [unit_axis(point.antenna_axis) if point.leak < 1.0 else np.zeros(3) for point in points]
-        return GroundAntennas(
-            read_only(axes, (-1, 3)),
-            *read_only([(point.largest_gain, point.leak) for point in points], (-1, 2)).T,
-        )
-
-    return cached_property(stack)
+def _positions_m(table: ScenarioTables, points: Sequence[GroundPoint]) -> Floats:
+    """Make the positions of points, of which a scene in motion has none."""
+    require_usage(table.time is None, _IN_MOTION)
+    return read_only([point.position_m for point in points], (-1, 3))
 
 
-def _channels(kinds: str) -> cached_property[PointChannels | None]:
-    """Make the channels of the points of some kinds; None where all are in free space with line of sight."""
-
-    def stack(table: ScenarioTables) -> PointChannels | None:
-        points = _points_of(table, kinds)
-        links = [table.channel_of(point) for point in points]
-        if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links) and table.prisms is None:
-            return None
-        kept = PointChannels.of(links, table.prisms, [*map(table.is_unwanted, points)])
-        rows, strengths = read_only(kept.rows, kept.rows.shape), read_only(kept.strengths, (-1,))
-        return kept._replace(strengths=strengths, rows=rows)
-
-    return cached_property(stack)
+def _each(key: str) -> Callable[[ScenarioTables, Sequence[GroundPoint]], Floats]:
+    """Make the function that makes the array of a number of each point."""
+    return lambda _, points: read_only([getattr(point, key) for point in points], (-1,))
 
 
-def _names(kinds: str) -> cached_property[tuple[str, ...]]:
-    """Make the attribute of a scenario with the names of its points of some kinds."""
-    return cached_property(lambda table: tuple(point.name for point in _points_of(table, kinds)))
+def _names(_: ScenarioTables, points: Sequence[GroundPoint]) -> tuple[str, ...]:
+    return tuple(point.name for point in points)
 
 
-def _points_of(table: object, kinds: str) -> list[GroundPoint]:
-    return [point for kind in kinds.split() for point in getattr(table, kind)]
+def _antennas(_: ScenarioTables, points: Sequence[GroundPoint]) -> GroundAntennas | None:
+    """Make the antennas of points; None where all are isotropic."""
+    if all(point.antenna == "isotropic" and point.gain_dbi == 0.0 for point in points):
+        return None
+    axes = [unit_axis(point.antenna_axis) if point.leak < 1.0 else np.zeros(3) for point in points]
+    return GroundAntennas(
+        read_only(axes, (-1, 3)),
+        *read_only([(point.largest_gain, point.leak) for point in points], (-1, 2)).T,
+    )
+
+
+def _channels(table: ScenarioTables, points: Sequence[GroundPoint]) -> PointChannels | None:
+    """Make the channels of points; None where all are in free space with line of sight."""
+    links = [table.channel_of(point) for point in points]
+    if all(link.strength == 1.0 and link.row[0] == CONSTANT for link in links) and table.prisms is None:
+        return None
+    kept = PointChannels.of(links, table.prisms, [*map(table.is_unwanted, points)])
+    rows, strengths = read_only(kept.rows, kept.rows.shape), read_only(kept.strengths, (-1,))
+    return kept._replace(strengths=strengths, rows=rows)
 
 
 class _Objective(Choice):
@@ -188,13 +182,13 @@ class ScenarioTables(
         description="Tables headed [[buildings]], one for each building or file of some; none if left out.",
     )
 
-    node_positions_m = _stacked("nodes", "position_m", 3)
+    node_positions_m = _of("nodes", _positions_m)
     """Positions of the nodes [m], (n_nodes, 3)."""
-    node_powers_w = _stacked("nodes", "transmit_power_w")
+    node_powers_w = _of("nodes", _each("transmit_power_w"))
     """Transmit powers of the nodes [W], (n_nodes,)."""
-    node_required_sinr = _stacked("nodes", "required_sinr")
+    node_required_sinr = _of("nodes", _each("required_sinr"))
     """What each node's SINR is divided by to give its margin, linear, (n_nodes,)."""
-    terminal_required_sinr = _stacked("terminals", "required_sinr")
+    terminal_required_sinr = _of("terminals", _each("required_sinr"))
     """The same of all terminals, (n_terminals,)."""
 
     @property
@@ -212,55 +206,55 @@ class ScenarioTables(
         """The SINR that each node requires, linear, 0 where it states none, (n_nodes,)."""
         return np.array([0.0 if each.min_sinr_db is None else each.required_sinr for each in self.nodes])
 
-    node_antennas = _antennas("nodes")
+    node_antennas = _of("nodes", _antennas)
     """The nodes' antennas; None where all are isotropic."""
-    node_channels = _channels("nodes")
+    node_channels = _of("nodes", _channels)
     """The nodes' channels; None where all are in free space with line of sight."""
-    jammer_positions_m = _stacked("jammers", "position_m", 3)
+    jammer_positions_m = _of("jammers", _positions_m)
     """Positions of the jammers [m], (n_jammers, 3)."""
-    jammer_powers_w = _stacked("jammers", "transmit_power_w")
+    jammer_powers_w = _of("jammers", _each("transmit_power_w"))
     """Transmit powers of the jammers [W], (n_jammers,)."""
-    jammer_uncertainty_m = _stacked("jammers", "uncertainty_reach_m")
+    jammer_uncertainty_m = _of("jammers", _each("uncertainty_reach_m"))
     """Radii of the balls that the jammers are in [m], (n_jammers,)."""
-    jammer_antennas = _antennas("jammers")
+    jammer_antennas = _of("jammers", _antennas)
     """The jammers' antennas; None where all are isotropic."""
-    jammer_channels = _channels("jammers")
+    jammer_channels = _of("jammers", _channels)
     """The jammers' channels; None where all are in free space with line of sight."""
-    source_positions_m = _stacked("nodes jammers", "position_m", 3)
+    source_positions_m = _of("nodes jammers", _positions_m)
     """Positions of the sources [m], (n_nodes + n_jammers, 3)."""
-    source_powers_w = _stacked("nodes jammers", "transmit_power_w")
+    source_powers_w = _of("nodes jammers", _each("transmit_power_w"))
     """Transmit powers of the sources [W], (n_nodes + n_jammers,)."""
-    source_antennas = _antennas("nodes jammers")
+    source_antennas = _of("nodes jammers", _antennas)
     """The sources' antennas; None where all are isotropic."""
-    source_channels = _channels("nodes jammers")
+    source_channels = _of("nodes jammers", _channels)
     """The sources' channels; None where all are in free space with line of sight."""
-    eavesdropper_positions_m = _stacked("eavesdroppers", "position_m", 3)
+    eavesdropper_positions_m = _of("eavesdroppers", _positions_m)
     """Positions of the eavesdroppers [m], (n_eavesdroppers, 3)."""
-    eavesdropper_uncertainty_m = _stacked("eavesdroppers", "uncertainty_reach_m")
+    eavesdropper_uncertainty_m = _of("eavesdroppers", _each("uncertainty_reach_m"))
     """Radii of the balls that the eavesdroppers are in [m], (n_eavesdroppers,)."""
-    eavesdropper_antennas = _antennas("eavesdroppers")
+    eavesdropper_antennas = _of("eavesdroppers", _antennas)
     """The eavesdroppers' antennas; None where all are isotropic."""
-    eavesdropper_channels = _channels("eavesdroppers")
+    eavesdropper_channels = _of("eavesdroppers", _channels)
     """The eavesdroppers' channels; None where all are in free space with line of sight."""
 
-    sender_positions_m = _stacked("sources", "position_m", 3)
+    sender_positions_m = _of("sources", _positions_m)
     """Positions of the transmitters on the ground [m], (n_senders, 3)."""
-    sender_antennas = _antennas("sources")
+    sender_antennas = _of("sources", _antennas)
     """Their antennas; None where all are isotropic."""
 
-    destination_positions_m = _stacked("destinations", "position_m", 3)
+    destination_positions_m = _of("destinations", _positions_m)
     """Position of the destination [m], (1, 3); (0, 3) without one."""
-    destination_antennas = _antennas("destinations")
+    destination_antennas = _of("destinations", _antennas)
     """The destination's antenna; None if it is isotropic."""
-    destination_channels = _channels("destinations")
+    destination_channels = _of("destinations", _channels)
     """The destination's channel; None in free space with line of sight."""
-    terminal_positions_m = _stacked("terminals", "position_m", 3)
+    terminal_positions_m = _of("terminals", _positions_m)
     """Positions of the terminals [m], (n_terminals, 3)."""
-    terminal_antennas = _antennas("terminals")
+    terminal_antennas = _of("terminals", _antennas)
     """The terminals' antennas; None where all are isotropic."""
-    terminal_channels = _channels("terminals")
+    terminal_channels = _of("terminals", _channels)
     """The terminals' channels; None where all are in free space with line of sight."""
-    point_positions_m = _stacked("points", "position_m", 3)
+    point_positions_m = _of("points", _positions_m)
     """Positions of all points [m], (n, 3)."""
 
     @property
@@ -342,13 +336,13 @@ class ScenarioTables(
         """Whether any link's channel is a function in Python."""
         return any(self.custom_law(point) is not None for point in self.points)
 
-    node_names = _names("nodes")
+    node_names = _of("nodes", _names)
     """Names of the nodes, in order."""
-    terminal_names = _names("terminals")
+    terminal_names = _of("terminals", _names)
     """Names of the terminals, in order."""
-    jammer_names = _names("jammers")
+    jammer_names = _of("jammers", _names)
     """Names of the jammers, in order."""
-    eavesdropper_names = _names("eavesdroppers")
+    eavesdropper_names = _of("eavesdroppers", _names)
     """Names of the eavesdroppers, in order."""
 
     @cached_property
