@@ -12,7 +12,6 @@ from shapely.geometry.base import BaseGeometry
 
 from nullpose.scenario.faults import require
 from nullpose.scenario.geodesy import geodetic_from_enu, wrapped
-from nullpose.scenario.section import Floats
 
 _SAME_CORNER_DEG = 9e-8  # a centimetre
 _STRAIGHT_DEG = 0.02  # an edge of this length, straight in degrees, is within 0.2 m of straight in metres
@@ -105,12 +104,12 @@ def disc(lon_deg: float, lat_deg: float, radius_m: float, alt_m: float) -> Polyg
 
 def near(polygon: Polygon, middle_deg: float) -> Polygon:
     """Move a polygon's longitudes near a middle, going on across the antimeridian."""
-
-    def moved(corners: Floats) -> Floats:
-        corners[:, 0] = wrapped(corners[:, 0], wrapped(corners[0, 0], middle_deg))
-        return corners
-
-    return shapely.transform(polygon, moved)
+    return shapely.transform(
+        polygon,
+        lambda corners: np.insert(
+            corners[:, 1:], 0, wrapped(corners[:, 0], wrapped(corners[0, 0], middle_deg)), axis=1
+        ),
+    )
 
 
 def box_about(lon_deg: float, lat_deg: float, radius_m: object) -> Polygon:

@@ -25,12 +25,11 @@ def read_nec(lines: Lines) -> Iterator[Block]:
     Raises:
         ScenarioError: a table is faulty.
     """
-    require(
-        any("RADIATION PATTERNS" in text for _, text in lines),
+    without = (
         "this is output of NEC without a pattern; add an RP card to the input, such as "
-        "RP 0 37 73 1000 0 0 5 5 for the whole sphere, and run NEC again",
+        "RP 0 37 73 1000 0 0 5 5 for the whole sphere, and run NEC again"
     )
-    for line, heading, rows, frequency_hz in _tables(lines, "RADIATION PATTERNS"):
+    for line, heading, rows, frequency_hz in _tables(lines, "RADIATION PATTERNS", without):
         values = numbers(rows, 11, _ROW)
         gain = from_db(values[:, 4])
         size = values[:, [7, 9]] * (gain > 0.0)[:, None]  # at a floor the field has rounding errors left
@@ -58,12 +57,8 @@ def read_mininec(lines: Lines) -> Iterator[Block]:
     Raises:
         ScenarioError: a table is faulty, or there is none.
     """
-    title = "PATTERN DATA"
-    require(
-        any(title in text for _, text in lines),
-        "this is output of MININEC without a pattern; let it compute the far field, in dBi all round",
-    )
-    for _, _, rows, frequency_hz in _tables(lines, title):
+    without = "this is output of MININEC without a pattern; let it compute the far field, in dBi all round"
+    for _, _, rows, frequency_hz in _tables(lines, "PATTERN DATA", without):
         values = numbers(rows, 5, "zenith and azimuth angle, and three gains in dBi: not fields in V/m")
         yield Block(
             theta_deg=values[:, 0],
@@ -74,8 +69,9 @@ def read_mininec(lines: Lines) -> Iterator[Block]:
         )
 
 
-def _tables(lines: Lines, title: str) -> Iterator[tuple[int, str, Lines, float | None]]:
-    """Yield the line, the heading, the rows and the frequency of each table below a title."""
+def _tables(lines: Lines, title: str, without: str) -> Iterator[tuple[int, str, Lines, float | None]]:
+    """Yield the line, the heading, the rows and the frequency of each table below a title, one or more."""
+    require(any(title in text for _, text in lines), without)
     frequency_hz = None
     for at, (line, text) in enumerate(lines):
         if found := _FREQUENCY.search(text):
