@@ -65,10 +65,14 @@ class SchemeRecord:
         return self.reason_against(scenario)
 
 
-def _reached_fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField]:
+def _axis_field() -> type[AxisField]:
     from nullpose.problem.axis_field import AxisField
 
-    if not (reached := AxisField.within(*scenario.axis_band)).is_free:
+    return AxisField
+
+
+def _reached_fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField]:
+    if not (reached := _axis_field().within(*scenario.axis_band)).is_free:
         return {"vertical": reached}
     return {"free" if reached.band == (0.0, 1.0) else "band": reached}
 
@@ -99,16 +103,9 @@ _NULL = "null "  # before the jammer's name
 
 
 def _null_fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField] | None:
-    from nullpose.problem.axis_field import AxisField
-
     jammers = dict(zip(scenario.jammer_names, scenario.jammer_positions_m, strict=True))
     names = jammers if null_jammer is None else [name for name in jammers if name == null_jammer]
-    return {f"{_NULL}{name}": AxisField.towards(jammers[name]) for name in names} or None
-
-
-def _null_sentence(scenario: Scenario, null_jammer: str | None) -> str:
-    who = "a jammer" if null_jammer is None else f"jammer {null_jammer}"
-    return f"with an antenna whose null is on {who}"
+    return {f"{_NULL}{name}": _axis_field().towards(jammers[name]) for name in names} or None
 
 
 def _null_note(scenario: Scenario, fields: tuple[str, ...], chosen: int) -> str:
@@ -121,7 +118,9 @@ ZERO_INTERFERENCE = SchemeRecord(
     name="zero-interference",
     label="Zero interference",
     short="zero interf.",
-    sentence=_null_sentence,
+    sentence=lambda scenario, null_jammer: (
+        f"with an antenna whose null is on {'a jammer' if null_jammer is None else f'jammer {null_jammer}'}"
+    ),
     fields=_null_fields,
     note=_null_note,
     reason_against=lambda scenario: (
@@ -133,23 +132,6 @@ ZERO_INTERFERENCE = SchemeRecord(
 )
 
 
-def _broadside_fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField] | None:
-    from nullpose.problem.axis_field import AxisField
-
-    if len(scenario.terminals) != 2:
-        return None
-    return {"broadside": AxisField.broadside(*scenario.terminal_positions_m)}
-
-
-def _broadside_note(scenario: Scenario, fields: tuple[str, ...], chosen: int) -> str:
-    if fields:
-        return ""
-    return (
-        f"{len(scenario.terminals)} node(s){' with the destination' * len(scenario.destinations)}, where eq. "
-        "3.4 is for two: the axis maximises the smallest received node power, the jammers ignored"
-    )
-
-
 # Paper eqs. 3.4 and 3.5: the dipole serves the nodes, the position the SINR. For two nodes the axis is
 # broadside to both. For another number it maximises the smallest received node power, the jammers ignored;
 # among several such axes, the one that receives least jamming is taken.
@@ -158,8 +140,17 @@ MAXIMUM_GAIN = SchemeRecord(
     label="Maximum gain",
     short="max. gain",
     sentence=lambda scenario, null_jammer: "with an antenna broadside to both nodes",
-    fields=_broadside_fields,
-    note=_broadside_note,
+    fields=lambda scenario, null_jammer: (
+        {"broadside": _axis_field().broadside(*scenario.terminal_positions_m)}
+        if len(scenario.terminals) == 2
+        else None
+    ),
+    note=lambda scenario, fields, chosen: (
+        ""
+        if fields
+        else f"{len(scenario.terminals)} node(s){' with the destination' * len(scenario.destinations)}, "
+        "where eq. 3.4 is for two: the axis maximises the smallest received node power, the jammers ignored"
+    ),
     reason_against=lambda scenario: (
         None
         if scenario.objective_record.of_nodes is None or len(scenario.nodes) == 2
@@ -169,19 +160,13 @@ MAXIMUM_GAIN = SchemeRecord(
 )
 
 
-def _vertical_fields(scenario: Scenario, null_jammer: str | None) -> dict[str, AxisField]:
-    from nullpose.problem.axis_field import AxisField
-
-    return {"vertical": AxisField.vertical()}
-
-
 # Paper section 4, case 4: an under-actuated vehicle hovering level.
 VERTICAL = SchemeRecord(
     name="vertical",
     label="Vertical",
     short="vertical",
     sentence=lambda scenario, null_jammer: "with a vertical antenna",
-    fields=_vertical_fields,
+    fields=lambda scenario, null_jammer: {"vertical": _axis_field().vertical()},
     reason_against=lambda scenario: (
         "the airframe does not reach a vertical antenna" if scenario.axis_band[1] < 1.0 else None
     ),

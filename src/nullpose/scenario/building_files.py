@@ -133,12 +133,11 @@ def height_of(feature: Feature, rules: Building, state: str = "") -> BuildingHei
         )
         return by, (end_m, end_m)
 
-    levels = _LEVELS if rules.storey_height_m else ()
     readings: list[tuple[Any, ...]] = [
         (BY_ROOF, rules.roof_property, rules.ground_property),
         (BY_HEIGHT, "height"),
+        *((BY_LEVELS, key) for key in _LEVELS if rules.storey_height_m),
     ]
-    readings += [(BY_LEVELS, key) for key in levels]
     found, faults = call_each(
         lambda reading: roof_m(*reading),
         [reading for reading in readings if properties.keys() >= {*reading[1:]}],

@@ -58,8 +58,10 @@ class NamedFiles:
         """
         origin = origin if isinstance(origin := tables.get("origin"), dict) else {}
         if "antenna" in tables:
-            harmonics = ("antenna", "file", "harmonics", with_harmonics, [[1.0]])
-            tables |= {"antenna": self._with_file(tables["antenna"], *harmonics)}
+            antenna = self._with_file(
+                tables["antenna"], "antenna", "file", "harmonics", with_harmonics, [[1.0]]
+            )
+            tables |= {"antenna": antenna}
         airspace = tables.get("airspace")
         if isinstance(airspace, dict) and isinstance(airspace.get("no_fly", []), list):
             if "origin" not in tables and (origin := self._home(airspace)):
@@ -75,8 +77,9 @@ class NamedFiles:
         tables |= _each_point(tables, self._with_track)
         if len(self._faults) > failures:
             raise_all(self._faults)  # nothing else is known of such a point
-        keys = {"key": "antenna_file", "product": "antenna_profile"}
-        with_profiles = partial(self._with_file, **keys, read=with_profile, instead=ALIKE)
+        with_profiles = partial(
+            self._with_file, key="antenna_file", product="antenna_profile", read=with_profile, instead=ALIKE
+        )
         tables |= _each_point(tables, with_profiles)
         try:
             scenario = Scenario.from_dict(tables)
