@@ -103,9 +103,12 @@ def points_of(scenario: Scenario, *kinds: str) -> dict[str, Any]:
     antennas = [(each.axes, each.leaks) if each else (np.zeros((n, 3)), np.ones(n)) for each, n in groups]
     axes, leaks = (np.concatenate(part) for part in zip(*antennas, strict=True))
     count = len(axes) if np.any(axes) else 0
-    fields = {"points_m": np.vstack([points_m for _, points_m in every])}
-    fields |= {"ground_axes": axes[:count], "ground_leaks": leaks[:count]}
-    return fields | _channels_of(scenario, every[: len(kinds)], len(axes))
+    return {
+        "points_m": np.vstack([points_m for _, points_m in every]),
+        "ground_axes": axes[:count],
+        "ground_leaks": leaks[:count],
+        **_channels_of(scenario, every[: len(kinds)], len(axes)),
+    }
 
 
 def _channels_of(scenario: Scenario, kinds: list[tuple[str, FloatArray]], count: int) -> dict[str, Any]:

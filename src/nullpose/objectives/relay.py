@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nullpose.objectives.min_sinr import ratios_at_drone, with_margins
-from nullpose.objectives.ratios import FloatArray, Ratios, snr_weights
+from nullpose.objectives.ratios import Ratios, snr_weights
 from nullpose.objectives.record import OF_SOURCES, ObjectiveRecord, Quantity
 
 if TYPE_CHECKING:
-    from nullpose.physics import Reception
     from nullpose.scenario import Scenario
 
 _BOTH = "the nodes and the destination"
@@ -36,19 +35,16 @@ def _ratios(scenario: Scenario) -> Ratios:
     )
 
 
-def _evaluate(reception: Reception) -> dict[str, FloatArray]:
-    """Evaluate every node's SINR at the drone and then the drone's SNR at the destination, and margins."""
-    hops = (reception.sinr, reception.destination_snr)
-    return with_margins(reception.scenario, np.concatenate(hops, axis=-1))
-
-
 RELAY = ObjectiveRecord(
     name="relay",
     summary="the smaller of the nodes' SINR at the drone and the drone's SNR (or margin) at the destination",
     quantities=(_SINR, _MARGIN),
     quantity=lambda scenario: _MARGIN if scenario.has_margins else _SINR,
     ratios=_ratios,
-    evaluate=_evaluate,
+    # of every node at the drone, then of the drone at the destination
+    evaluate=lambda reception: with_margins(
+        reception.scenario, np.concatenate([reception.sinr, reception.destination_snr], axis=-1)
+    ),
     interferers="jammers",
     needs=("transmitter", "destination", "nodes.power"),
     unused=("eavesdroppers", "nodes.noise", "nodes.jamming", *OF_SOURCES),

@@ -116,11 +116,8 @@ def pose_frames(scenario: Scenario, pose: Pose) -> PoseFrames:
     east_north_up = _frame_pose(pose.position_m, pose.roll_rad, pose.pitch_rad, pose.yaw_rad)
     heading_rad = math.pi / 2.0 - pose.yaw_rad
     north_east_down = _frame_pose(ned_from_enu(pose.position_m), pose.roll_rad, -pose.pitch_rad, heading_rad)
-    if scenario.origin is None:
-        return PoseFrames(enu=east_north_up, ned=north_east_down)
-    return PoseFrames(
-        enu=east_north_up, ned=north_east_down, geodetic=Geodetic(**scenario.origin.place(pose.position_m))
-    )
+    place = None if scenario.origin is None else Geodetic(**scenario.origin.place(pose.position_m))
+    return PoseFrames(enu=east_north_up, ned=north_east_down, geodetic=place)
 
 
 def frd_from_flu(vector: ArrayLike) -> FloatArray:

@@ -99,8 +99,11 @@ def altitude_limits(
     )
     times = [key for key in properties if _LIKE_TIMES.search(key)]
     counts = f"counts at {' and '.join(found) or 'all altitudes'}"
-    remarks: dict[str, object] = {f"{counts}; not read: {', '.join(unread)}": unread}
-    remarks |= {_WEATHER: is_narrowed, f"counts at all times; not read: {', '.join(times)}": times}
+    remarks = {
+        f"{counts}; not read: {', '.join(unread)}": bool(unread),
+        _WEATHER: is_narrowed,
+        f"counts at all times; not read: {', '.join(times)}": bool(times),
+    }
     return found, [remark for remark, is_so in remarks.items() if is_so]
 
 

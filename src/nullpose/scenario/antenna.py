@@ -110,9 +110,11 @@ class Antenna(Section, unstated=("kind", "normalise", "gain_dbi")):
         if kind.read is not None and "harmonics" not in raw:
             missing = f'missing, but kind = "{self.kind}" needs it; add the name of a file'
             yield ("file",), f"{ONLY_LOCAL}; load that file by its path" if "file" in raw else missing
-        for n, row in enumerate(self.harmonics or ()):
-            if len(row) != 2 * n + 1:
-                yield ("harmonics", n), f"got {len(row)} numbers, must be {2 * n + 1}: 2 n + 1 for degree n"
+        yield from (
+            (("harmonics", n), f"got {len(row)} numbers, must be {2 * n + 1}: 2 n + 1 for degree n")
+            for n, row in enumerate(self.harmonics or ())
+            if len(row) != 2 * n + 1
+        )
 
     @cached_property
     def record(self) -> AnyAntenna:

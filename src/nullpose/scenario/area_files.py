@@ -122,14 +122,21 @@ def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
         {"name": f"hole {index} of the fence", "polygon_lat_lon_deg": corners_of(ring)}
         for index, ring in enumerate(polygon.interiors, 1)
     ]
-    fenced = {**airspace, "geofence_lat_lon_deg": corners_of(polygon.exterior)}
     zones = [*holes, *(zone for zone, _ in beside), *airspace.get("no_fly", ())]
-    fenced |= {"no_fly": zones} if holes or beside else {}
-    fenced |= _altitudes(airspace, fences[0], ground_m)
-    places = {"airspace.geofence_lat_lon_deg": fences[0].place}
-    places |= {f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(beside, len(holes))}
-    notes = [*notes_on(fences, counts, [*radius_words, *remarks], is_fence=True)]
-    notes += notes_on(others, Counter(area=len(others)), []) if others else []
+    fenced = {
+        **airspace,
+        "geofence_lat_lon_deg": corners_of(polygon.exterior),
+        **({"no_fly": zones} if holes or beside else {}),
+        **_altitudes(airspace, fences[0], ground_m),
+    }
+    places = {
+        "airspace.geofence_lat_lon_deg": fences[0].place,
+        **{f"airspace.no_fly[{index}]": place for index, (_, place) in enumerate(beside, len(holes))},
+    }
+    notes = [
+        *notes_on(fences, counts, [*radius_words, *remarks], is_fence=True),
+        *(notes_on(others, Counter(area=len(others)), []) if others else ()),
+    ]
     return fenced, notes, places
 
 

@@ -155,8 +155,13 @@ def height_of(feature: Feature, rules: Building, state: str = "") -> BuildingHei
 
 def _unread(feature: Feature, rules: Building, by: str) -> tuple[str, ...]:
     """List properties that look like a height or a state and were not read."""
-    read = {*_BASES, "height", rules.roof_property, rules.ground_property}
-    read |= {*_LEVELS} if by == BY_LEVELS else set()
+    read = {
+        *_BASES,
+        "height",
+        rules.roof_property,
+        rules.ground_property,
+        *(_LEVELS if by == BY_LEVELS else ()),
+    }
     unread = tuple(
         key
         for key in feature.properties

@@ -153,9 +153,11 @@ def still_at(scenario: Scenario, t_s: float) -> Scenario:
         "airframe": airframe and airframe.model_copy(update=dict.fromkeys(FLIGHT_KEYS)),
     }
     try:
-        for kind in POINT_LISTS:
-            still[kind] = tuple(_still(point, origin, t_s) for point in getattr(scenario, kind))
-        return scenario.model_copy(update=still | {"destination": end and _still(end, origin, t_s)})
+        points = {
+            kind: tuple(_still(point, origin, t_s) for point in getattr(scenario, kind))
+            for kind in POINT_LISTS
+        }
+        return scenario.model_copy(update=still | points | {"destination": end and _still(end, origin, t_s)})
     except ScenarioError as error:
         raise ScenarioError(error.faults, f"the scene {words}") from None
 

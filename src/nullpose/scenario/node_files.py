@@ -128,14 +128,16 @@ def cells_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> dic
 
 def _node_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> ListedNode:
     row = cells_of_row(where, header, cells)
-    places = {"": where, "position_m": where} | {key: f"{where}, column {key}" for key in row}
-    places |= {f"position_m[{axis}]": f"{where}, column {key}" for axis, key in enumerate(LOCAL)}
+    places = {
+        "": where,
+        "position_m": where,
+        **{key: f"{where}, column {key}" for key in row},
+        **{f"position_m[{axis}]": f"{where}, column {key}" for axis, key in enumerate(LOCAL)},
+    }
+    position = {"position_m": [row[key] for key in LOCAL]} if "x_m" in row else {}
     # A place is never left out, so its empty cells stay, to be refused.
-    values = {key: cell for key, cell in row.items() if cell != "" or key in GEODETIC_KEYS}
-    if "x_m" in row:
-        values = {key: cell for key, cell in values.items() if key not in LOCAL}
-        values["position_m"] = [row[key] for key in LOCAL]
-    return ListedNode(values, places)
+    stated = {key: cell for key, cell in row.items() if cell != "" or key in GEODETIC_KEYS}
+    return ListedNode({key: stated[key] for key in stated if key not in LOCAL} | position, places)
 
 
 def number_of(cell: str) -> object:
@@ -193,7 +195,10 @@ def _node_of_point(feature: Feature, point: Point, name: str) -> ListedNode:
         require(wrong not in values, f"{where}.properties.{wrong}", _NO_PLACE)
     require(height or values.keys() & ALTITUDE_KEYS, coordinates, _NO_HEIGHT)
     place = {"lon_deg": point.x, "lat_deg": point.y} | height
-    places = {"": where, "position_m": f"{where}.geometry"}
-    places |= {each: f"{where}.properties.{each}" for each in values}
-    places |= {each: f"{coordinates}[{axis}]" for axis, each in enumerate(place)}
+    places = {
+        "": where,
+        "position_m": f"{where}.geometry",
+        **{each: f"{where}.properties.{each}" for each in values},
+        **{each: f"{coordinates}[{axis}]" for axis, each in enumerate(place)},
+    }
     return ListedNode({**values, **place}, places)

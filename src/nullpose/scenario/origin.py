@@ -154,8 +154,11 @@ def located(data: Mapping[str, object]) -> Mapping[str, object]:
         origin = Origin.model_validate(data.get("origin"))
     except ValidationError:
         origin = None
-    kinds: dict[str, type[Section]] = dict.fromkeys((*POINT_LISTS, "destination"), GroundPoint)
-    kinds |= {"buildings": Building, "airspace": Airspace}
+    kinds: dict[str, type[Section]] = {
+        **dict.fromkeys((*POINT_LISTS, "destination"), GroundPoint),
+        "buildings": Building,
+        "airspace": Airspace,
+    }
     start = _keys_of_starts(data)
     whole = {**data} | {key: _located(kinds[key], data[key], origin, start) for key in kinds if key in data}
     if isinstance(airspace := whole.get("airspace"), Mapping) and "no_fly" in airspace:

@@ -91,8 +91,12 @@ class Scenario(ScenarioTables):
             "nodes": _rows_of_points("node", nodes_m, node_power_w, node_power_dbm),
             "jammers": _rows_of_points("jammer", jammers_m, jammer_power_w, jammer_power_dbm),
         }
-        receiver = {"noise_w": noise_w, "noise_dbm": noise_dbm, "frequency_hz": frequency_hz}
-        receiver |= {"reference_gain_db": reference_gain_db}
+        receiver = {
+            "noise_w": noise_w,
+            "noise_dbm": noise_dbm,
+            "frequency_hz": frequency_hz,
+            "reference_gain_db": reference_gain_db,
+        }
         tables: dict[str, dict[str, object]] = {
             "airspace": {"altitude_m": altitude_m},
             "receiver": {key: value for key, value in receiver.items() if value is not None},
@@ -177,8 +181,11 @@ class Scenario(ScenarioTables):
         return toml_text(self.to_dict())
 
     def __repr__(self) -> str:
-        counts = [(len(self.nodes), "node"), (len(self.jammers), "jammer")]
-        counts += [(len(self.eavesdroppers), "eavesdropper")] * bool(self.eavesdroppers)
+        counts = [
+            (len(self.nodes), "node"),
+            (len(self.jammers), "jammer"),
+            *([(len(self.eavesdroppers), "eavesdropper")] if self.eavesdroppers else ()),
+        ]
         numbers = ", ".join(f"{count} {noun}{'s' * (count != 1)}" for count, noun in counts)
         low, high = self.airspace.altitude_m
         span = "" if self.time is None else f", in motion for {self.time.duration_s:g} s"

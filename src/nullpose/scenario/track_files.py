@@ -121,10 +121,12 @@ def _track_of_gpx(content: bytes) -> ListedTrack:
 def _track(
     keys: Sequence[str], rows: list[list[object]], names: list[list[str]], wheres: list[str]
 ) -> ListedTrack:
-    places = {f"track[{i}][{j}]": name for i, row in enumerate(names) for j, name in enumerate(row)}
-    places |= {f"track[{i}]": where for i, where in enumerate(wheres)}
-    start = dict.fromkeys(PLACE_KEYS, wheres[0]) if rows else {}
-    return ListedTrack(keys, rows, places | start)
+    places = {
+        **{f"track[{i}][{j}]": name for i, row in enumerate(names) for j, name in enumerate(row)},
+        **{f"track[{i}]": where for i, where in enumerate(wheres)},
+        **(dict.fromkeys(PLACE_KEYS, wheres[0]) if rows else {}),
+    }
+    return ListedTrack(keys, rows, places)
 
 
 def _seconds(times: Sequence[object], wheres: Sequence[str]) -> list[object]:

@@ -25,8 +25,12 @@ _HEADING = re.compile(r"([^\[\]]+)\[([^\]]*)\]")
 _LONGEST = 1000  # characters of a heading that are looked at
 _PARTS = ("abs(theta)", "abs(phi)")
 _TOTAL = re.compile(r"abs\((dir|gain|real|rlzd|grlz|e\)).*")
-_QUANTITIES = {"di": "directivity", "ga": "gain", "re": "realised gain", "rl": "realised gain"}
-_QUANTITIES |= {"gr": "realised gain", "e)": "field"}
+_QUANTITIES = {
+    "di": "directivity",
+    "ga": "gain",
+    **dict.fromkeys(("re", "rl", "gr"), "realised gain"),
+    "e)": "field",
+}
 _DECIBELS = {"db": 0.0, "dbi": 0.0, "dbd": DBD}
 _AXES = {"zaxis": (0.0, 0.0, 1.0), "xaxis": (1.0, 0.0, 0.0)}
 _UNALIGNED = 1e-6
