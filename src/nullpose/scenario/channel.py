@@ -119,12 +119,11 @@ class Channel(Section, ways=(Ways((("environment",), _NUMBERS), fewest=0),)):
         for key in sorted(present - {"model", "blocked_loss_db", "shadow_margin_m", *_keys_of(self.model)}):
             others = " or ".join(f'model = "{name}"' for name in CHANNELS if key in _keys_of(name))
             yield (key,), f"has no meaning with {named}; remove it, or write {others}"
-        for key, default in CHANNELS[self.model].keys.items():
-            if default is None and key not in present | {*_NUMBERS}:
-                yield (
-                    (key,),
-                    f"missing, but {named} needs it; add it: {type(self).model_fields[key].description}",
-                )
+        yield from (
+            ((key,), f"missing, but {named} needs it; add it: {type(self).model_fields[key].description}")
+            for key, default in CHANNELS[self.model].keys.items()
+            if default is None and key not in present | {*_NUMBERS}
+        )
         if "environment" in _keys_of(self.model) and present.isdisjoint(("environment", *_NUMBERS)):
             instead = f"{', '.join(_NUMBERS[:-1])} and {_NUMBERS[-1]}"
             yield ("environment",), f"missing, but {named} needs it, or {instead}; add either"

@@ -204,17 +204,22 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
     record, nodes = scenario.objective_record, len(scenario.nodes or ())
     if isinstance(scenario.objective, Custom) and nodes and (fault := scenario.objective.fault(nodes)):
         yield ("objective",), fault
-    for need in record.needs:
-        for place, keys, present in _places_of(need, scenario, points):
-            if not present:
-                yield place, f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it'
-    for place, point in points.items() if record.mean_offset is None else ():
-        if isinstance(point, Terminal) and point.weight is not None and point.min_sinr_db is not None:
-            yield (
-                place,
-                "both weight and min_sinr_db are given, at most one is allowed with objective = "
-                f'"{record.name}"; remove either, or maximise a sum of rates or a mean',
-            )
+    yield from (
+        (place, f'missing, but objective = "{record.name}" needs {" or ".join(keys)}; add it')
+        for need in record.needs
+        for place, keys, present in _places_of(need, scenario, points)
+        if not present
+    )
+    yield from (
+        (
+            place,
+            "both weight and min_sinr_db are given, at most one is allowed with objective = "
+            f'"{record.name}"; remove either, or maximise a sum of rates or a mean',
+        )
+        for place, point in points.items()
+        if record.mean_offset is None and isinstance(point, Terminal)
+        if point.weight is not None and point.min_sinr_db is not None
+    )
     without_meaning = {
         other.name: {key for each in other.unused for key in _keys_of(each)} for other in RECORDS.values()
     }

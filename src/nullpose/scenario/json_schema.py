@@ -49,13 +49,15 @@ class _TomlSchema(GenerateJsonSchema):
         described = super().model_schema(schema)
         described.pop("title", None)
         if issubclass(kind := schema["cls"], Section):
-            # The class docstring speaks of Python; the fields describe themselves.
-            described["description"] = str(described.get("description", "")).split("\n", 1)[0]
             either = {key for ways in kind.ways for group in ways.groups for key in group}
             required = [key for key in described.pop("required", ()) if key not in either]
-            described |= {"required": required} if required else {}
             rules = _rules(kind)
-            described |= rules[0] if len(rules) == 1 else {"allOf": rules} if rules else {}
+            described |= {
+                # The rest of the class docstring speaks of Python; the fields describe themselves.
+                "description": str(described.get("description", "")).split("\n", 1)[0],
+                **({"required": required} if required else {}),
+                **(rules[0] if len(rules) == 1 else {"allOf": rules} if rules else {}),
+            }
         return described
 
 
