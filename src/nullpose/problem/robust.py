@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,7 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
         cases: one or more.
     """
     nominal, moved = build_family(scenario, any_channel=True), f"{scenario.interferer}_offsets_m"
+    ratios = nominal.ratios
     copies: dict[bytes, tuple[int, FloatArray, FloatArray, int]] = {}  # each moved and turned point once
 
     def copied(point: int, point_m: FloatArray, rotation: FloatArray) -> int:
@@ -46,48 +48,39 @@ def build_robust_family(scenario: Scenario, cases: Sequence[BindingCase]) -> Fam
             point_m.tobytes() + rotation.tobytes(), (len(copies), point_m, rotation, point)
         )[0]
 
-    groups: dict[tuple[int, bytes], int] = {}
+    # each denominator once: its number, the copies in it and their weights
+    groups: dict[tuple[int, bytes], tuple[int, list[int], FloatArray]] = {}
     numerator_point, denominator_of = [], []
-    entries: list[int] = []
-    weights: list[FloatArray] = []
-    start = [0]
     for ratio, case in cases:
         offsets_m = _of_points(nominal, scenario, getattr(case, moved))
-        moved_m = nominal.ratios.points_m - case.position_offset_m + offsets_m
+        moved_m = ratios.points_m - case.position_offset_m + offsets_m
         rotation = case.rotation_world
-        point = int(nominal.ratios.numerator_point[ratio])
+        point, group = int(ratios.numerator_point[ratio]), int(ratios.denominator_of[ratio])
         numerator_point.append(copied(point, moved_m[point], rotation))
-        group = int(nominal.ratios.denominator_of[ratio])
-        bounds = slice(nominal.ratios.denominator_start[group], nominal.ratios.denominator_start[group + 1])
-        disturbers = nominal.ratios.denominator_point[bounds]
-        disturbers_m = moved_m[disturbers]
-        key = (group, disturbers_m.tobytes() + rotation.tobytes())
-        if key not in groups:
-            groups[key] = len(groups)
-            entries += [
-                copied(point, point_m, rotation)
-                for point, point_m in zip(disturbers.tolist(), disturbers_m, strict=True)
-            ]
-            weights.append(nominal.ratios.denominator_weight[bounds])
-            start.append(len(entries))
-        denominator_of.append(groups[key])
-    ratios = np.array([case.ratio for case in cases], dtype=np.int64)
+        bounds = slice(ratios.denominator_start[group], ratios.denominator_start[group + 1])
+        disturbers = ratios.denominator_point[bounds].tolist()
+        entries = [copied(each, moved_m[each], rotation) for each in disturbers]
+        key = (group, moved_m[disturbers].tobytes() + rotation.tobytes())
+        found = groups.setdefault(key, (len(groups), entries, ratios.denominator_weight[bounds]))
+        denominator_of.append(found[0])
+    of_cases = np.array([case.ratio for case in cases], dtype=np.int64)
     _, points_m, rotations, originals = map(np.array, zip(*copies.values(), strict=True))
+    _, entries_of, weights = zip(*groups.values(), strict=True)
     return nominal.changed(
         **{
             name: rows[originals]
             for name in ("ground_axes", "ground_leaks", "channels")
-            if len(rows := getattr(nominal.ratios, name))
+            if len(rows := getattr(ratios, name))
         },
         points_m=points_m,
         turn=rotations if np.any(rotations != np.eye(3)) else np.zeros((0, 3, 3)),
-        numerator_isotropic=nominal.ratios.numerator_isotropic[ratios],
-        numerator_weight=nominal.ratios.numerator_weight[ratios],
+        numerator_isotropic=ratios.numerator_isotropic[of_cases],
+        numerator_weight=ratios.numerator_weight[of_cases],
         numerator_point=np.array(numerator_point, dtype=np.int64),
         denominator_of=np.array(denominator_of, dtype=np.int64),
-        denominator_isotropic=nominal.ratios.denominator_isotropic[[group for group, _ in groups]],
-        denominator_start=np.array(start, dtype=np.int64),
-        denominator_point=np.array(entries, dtype=np.int64),
+        denominator_isotropic=ratios.denominator_isotropic[[group for group, _ in groups]],
+        denominator_start=np.cumsum([0, *map(len, entries_of)]),
+        denominator_point=np.array([*chain(*entries_of)], dtype=np.int64),
         denominator_weight=np.concatenate(weights),
     )
 
