@@ -42,7 +42,7 @@ Filled: TypeAlias = tuple[_Raw, list[str], dict[str, str]]
 by their path in the scenario."""
 
 
-def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled[PlainTable]:
+def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: Origin) -> Filled[PlainTable]:
     """Add the zones of a file to a raw airspace after its own.
 
     Where they have too many corners they are cut to the airspace; where that has no bounds it gets some.
@@ -50,7 +50,7 @@ def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     Args:
         features: of the file.
         airspace: raw.
-        origin: the scenario's, raw; empty without one.
+        origin: the scenario's, None standing for what is not stated or at fault.
 
     Raises:
         ScenarioError: with the faults of all features.
@@ -80,17 +80,17 @@ def with_zones(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     return filled, list(notes_on(areas, counts, remarks)), places
 
 
-def reach_deg(origin: PlainTable) -> Polygon:
+def reach_deg(origin: Origin) -> Polygon:
     """Return the box of degrees in which the areas of a file count.
 
     Args:
-        origin: the scenario's, raw; empty without one.
+        origin: the scenario's, None standing for what is not stated or at fault.
     """
     place = _place(origin)
     return _everywhere() if place is None else _box_deg(_box_m({}, REACH_M, place), place)
 
 
-def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainTable) -> Filled[PlainTable]:
+def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: Origin) -> Filled[PlainTable]:
     """Give a raw airspace the fence of a file.
 
     The fence's holes are zones, and its altitudes bound those of the airspace.
@@ -98,7 +98,7 @@ def with_fence(features: Sequence[Feature], airspace: PlainTable, origin: PlainT
     Args:
         features: of the file, of which one is a polygon.
         airspace: raw, without a fence.
-        origin: the scenario's, raw; empty without one.
+        origin: the scenario's, None standing for what is not stated or at fault.
 
     Raises:
         ScenarioError: there is not one polygon, or the altitudes leave none.
@@ -170,15 +170,15 @@ def _altitudes(airspace: PlainTable, fence: Area, ground_m: Ground) -> dict[str,
     return found if fence.limits else {}
 
 
-def _ground_m(origin: PlainTable) -> Ground:
-    sound = Origin._sound_part(origin)
-    return {"altitude_m": 0.0} | {key: getattr(sound, over) for key, over in EARTHLY_RANGES.items()}
+def _ground_m(origin: Origin) -> Ground:
+    return {"altitude_m": 0.0} | {key: getattr(origin, over) for key, over in EARTHLY_RANGES.items()}
 
 
-def _place(origin: PlainTable) -> Floats | None:
+def _place(origin: Origin) -> Floats | None:
     """Return the origin's latitude and longitude, and altitude 0, (3,); None where it is at fault."""
-    sound = Origin._sound_part(origin)
-    return None if None in (sound.lat_deg, sound.lon_deg) else np.array([sound.lat_deg, sound.lon_deg, 0.0])
+    return (
+        None if None in (origin.lat_deg, origin.lon_deg) else np.array([origin.lat_deg, origin.lon_deg, 0.0])
+    )
 
 
 def _bounds(airspace: PlainTable) -> Airspace:

@@ -21,6 +21,7 @@ from nullpose.scenario.areas import Area, account, area_of, unique
 from nullpose.scenario.buildings import HIGHEST_M, MOST_BUILDINGS, Building
 from nullpose.scenario.faults import EXCHANGED, call_each, described, raise_all, require
 from nullpose.scenario.geo_file import Feature
+from nullpose.scenario.origin import Origin
 from nullpose.scenario.shapes import corners_of
 
 GONE = {
@@ -206,7 +207,7 @@ def _length_m(feature: Feature, rules: Building, key: str) -> float:
 
 
 def buildings_of(
-    features: Sequence[Feature], rules: Building, origin: PlainTable, names: set[str], first: int
+    features: Sequence[Feature], rules: Building, origin: Origin, names: set[str], first: int
 ) -> tuple[list[PlainTable], list[str], dict[str, str]]:
     """Make raw buildings of features: one of each polygon, open where it has a hole.
 
@@ -217,7 +218,7 @@ def buildings_of(
     Args:
         features: of the file.
         rules: the table that names the file.
-        origin: the scenario's, raw; empty without one.
+        origin: the scenario's, None standing for what is not stated or at fault.
         names: that are taken; those of the file are added.
         first: how many buildings the scenario has before them.
 

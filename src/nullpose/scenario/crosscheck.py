@@ -217,8 +217,8 @@ def _objective_faults(scenario: Scenario, points: Mapping[Place, GroundPoint]) -
             f'"{record.name}"; remove either, or maximise a sum of rates or a mean',
         )
         for place, point in points.items()
-        if record.mean_offset is None and isinstance(point, Terminal)
-        if point.weight is not None and point.min_sinr_db is not None
+        if isinstance(point, Terminal) and point.weight is not None and point.min_sinr_db is not None
+        if record.mean_offset is None
     )
     without_meaning = {
         other.name: {key for each in other.unused for key in _keys_of(each)} for other in RECORDS.values()

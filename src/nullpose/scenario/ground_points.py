@@ -65,11 +65,11 @@ PLACE = Ways(
     instead=("track", "track_from"),
 )
 """The ways to state a place."""
-ALTITUDE = at_most_one(*ALTITUDE_KEYS)
-"""The ways to state the altitude of a place on the Earth."""
 
 
-class GroundPoint(Section, ways=(PLACE, ALTITUDE, MOTION), unstated=("antenna", "gain_dbi")):
+class GroundPoint(
+    Section, ways=(PLACE, at_most_one(*ALTITUDE_KEYS), MOTION), unstated=("antenna", "gain_dbi")
+):
     """Someone at a place, with an antenna.
 
     Args:

@@ -23,7 +23,7 @@ from nullpose.scenario.geo_file import ENDINGS, MOST_BYTES, Feature, features_of
 from nullpose.scenario.geo_json import HOME
 from nullpose.scenario.ground_points import ALIKE
 from nullpose.scenario.node_files import nodes_of_csv, nodes_of_features
-from nullpose.scenario.origin import POINT_LISTS
+from nullpose.scenario.origin import POINT_LISTS, Origin
 from nullpose.scenario.scenario import Scenario
 from nullpose.scenario.toml_file import FileKind, file_content, file_text, inside
 from nullpose.scenario.track import MOTION
@@ -66,9 +66,9 @@ class NamedFiles:
         if isinstance(airspace, dict) and isinstance(airspace.get("no_fly", []), list):
             if "origin" not in tables and (origin := self._home(airspace)):
                 tables |= {"origin": origin}
-            tables |= {"airspace": self._airspace(airspace, origin)}
+            tables |= {"airspace": self._airspace(airspace, Origin._sound_part(origin))}
         if isinstance(buildings := tables.get("buildings"), list):
-            tables |= {"buildings": self._buildings(buildings, origin)}
+            tables |= {"buildings": self._buildings(buildings, Origin._sound_part(origin))}
         if _NODES_KEY in tables and "nodes" not in tables:
             # The nodes take the place of the key, so that faults come in the order of the file.
             tables = {("nodes" if key == _NODES_KEY else key): value for key, value in tables.items()}
@@ -197,7 +197,7 @@ class NamedFiles:
                 return dict(*homes)
         return {}
 
-    def _airspace(self, airspace: PlainTable, origin: PlainTable) -> PlainTable:
+    def _airspace(self, airspace: PlainTable, origin: Origin) -> PlainTable:
         """Fill in the fence and the zones of other files."""
         for key, fill in ((_FENCE_KEY, with_fence), (_ZONES_KEY, with_zones)):
             if key in airspace and not (key == _FENCE_KEY and FENCES & airspace.keys()):
@@ -207,7 +207,7 @@ class NamedFiles:
                 airspace = self._filled(f"airspace.{key}", airspace[key], whole) or rest
         return airspace
 
-    def _buildings(self, tables: list[object], origin: PlainTable) -> list[object]:
+    def _buildings(self, tables: list[object], origin: Origin) -> list[object]:
         """Put the buildings of other files in place of the tables that name these."""
         whole: list[object] = []
         names = {str(table.get("name")) for table in tables if isinstance(table, dict)}
