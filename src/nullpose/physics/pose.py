@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nullpose.antenna import AnyAntenna
-from nullpose.errors import UsageError, checked, require_usage
+from nullpose.errors import checked, require_usage
 from nullpose.physics.rotation import (
     antenna_axis,
     attitude_from_axis,
@@ -42,9 +42,10 @@ def as_position(position_m: ArrayLike) -> FloatArray:
         f"position_m: given an array of shape {position.shape}; allowed: three finite numbers, metres, "
         "an array of shape (3,); of several positions give one at a time, as in positions_m[0]",
     )
-    if not np.all(np.abs(position) <= FARTHEST_M):
-        allowed = f"three finite numbers, metres, up to {FARTHEST_M:g}"
-        raise UsageError(f"position_m: given {position.tolist()}; allowed: {allowed}")
+    require_usage(
+        np.all(np.abs(position) <= FARTHEST_M),
+        f"position_m: given {position.tolist()}; allowed: three finite numbers, metres, up to {FARTHEST_M:g}",
+    )
     return position
 
 
