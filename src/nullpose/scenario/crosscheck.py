@@ -15,7 +15,7 @@ from nullpose.scenario.buildings import Building, buried_points
 from nullpose.scenario.channel import CustomChannel
 from nullpose.scenario.faults import ONLY_LOCAL, Place, faults_of, key_faults, path_of, unknown
 from nullpose.scenario.ground_points import SAME_PLACE_M, GroundPoint, Node, Terminal
-from nullpose.scenario.motion import flight_faults, motion_faults
+from nullpose.scenario.motion import LINE, flight_faults, motion_faults
 from nullpose.scenario.origin import POINT_LISTS, is_placed, origin_faults
 from nullpose.scenario.plausibility import too_small
 from nullpose.scenario.reach import airspace_faults
@@ -308,9 +308,9 @@ def shared_names(tables: Mapping[Place, Any]) -> Iterator[tuple[Place, str]]:
 def _shared_places(points: Mapping[Place, GroundPoint]) -> Iterator[tuple[Place, str]]:
     placed = list(points)
     positions_m = np.array([point.position_m for point in points.values()]).reshape(-1, 3)
-    if (np.diff(np.sort(positions_m, axis=0), axis=0) >= SAME_PLACE_M).all(axis=0).any():
+    if np.all(np.diff(np.sort(positions_m @ LINE)) > 2.0 * SAME_PLACE_M):
         return
-    from scipy.spatial import KDTree  # of most scenarios all points are apart along an axis
+    from scipy.spatial import KDTree  # imported here: hardly any scenario has points so close
 
     pairs = sorted(KDTree(positions_m).query_pairs(SAME_PLACE_M))
     firsts = {

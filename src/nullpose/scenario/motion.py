@@ -278,7 +278,8 @@ def flight_faults(
 
 
 _NEAR_M = 1e6  # of the origin along each axis: beyond, and for what is no number, a place is judged in full
-_LINE = np.array([0.48, 0.6, 0.64]) * [1.0, np.sqrt(0.9), np.sqrt(1.1)]  # few points have one shadow on it
+LINE = np.array([0.48, 0.6, 0.64]) * [1.0, np.sqrt(0.9), np.sqrt(1.1)]
+"""A direction, nearly of unit length, along which few points of a scene are at one place."""
 _OF_NO_PLACE = ("_powers_w", "_required_sinr", "_antennas", "_channels", "open_airspace", "prisms")
 """How the names of arrays end that stay where points move."""
 
@@ -303,7 +304,7 @@ def move_points(scenario: Scenario, places_m: Mapping[str, Floats]) -> Scenario:
     at_m = moved.point_positions_m
     is_sound = (
         np.all(np.abs(at_m) <= _NEAR_M)
-        and np.all(np.diff(np.sort(at_m @ _LINE)) > 2.0 * SAME_PLACE_M)
+        and np.all(np.diff(np.sort(at_m @ LINE)) > 2.0 * SAME_PLACE_M)
         and not any(building.holds(place_m) for building in scenario.buildings for place_m in at_m)
         and not (scenario.is_uncertain or any(point.lat_deg is not None for point in scenario.points))
     )
