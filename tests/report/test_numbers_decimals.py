@@ -59,6 +59,9 @@ def azimuth_of(text: str) -> np.ndarray:
     return numbers(rf"azimuth {NUMBER} deg", text) if "azimuth" in text else np.zeros(1)
 
 
+SLOW = {"town": pytest.mark.grid}  # whose buildings take seconds
+
+
 def numbers(pattern: str, text: str) -> np.ndarray:
     """Return the numbers of the first match in a text."""
     found = re.search(pattern, text)
@@ -80,7 +83,10 @@ def require_same(result: Result) -> None:
             assert not list(pose_faults(scenario, pose))
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "array"])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=SLOW.get(name, ())) for name in NAMES if name != "array"],
+)
 def test_the_pose_of_each_example_typed_again_has_its_value(name: str) -> None:
     """Position, attitude, axis as angles and as a vector, NED and place on the Earth."""
     require_same(best_found(name))

@@ -242,8 +242,12 @@ def test_a_second_run_is_refused(farm: Any, spec_file: Any, tmp_path: Path) -> N
     farm.until(lambda: (out / "parts").exists())
     name = f"process {first.pid} on {socket.gethostname()}"
     assert study_status(out).running == name
+
+    def go_on(at: StudyProgress) -> None:
+        raise AssertionError("both write this study")
+
     with pytest.raises(OutputError, match=f"{name} writes this study now"):
-        run_study(load_spec(spec), out, workers=0)
+        run_study(load_spec(spec), out, workers=0, on_progress=go_on)
     assert first.poll() is None
     os.killpg(first.pid, signal.SIGKILL)
     first.wait()

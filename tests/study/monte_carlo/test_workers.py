@@ -193,6 +193,7 @@ def test_a_process_of_the_pool_killed(
     pd.testing.assert_frame_equal(rows(out), whole)
 
 
+@pytest.mark.grid
 @pytest.mark.parametrize("where", and_slow(["pool"], ["cluster"]))
 def test_a_scene_that_no_worker_survives(
     farm: Any, spec_file: SpecFile, tmp_path: Path, whole: pd.DataFrame, rows: Rows, where: str
