@@ -1,19 +1,24 @@
 """Channels in interval arithmetic: amplitudes and excess gains over boxes enclose those of the models."""
 
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
 from tests.certificate.plain import boxes_at, excess_over, random_family, value_at
+from tests.reference.whip import whip_rows
 
 from nullpose.certificate.boxes import Boxes
-from nullpose.certificate.channels import amplitude, excess, excess_at, most_excess
+from nullpose.certificate.channels import _profiles, amplitude, excess, excess_at, most_excess
 from nullpose.certificate.forms import COLUMN, ROW
+from nullpose.certificate.interval import Interval
 from nullpose.certificate.pose_value import exact
+from nullpose.certificate.taylor import coordinates
 from nullpose.channel import ENVIRONMENTS, LinkChannel
 from nullpose.channel.elevation import elevation_channel
-from nullpose.channel.model import BY_ELEVATION
+from nullpose.channel.model import BY_ELEVATION, KNOTS
 from nullpose.channel.power_law import constant_channel, power_law
+from nullpose.channel.profile import knots_of, log_gain
 from nullpose.problem.family import Family
 
 BOXES, SAMPLES = 300, 200  # 60,000 samples for each channel and side
@@ -167,3 +172,25 @@ def test_gains_fall_with_the_distance(alpha: float) -> None:
     city = over_one_point(elevation_channel(*ENVIRONMENTS["urban"], average="power"))
     assert np.all(most_excess(city.ratios, none, least).high == 1.0)
     assert np.all(most_excess(city.ratios._replace(channels=city.ratios.channels[:0]), none, least) == 1.0)
+
+
+@pytest.mark.parametrize("jump", [0.0, 1e-3])
+def test_tables_are_enclosed_though_their_parabolas_do_not_meet(jump: float) -> None:
+    """Knots are rounded: however far a parabola ends from the next one's level, Taylor's ranges hold."""
+    rng, knots = np.random.default_rng(6), knots_of(*np.array(whip_rows()).T)
+    knots[:, 1] += jump * rng.uniform(-1.0, 1.0, len(knots))
+    rows = np.array([*np.zeros(KNOTS), len(knots), *knots.ravel()])
+    middle, half = rng.uniform(-1.5, 1.5, BOXES), 10.0 ** rng.uniform(-5.0, -1.0, BOXES)
+    half = np.minimum(half, 0.5 * np.pi - np.abs(middle))
+    angle = coordinates(Interval(middle[None]), Interval(middle - half, middle + half)[None])[0]
+    gain = angle.of(partial(_profiles, np.tile(rows[:, None], BOXES)))
+    x = half * rng.uniform(-1.0, 1.0, (SAMPLES, BOXES))
+    exact_gain, slack = log_gain(rows, middle + x), 1e-12
+    (value, slopes, _), bends = gain.at, gain.over.bends
+    taylor = value + slopes[0] * x + bends[0] * (0.5 * x**2)
+    for bound in (gain.over.value, taylor):
+        assert np.all((bound.low - slack <= exact_gain) & (exact_gain <= bound.high + slack))
+    family = over_one_point(None).changed(channels=np.tile(rows, (2, 1)))
+    square, first = np.array([9.0]), np.zeros(1, dtype=np.int64)
+    most = most_excess(family.ratios, first, square)
+    assert np.max(exact_gain) <= np.log(most.high[0]) + 1e-15 <= 1e-12 + 4.0 * jump * len(knots)

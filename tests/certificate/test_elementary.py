@@ -162,7 +162,7 @@ def test_arctangents_at_the_ends_of_the_numbers() -> None:
 def test_of_what_is_no_number_nothing_is_known(function: Callable[[Interval], Interval]) -> None:
     """An end that is not a number leaves both sides open, and its neighbours as they are."""
     result = function(Interval([np.nan, 1.0, np.nan, 1.0], [1.0, np.nan, np.nan, 2.0]))
-    assert result.low[:3].tolist() == [-np.inf] * 3
+    assert result.low[:3].tolist() == [0.0 if function is exp else -np.inf] * 3
     assert result.high[:3].tolist() == [np.inf] * 3
     assert np.isfinite([result.low[3], result.high[3]]).all()
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sizes import and_slow
 from tests.certificate.plain import boxes_at, make_leaves, rejected
 
 from nullpose.certificate import Certificate, Leaves, Tree, claimed_axes
@@ -56,13 +57,18 @@ def family_of(scenario: Scenario) -> Family:
     return build_family(scenario, any_antenna=True, any_channel=True, any_objective=True)
 
 
-def poor(scheme: str, root_m: np.ndarray, leaves: Leaves, scenario: Scenario) -> Certificate:
-    """Return a certificate that no pose is better than a level one in a corner at the ceiling."""
-    position_m, ratios = np.array([13.9, -7.9, 30.0]), family_of(scenario).ratios
-    fields = claimed_axes(scenario, scheme, None) or {}
+def level_value(scheme: str, scenario: Scenario, position_m: np.ndarray) -> float:
+    """Return what is maximised at a level pose."""
+    ratios, fields = family_of(scenario).ratios, claimed_axes(scenario, scheme, None) or {}
     place, axis = exact(position_m), antenna_axis((0.0, 0.0, 0.0))
     reached = ratios_at(ratios, place, axis, *profiles_of(fields), gains=excess_at(ratios, place))
-    value = float(value_of(ratios, reached))
+    return float(value_of(ratios, reached))
+
+
+def poor(scheme: str, root_m: np.ndarray, leaves: Leaves, scenario: Scenario) -> Certificate:
+    """Return a certificate that no pose is better than a level one in a corner at the ceiling."""
+    position_m = np.array([13.9, -7.9, 30.0])
+    value = level_value(scheme, scenario, position_m)
     leaves = replace(leaves, level=np.full(len(leaves), value))
     return Certificate(
         scenario=scenario,
@@ -74,7 +80,10 @@ def poor(scheme: str, root_m: np.ndarray, leaves: Leaves, scenario: Scenario) ->
         roll_rad=0.0,
         pitch_rad=0.0,
         yaw_rad=0.0,
-        trees=tuple(Tree(axis=name, root_m=root_m, leaves=leaves) for name in fields),
+        trees=tuple(
+            Tree(axis=name, root_m=root_m, leaves=leaves)
+            for name in claimed_axes(scenario, scheme, None) or {}
+        ),
     )
 
 
@@ -108,3 +117,80 @@ def test_boxes_of_undefined_numbers_are_kept_out_nowhere(over: str, size: float)
     with np.errstate(all="ignore"):
         for middle in (centre, undefined):
             assert not np.any(kept_out(family, border, boxes_at(middle, half)))
+
+
+ENDS = [1e308, 1.7e308, 1e155, 1e154, 9.99e149, 1e100, 1e9, 30.0, 1.0, 1e-9, 1e-155, 1e-308, 5e-324, 0.0]
+
+
+def random_root(rng: np.random.Generator) -> np.ndarray:
+    """Return a root with sides of any size, each about the airspace's or far larger or smaller."""
+    low, high = np.array([-5.0, -10.0, 8.0]), np.array([15.0, 10.0, 30.0])
+    ends = rng.choice(ENDS, (2, 3))
+    ends = np.where(rng.uniform(size=3) < 0.5, ends, ends[0])
+    around = np.where(rng.uniform(size=3) < 0.7, ends * [[-1.0], [1.0]], np.sort(ends, axis=0))
+    return np.where(rng.uniform(size=3) < 0.5, [low, high], around)
+
+
+def random_leaves(rng: np.random.Generator, family: Family, tests: list[int], mixes: int) -> Leaves:
+    """Return leaves that cover a root, some tiny, with random tests, zones and multipliers."""
+    boxes, chain = [[0] * 6], int(rng.choice([0, 0, 1, 3, 49]))
+    side = int(rng.integers(3))
+    for _ in range(chain):  # the last one is halved again and again
+        box = boxes.pop(int(rng.integers(len(boxes))) if chain < 49 else -1)
+        half = [list(box), list(box)]
+        for i in range(2):
+            half[i][2 * side : 2 * side + 2] = [box[2 * side] + 1, 2 * box[2 * side + 1] + i]
+        boxes += half if rng.uniform() < 0.5 else half[::-1]
+        side = side if chain == 49 else int(rng.integers(3))
+    count, size = len(boxes), 10.0 ** rng.choice([-320.0, -155.0, -3.0, 0.0, 3.0, 155.0, 308.0], 3)
+    test = rng.choice(tests, count)
+    weights = rng.choice([0.0, 5e-324, 1e-155, 1.0, 1.0, 1e155, 1.7e308], (3, mixes))
+    is_profile = tests == [PROFILE]
+    return make_leaves(
+        count,
+        box=boxes,
+        cell=np.where(is_profile, [0, 0, 0, 0, 0], [-1, 0, 0, 0, 0]),
+        test=test,
+        point=np.where(test == KEPT_OUT, rng.integers(borders(family)), rng.integers(-is_profile, 2)),
+        mix=rng.integers(3, size=count),
+        mixes=tuple(dict(enumerate(row.tolist())) for row in weights),
+        ball=rng.integers(-1, borders(family), count),
+        ball_multiplier=size[0],
+        band=rng.choice([0.0, 1.0, -1.0]) * size[1],
+        sides=size[2],
+    )
+
+
+def fuzz(kind: str, seed: int) -> None:
+    """Check that a random certificate of a bound that poses exceed is rejected, whatever its numbers."""
+    rng = np.random.default_rng([seed, list(KINDS).index(kind)])
+    scheme, tests, sceneries = KINDS[kind]
+    over = OVER_ALL[str(rng.choice(list(OVER_ALL)))]
+    scenario = Scenario.from_dict(
+        BASE | sceneries[int(rng.integers(len(sceneries)))] | {"airspace": SQUARE | over}
+    )
+    family = family_of(scenario)
+    some = [int(test) for test in rng.permutation(tests)[: int(rng.integers(1, len(tests) + 1))]]
+    leaves = random_leaves(rng, family, some, len(family.ratios.numerator_point))
+    with np.errstate(all="ignore"):
+        rejected(poor(scheme, random_root(rng), leaves, scenario))
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "profile"])
+@pytest.mark.parametrize("count", and_slow([25], [2000]))
+def test_random_numbers_prove_no_falsehood(kind: str, count: int) -> None:
+    """Roots, depths and multipliers from the least number to the largest, over zones of every kind."""
+    for seed in range(count):
+        fuzz(kind, seed)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_bound_is_false(kind: str) -> None:
+    """Some pose that is allowed exceeds what these certificates claim."""
+    scheme, _, sceneries = KINDS[kind]
+    for scenery in sceneries:
+        for over in OVER_ALL.values():
+            scenario = Scenario.from_dict(BASE | scenery | {"airspace": SQUARE | over})
+            here, there = ([13.9, -7.9, 30.0], [4.0, -4.0, 30.0])
+            claimed, more = (level_value(scheme, scenario, np.array(at)) for at in (here, there))
+            assert more > claimed * 1.001

@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 
 from nullpose import load
 from nullpose.certificate.certificate import WORLD, Leaves
-from nullpose.certificate.weighted_sum import mean_level, pair_factors
+from nullpose.certificate.weighted_sum import mean_level, mix_slots, pair_factors, pairs_fit
 from nullpose.problem.build import build_family
 
 PLAIN = build_family(load("examples/paper.toml"))
@@ -75,7 +75,8 @@ def test_sums_of_pairs_are_not_negative_where_all_quotients_are_met(seed: int) -
     level = float(1.0 + 10.0 ** rng.uniform(-6.0, 1.0))
     weights, touched = 10.0 ** rng.uniform(-3.0, 3.0, (2, 2))
     mix = {0: weights[0], 1: weights[1], 2: touched[0], 3: touched[1] if rng.uniform() < 0.8 else 0.0}
-    identity, (first, second, jammed) = pair_factors(family.ratios, leaves_of_level(level, mix))
+    leaves = leaves_of_level(level, mix)
+    identity, (first, second, jammed) = pair_factors(family.ratios, leaves, *mix_slots(leaves))
     t, e = Fraction(level), Fraction(float(10.0 ** rng.uniform(0.0, 3.0)))
     beyond = [Fraction(x) - 1 for x in family.ratios.numerator_isotropic.tolist()]
     b = [s * e / ((t - 1) * e + t * beyond[2]) for s in beyond[:2]]
@@ -91,5 +92,21 @@ def test_a_level_below_one_excludes_nothing() -> None:
         numerator_isotropic=np.full(2, 2.0), denominator_of=np.arange(2), denominator_isotropic=np.ones(2),
         pairs=np.array([[0, 1]]),
     )  # fmt: skip
-    identity, _ = pair_factors(family.ratios, leaves_of_level(1.0 - 1e-12, {0: 1.0, 1: 1.0}))
+    leaves = leaves_of_level(1.0 - 1e-12, {0: 1.0, 1: 1.0})
+    identity, _ = pair_factors(family.ratios, leaves, *mix_slots(leaves))
     assert np.isnan(identity.high[0])
+
+
+def test_lemma_7_holds_for_certain_pairs_alone() -> None:
+    """Not for numerators that are not a denominator and more, or a denominator that serves both."""
+    ratios = build_family(load("examples/friendly-jamming.toml"), any_objective=True).ratios
+    assert pairs_fit(ratios)
+    for changes in (
+        {"numerator_isotropic": 0.5 * ratios.denominator_isotropic},
+        {"numerator_weight": ratios.numerator_weight * 1.01},
+        {"numerator_point": ratios.numerator_point[::-1].copy()},
+        {"pairs": ratios.pairs[:, ::-1][:, [0, 0]].copy()},
+        {"denominator_of": ratios.denominator_of * 0},
+        {"denominator_start": ratios.denominator_start * 0},
+    ):
+        assert not pairs_fit(ratios._replace(**changes))

@@ -48,19 +48,19 @@ def link(
     r = points.T - p
     o, m = field.offset[:, None], field.matrix
     u = p[0] * m[:, [0]] + p[1] * m[:, [1]] + p[2] * m[:, [2]] + o
-    near, square, across = r.squared().total().of(inverse), u.squared().total(), cross(u, r)
+    inverse2, square, across = r.squared().total().of(inverse), u.squared().total(), cross(u, r)
     f = across.squared().total()
     if leak > 0.0:
         f = f + (u * r).total().squared() * leak
-    f = f * near * near / square
+    f = f * inverse2 * inverse2 / square
     if np.any(has := np.any(axes != 0.0, axis=1)):
         beside = cross(r, Interval(axes.T))
-        of_dipole = (across * beside).total().squared() * near / square
+        of_dipole = (across * beside).total().squared() * inverse2 / square
         if leak > 0.0:
             of_dipole = of_dipole * (1.0 - Interval(leak)) + beside.squared().total() * leak
-        of_dipole = of_dipole * near * near * (1.0 - Interval(through)) + f * through
+        of_dipole = of_dipole * inverse2 * inverse2 * (1.0 - Interval(through)) + f * through
         f = chosen(has, of_dipole, f)
-    f = f.within(0.0, near.over.value)  # the gain is at most 1
+    f = f.within(0.0, inverse2.over.value)  # the gain is at most 1
     return f if gain is None else f * gain
 
 
@@ -91,8 +91,9 @@ def affine_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes)
         return _quadratic_negative(boxes.half[rows].T, middle, steep, bent)
 
     holds = negative_where_allowed(family.domain, leaves, boxes, test, at.slopes.middle)
-    holds |= over.value.high < 0.0
-    return np.asarray(np.any([scale.high > 0.0 for _, scale, sign in terms if sign > 0.0], axis=0) & holds)
+    # ranges hold for any axis, and so where u = 0 has no direction; weights of zero prove nothing
+    weighs = [scale.high > 0.0 for _, scale, sign in terms if sign > 0.0]
+    return np.asarray(np.any(weighs, axis=0) & (holds | (over.value.high < 0.0)))
 
 
 def _quadratic_negative(half: FloatArray, value: Interval, slopes: Interval, hessian: Interval) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 from nullpose.certificate.boxes import Boxes
 from nullpose.certificate.elementary import arctan, exp, log
 from nullpose.certificate.forms import COLUMN, IDENTITY, ROW, outer
-from nullpose.certificate.interval import Interval, stack, where
+from nullpose.certificate.interval import Interval, above, stack, where
 from nullpose.certificate.taylor import (
     Rule,
     Taylor,
@@ -31,8 +31,6 @@ from nullpose.channel.elevation import DB_AVERAGE
 from nullpose.channel.model import BLOCKED, BY_ELEVATION, EXPONENT, KNOTS, ONSET, REFERENCE_M
 from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
-
-_ROUND = 2e-13  # of ln g of a profile: more than its knots are rounded
 
 
 def _by_distance(rows: FloatArray, distance: Taylor, angle: Taylor) -> Taylor:
@@ -74,13 +72,21 @@ def _logistic(x: Interval) -> Rule:
 
 
 def _profiles(rows: FloatArray, angle: Interval) -> Rule:
-    """Return bounds on ``ln g`` of profiles between two elevations by its rule, (..., b) each."""
+    """Return bounds on ``ln g`` of profiles between two elevations by its rule, (places, b) each.
+
+    Parabolas do not quite end where the next ones begin. With twice these jumps added, the range encloses the
+    function less what it has jumped since the centre, which is smooth.
+    """
     knots = rows[KNOTS + 1 :].reshape(-1, 3, 1, rows.shape[1])
-    (start, level, slope), (end, _, last) = knots[:-1].swapaxes(0, 1), knots[1:].swapaxes(0, 1)
-    inside = (
-        (np.arange(1, len(knots))[:, None, None] < rows[KNOTS]) & (start <= angle.high) & (end >= angle.low)
+    (start, level, slope), (end, after, last) = knots[:-1].swapaxes(0, 1), knots[1:].swapaxes(0, 1)
+    outside = (start > angle.high) | (end < angle.low)
+    inside = (np.arange(1, len(knots))[:, None, None] < rows[KNOTS]) & ~outside
+    width = Interval(end) - start
+    bend = (Interval(last) - slope) / width
+    jumps = np.where(
+        inside, (((bend * width * 0.5) + slope) * width + (Interval(level) - after)).magnitude(), 0.0
     )
-    bend = (Interval(last) - slope) / (Interval(end) - start)
+    jumped = 2.0 * above(np.sum(jumps, axis=0)).max(axis=0)
     low, high = (Interval(np.clip(a, start, end)) - start for a in (angle.low, angle.high))
     slopes = [bend * step + slope for step in (low, high)]
     logs = [(bend * step * 0.5 + slope) * step + level for step in (low, high)]
@@ -89,7 +95,7 @@ def _profiles(rows: FloatArray, angle: Interval) -> Rule:
     rest = np.minimum((Interval(steep) / bend).magnitude(), (high - low).high)
     over = (Interval(steep) * rest * 0.5).high
     logs[0] += Interval(np.where(slopes[0].low < 0.0, -over, 0.0), np.where(slopes[0].high > 0.0, over, 0.0))
-    return _hull(logs, inside) + Interval(-_ROUND, _ROUND), _hull(slopes, inside), _hull([bend], inside)
+    return _hull(logs, inside) + Interval(-jumped, jumped), _hull(slopes, inside), _hull([bend], inside)
 
 
 def _hull(parts: list[Interval], inside: np.ndarray) -> Interval:
@@ -100,7 +106,7 @@ def _hull(parts: list[Interval], inside: np.ndarray) -> Interval:
 
 
 def most_excess(ratios: Ratios, point: IntArray, square: FloatArray) -> Interval | float:
-    """Return a bound on the excess over ``d^2`` beyond a distance, by its square: the gain falls with it.
+    """Bound the excess at a distance, by its square. Over the squared distance none beyond is larger.
 
     Args:
         ratios: with its channels.
@@ -109,10 +115,12 @@ def most_excess(ratios: Ratios, point: IntArray, square: FloatArray) -> Interval
     """
     if not len(ratios.channels):
         return 1.0
-    e, unit = (ratios.channels[point, place] for place in (EXPONENT, REFERENCE_M))
-    has_law, slack = e != 0.0, _ROUND * (ratios.channels.shape[1] > KNOTS)
-    ratio = Interval(square) / Interval(np.where(has_law, unit, 1.0)).squared()
-    return where(has_law, exp(log(ratio) * (0.5 * e) + slack), 1.0 + slack)
+    rows, every = ratios.channels[point].T, Interval([[-2.0]], [[2.0]])
+    e, unit = rows[[EXPONENT, REFERENCE_M]]
+    ratio = Interval(square) / Interval(np.where(e != 0.0, unit, 1.0)).squared()
+    by_law = where(e != 0.0, exp(log(ratio) * (0.5 * e)), 1.0)
+    # a profile's gain at any angle is at most 1, but for rounding
+    return by_law * exp(_profiles(rows, every)[0][0]) if len(rows) > KNOTS else by_law
 
 
 def _sight(points_m: FloatArray, boxes: Boxes, rows: FloatArray) -> tuple[Taylor, Taylor, Interval]:
@@ -232,5 +240,6 @@ def excess_at(ratios: Ratios, position_m: Iterable[Fraction]) -> Interval | None
         return None
     place, points = np.array([float(x) for x in position_m]), np.arange(len(ratios.points_m))
     many = np.tile(place, (len(points), 1))
+    # the position in fractions, which a pose's need not be, is within a last place of its nearest numbers
     slack = np.nextafter(np.abs(many), np.inf) - np.abs(many)
     return _gain(ratios, Boxes(leaf=points, centre=many, half=slack), points).over.value

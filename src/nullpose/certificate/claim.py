@@ -22,6 +22,7 @@ from nullpose.certificate.pose_value import (
     value_of,
 )
 from nullpose.certificate.profile import profiles_of
+from nullpose.certificate.weighted_sum import pairs_fit
 from nullpose.objectives import Quantity
 from nullpose.physics.types import FloatArray
 from nullpose.problem.axis_field import AxisField
@@ -50,27 +51,30 @@ def claim_fault(certificate: Certificate, family: Family, fields: Mapping[str, A
         with_jammer = f"with null jammer {certificate.null_jammer!r} " if certificate.null_jammer else ""
         return f"scheme {certificate.scheme!r} {with_jammer}has no certificate in this scenario"
     needed, named = sorted(fields), sorted(tree.axis for tree in certificate.trees)
-    value, bound = certificate.value, certificate.upper_bound
-    time, listed = certificate.scenario.time, certificate.instants
-    count = 0 if time is None else len(time.instants_s)
+    value, bound, listed = certificate.value, certificate.upper_bound, certificate.instants
+    count = 0 if (time := certificate.scenario.time) is None else len(time.instants_s)
     is_mean = len(family.ratios.pairs) + len(family.ratios.shares) > 0
+    has_pattern = not certificate.scenario.antenna_record.is_quadratic
     faults = {
         f"it must list instants of its scenario, each once: there are {count}": (
             bool(listed) != (count > 0) or sorted({*listed} & {*range(count)}) != sorted(listed)
         ),
         "a scene in motion has certificates for the smallest ratio of a dipole only": (
-            count > 0 and (is_mean or not certificate.scenario.antenna_record.is_quadratic)
+            count > 0 and (is_mean or has_pattern)
         ),
         "there are no certificates of robust poses": len(family.ratios.turn) > 0,
         "there are no certificates of scenes with buildings yet": len(family.ratios.shadow_sides) > 0,
         "antennas with a pattern have certificates in free space only": (
-            len(family.ratios.channels) > 0 and not certificate.scenario.antenna_record.is_quadratic
+            len(family.ratios.channels) > 0 and has_pattern
         ),
         f"the objective {certificate.scenario.objective} has certificates for a dipole only": (
-            is_mean and not certificate.scenario.antenna_record.is_quadratic
+            is_mean and has_pattern
         ),
         "antennas with a pattern have certificates without dipoles on the ground only": (
-            len(family.ratios.ground_axes) > 0 and not certificate.scenario.antenna_record.is_quadratic
+            len(family.ratios.ground_axes) > 0 and has_pattern
+        ),
+        "its pairs of ratios are not those that have certificates": (
+            len(family.ratios.pairs) > 0 and not pairs_fit(family.ratios)
         ),
         f"the scheme needs a tree for each of {needed}; there are {named}": needed != named,
         "value and bound must be positive and finite": not (value > 0.0 and math.isfinite(bound)),

@@ -57,13 +57,13 @@ def dipole_sum(
             if np.any(still):
                 rest = rest + shear.anchored * where(still, part * sign, 0.0)
             part = where(still, 0.0, part)
-            for v in vectors if np.any(part.high > 0.0) else ():
+            for v in vectors if np.any(part.high != 0.0) else ():
                 a = link_vector(r.at_centres(), near.at_centres(), v)
                 links.append((*shear.seen(a, near.over.value), part, sign))
     # E^T E, which the identity leaves out, is not negative, and at most the square of E
-    square = shear.most[0].squared() * np.maximum(leaking.over.value.high, 0.0)
+    square = shear.sizes[0].squared() * np.maximum(leaking.over.value.high, 0.0)
     rest = rest + whole * leaking + shear.gram * square.most()
-    if np.any(constant.magnitude() > 0.0):
+    if np.any(constant.magnitude() != 0.0):
         rest = rest + shear.form(constant)
     centre = sum((squares(a.at.value) * (scale * sign) for a, _, scale, sign in links), rest.at.value)
     top = top_vectors(centre)
@@ -100,6 +100,7 @@ def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Interval:
     e = np.fmin(e, radius.high / np.maximum(seen, 1e-300)) + _TINY
     share, rest = Interval(e), (radius.squared() / e).most()
     first, second = where(larger, share, rest), where(larger, rest, share)
+    # x bears its part of xy and xz, y of xy and yz, z of xz and yz
     pairs = (first[0], first[1]), (second[0], first[2]), (second[1], second[2])
     diagonal = [bent[k].most() + one + other for k, (one, other) in enumerate(pairs)]
     value = form.at.value + stack(diagonal + [Interval(entry) for entry in middle[3:]])
@@ -128,15 +129,15 @@ def square_over(vector: Taylor, third: Interval, top: FloatArray, scale: Interva
     total = (Interval(weight).total() + ball).most()
     ahead = np.abs(np.sum(value.middle() * top, axis=0))
     eta = np.clip(total.high / np.maximum(ahead, 1e-300), 1e-12, _MOST_ETA)
-    near = scale * (Interval(eta) * sign + 1.0)
-    far = scale * (1.0 / Interval(eta) + (1.0 if sign > 0.0 else 0.0)) * total
-    rest = _spread(parts, weight) * far + IDENTITIES * (ball * far)
+    kept = scale * (Interval(eta) * sign + 1.0)
+    added = scale * (1.0 / Interval(eta) + (1.0 if sign > 0.0 else 0.0)) * total
+    rest = _spread(parts, weight) * added + IDENTITIES * (ball * added)
     if sign > 0.0:
         steep = at.slopes * half
         weight = _weights(steep, top)
-        rest = rest + _spread(steep, weight) * (near * Interval(weight).total())
+        rest = rest + _spread(steep, weight) * (kept * Interval(weight).total())
     slopes = outer(at.slopes, value[:, None])
-    return linear(squares(value) * (near * sign) + rest, slopes * (near * sign))
+    return linear(squares(value) * (kept * sign) + rest, slopes * (kept * sign))
 
 
 def _weights(vectors: Interval, top: FloatArray) -> FloatArray:

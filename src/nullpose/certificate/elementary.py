@@ -11,7 +11,7 @@ from math import factorial
 
 import numpy as np
 
-from nullpose.certificate.interval import ANY, Interval, where
+from nullpose.certificate.interval import ANY, Interval, common, where
 from nullpose.physics.types import FloatArray
 
 LN2_HIGH = 2977044471 / 2**32  # 32 bits: its product with an integer below 2^21 is exact
@@ -26,14 +26,14 @@ _ARCTAN = [1.0 / (2 * j + 1) for j in range(20)]  # (arctan s) / s in -s²; left
 
 
 def exp(x: Interval) -> Interval:
-    """Return e to the power x, never below zero.
+    """Return e to the power x, never below zero, not even where x is not a number.
 
     >>> power = exp(Interval(1.0))
     >>> print(f"{power.low:.13f} {power.high:.13f}")
     2.7182818284590 2.7182818284590
     """
     # exp -746 is below half of the smallest number, and exp 710 is above the largest one
-    return _by_ends(_exp, x, -746.0, 710.0)
+    return common(_by_ends(_exp, x, -746.0, 710.0), Interval(0.0, np.inf))
 
 
 def log(x: Interval) -> Interval:

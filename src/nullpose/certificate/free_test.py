@@ -27,9 +27,8 @@ _LARGEST_ETA = 0.5
 def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -> np.ndarray:
     """Check which boxes their leaf's multipliers exclude, whatever the axis in the leaf's cell and the band.
 
-    Weak duality: where the sum is negative definite, no axis has all ratios at the level.
-
-    Where every axis is horizontal, the sum need only be negative on the horizontal plane.
+    Weak duality: where the sum is negative definite, no axis has all ratios at the level. Where every axis is
+    horizontal, it need only be so on the horizontal plane.
 
     Args:
         family: the ratios.
@@ -38,11 +37,11 @@ def free_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) -
         boxes: to be tested.
     """
     holds, vectors = _holds(family, field, leaves, boxes, None)
-    left = np.flatnonzero(~holds)
+    left = np.flatnonzero(~holds & ((leaves.test == TOWARDS) | (len(family.ratios.ground_axes) == 0)))
     failed = leaves.chosen(left)
-    if len(left) and len(family.ratios.ground_axes):  # in coordinates that turn too fast, still ones may do
-        failed = replace(failed, test=np.where(failed.test == TOWARDS, WORLD, failed.test))
-    if len(left):  # near a null the denominators' remainders may be had smaller
+    if len(family.ratios.ground_axes):  # in coordinates that turn too fast, still ones may do
+        failed = replace(failed, test=np.full(len(left), WORLD))
+    if len(left):  # without dipoles the denominators' remainders near a null may be had smaller
         holds[left], _ = _holds(family, field, failed, boxes.chosen(left), vectors[:, left])
     return holds
 
@@ -82,17 +81,17 @@ def ratio_forms(
     get the remainder that is sharp near a null if it is the smaller one.
     """
     identity, terms = weighted_sum(ratios, leaves)
-    half2, value = boxes.half2 * 0.5, frames.gram * identity
+    half_square, value = boxes.half2 * 0.5, frames.gram * identity
     total = Interval(np.zeros((6, 4, len(boxes))))
     for point, scale, sign in terms:
         form, bent, bend = expansion(ratios, frames, boxes, point, sign > 0.0)
-        share, rest, around = np.zeros(len(boxes)), bent * half2, frames.gram
+        share, rest, around = np.zeros(len(boxes)), bent * half_square, frames.gram
         if sign < 0.0:  # the remainder of what is added is bounded by the identity, anchored or not
             around = where(frames.turning & (point == frames.anchor), frames.shape, frames.gram)
             if vectors is not None:
                 share, rest = sharper(form[:, 0], vectors, boxes, frames, point, bend, rest)
         total = total + form * (scale * (1.0 - Interval(share)) * sign)
-        value = value + around * where(scale.high > 0.0, (scale * rest).most(), 0.0)
+        value = value + around * where(scale.high != 0.0, (scale * rest).most(), 0.0)
     return total + linear(value, Interval(np.zeros((6, 3, len(boxes)))))
 
 
@@ -133,10 +132,9 @@ def with_constants(
     """Return a sum with multiples of the forms that are not negative in the cells and the band added."""
     for q, weight, spread in constants(field, leaves):
         if np.any(weight != 0.0):
-            bend = spread / frames.rho_least.squared() * CONSTANT_SWING * np.abs(weight) * (boxes.half2 * 0.5)
-            used = frames.gram * where(frames.turning, bend.most(), 0.0)
-            value, slopes = constant(frames, q)
-            total = total + linear(value * weight + used, slopes * weight)
+            bent = boxes.half2 * 0.5 * np.abs(weight) * CONSTANT_SWING * spread / frames.rho_least.squared()
+            value, slopes = (part * weight for part in constant(frames, q))
+            total = total + linear(value + frames.gram * where(frames.turning, bent.most(), 0.0), slopes)
     return total
 
 

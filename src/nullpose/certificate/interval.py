@@ -2,6 +2,11 @@
 
 IEEE 754 has sums, products, quotients and square roots correctly rounded, so that the next
 floating-point numbers on either side enclose the exact result. Nothing else is used.
+
+An end that is infinite or not a number (NaN) is unknown; the other end holds by itself. Comparisons with
+NaN are false. So what excludes is a comparison that must hold, and what leaves out a term or an alternative
+is one too: ``~(high < floor)`` keeps all that may be above a floor, ``high >= floor`` would lose what is
+unknown. Only what need not be there at all, such as a multiplier's constraint, may be lost.
 """
 
 from __future__ import annotations
@@ -147,7 +152,7 @@ def as_interval(value: Interval | ArrayLike) -> Interval:
 
 
 def common(a: Interval, b: Interval) -> Interval:
-    """Intersect two enclosures of the same numbers; undefined ends do not count."""
+    """Intersect two enclosures of the same numbers; undefined ends do not count, as each holds by itself."""
     return Interval(np.fmax(a.low, b.low), np.fmin(a.high, b.high))
 
 

@@ -20,8 +20,8 @@ from nullpose.problem.family import Family
 def out_of_reach(ratios: Ratios, level: FloatArray | float, square: FloatArray) -> np.ndarray:
     """Check where no axis reaches a level, from the distances of the nodes alone.
 
-    ``N_k <= n_k + w_k g_k / a_k^2`` and ``D >= d``, g being the largest excess gain of the channel beyond the
-    distance a: one ratio is not above the level, or their mean is not, or one pair's quotient.
+    ``N_k <= n_k + w_k g_k / a_k^2`` and ``D >= d``, where ``g / a^2`` bounds the excess gain over the squared
+    distance beyond a: one ratio is not above the level, or their mean is not, or one pair's quotient.
 
     Args:
         ratios: over the points.
@@ -54,9 +54,9 @@ def far_holds(family: Family, field: AxisField, leaves: Leaves, boxes: Boxes) ->
         boxes: to be tested.
     """
     points_m = family.ratios.points_m[family.ratios.numerator_point]
-    near = np.stack([boxes.distance2(point_m[None]).low for point_m in points_m], axis=-1)
+    square = np.stack([boxes.distance2(point_m[None]).low for point_m in points_m], axis=-1)
     return out_of_reach(
-        family.ratios, leaves.level, np.maximum(near, Interval(family.domain.keep_out_m).squared().low)
+        family.ratios, leaves.level, np.maximum(square, Interval(family.domain.keep_out_m).squared().low)
     )
 
 

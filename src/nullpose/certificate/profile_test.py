@@ -138,11 +138,11 @@ def _largest(
     """
     profile, (identity, terms) = field.profile, weighted_sum(family.ratios, leaves)
     zero, total = Interval(np.zeros(len(leaves))), links[0][0].alike(identity)
-    for j, (cosine, near) in enumerate(links):
+    for j, (cosine, inverse2) in enumerate(links):
         weight = sum((where(point == j, scale * sign, 0.0) for point, scale, sign in terms), zero)
         at, over = cosine.at.value, cosine.over.value
         gain = cosine.composed(*(joined(profile.near(n, at), profile.within(n, over)) for n in range(3)))
-        total = total + gain * near * weight
+        total = total + gain * inverse2 * weight
     if np.any(leaves.band):
         total = total + _within_reach(field, leaves.band, vertical)
     shares, bent = total.at.slopes.magnitude() * total.half, total.over.bends.magnitude()
@@ -159,12 +159,13 @@ def _within_reach(field: ProfileField, band: FloatArray, vertical: Taylor) -> Ta
         band: multipliers of the largest angle from the vertical, or minus those of the least.
         vertical: cosine of the axis to the vertical.
     """
-    least, most = field.ends[0][1], field.ends[1][1]
-    least = max(least, -most) if field.even else least
-    # if it is even, the nearer of both directions, where all of the cell has the same
+    cos_least, cos_most = field.ends[0][1], field.ends[1][1]
+    # if it is even, the nearer of both directions, where all of the cell has the same: |n3|
+    cos_least = max(cos_least, -cos_most) if field.even else cos_least
     ahead, behind = vertical.over.value.low > 0.0, vertical.over.value.high < 0.0
     side = ahead.astype(float) - behind if field.even else np.ones(len(band))
-    end = where(band > 0.0, np.nextafter(most, -1.0), np.nextafter(least, 1.0))
+    # 1e-15: rounding of the angles that are reached, and of their cosines, changes these by less
+    end = where(band > 0.0, cos_most - 1e-15, cos_least + 1e-15)
     return (vertical * side - end) * (band * np.abs(side))
 
 
@@ -172,13 +173,14 @@ def _out_of_reach(field: ProfileField, axis: list[Taylor], upright: int) -> np.n
     """Check which cells have no axis that the airframe reaches.
 
     With t the angle between the vertical and the axis at the centre, and b that of an end of what is reached,
-    ``sin(t - b)`` and ``cos t`` change by no more than the axis moves.
+    ``sin(t - b)`` and ``cos t`` change by no more than the axis moves, on the straight way between both ends.
 
     Args:
         field: with the ends of what is reached.
         axis: its coordinates.
         upright: which coordinate is the altitude.
     """
+    # the vertical coordinate and the other two in cyclic order, by negative indices
     x, y, z = (axis[upright - ahead].at.value for ahead in (2, 1, 0))
     sine = (x.squared() + y.squared()).sqrt()
     steps = (Interval((part.over.value - part.at.value).magnitude()).squared() for part in axis)

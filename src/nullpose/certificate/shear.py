@@ -17,13 +17,13 @@ from nullpose.certificate.certificate import TOWARDS, Leaves
 from nullpose.certificate.forms import COLUMN, PLACE, ROW
 from nullpose.certificate.frames import THIRD_SQUARE, UNIT, bases_about
 from nullpose.certificate.interval import Interval, where
-from nullpose.certificate.lemmas import ROUNDING, VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
+from nullpose.certificate.lemmas import VECTOR_BEND, VECTOR_SLOPE, VECTOR_THIRD
 from nullpose.certificate.taylor import Taylor, chosen, inverse, root
 from nullpose.objectives.ratios import IntArray, Ratios
 from nullpose.physics.types import FloatArray
 
 _LEAST_SHARE = 0.4  # of y at the centre, that must be left of it all over the box
-_SHARP = 1e-8  # how well an anchor's vector must be known, so that the basis is orthonormal but for rounding
+_SHARP = 1e-8  # how well an anchor's vector must be known, so that the basis is nearly orthonormal
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +35,7 @@ class AxisShear:
     Args:
         on: (b,) whether there are any; otherwise E is zero.
         anchor: (b,) the point.
-        most: bounds, (b,) each, on E and on its first three derivatives along any unit direction.
+        sizes: bounds, (b,) each, on E and on its first three derivatives along any unit direction.
         basis: (3, 3, b) columns: the coordinates that definiteness is asked in; see :func:`bases_about`.
         gram: (6, b) basis^T basis.
         columns: (3, 3, b) ``(I + E) basis``, all over the boxes.
@@ -45,7 +45,7 @@ class AxisShear:
 
     on: np.ndarray
     anchor: IntArray
-    most: list[Interval]
+    sizes: list[Interval]
     basis: Interval
     gram: Interval
     columns: Taylor
@@ -58,12 +58,12 @@ class AxisShear:
             vector: a, (3, b), at the centres.
             near: (b,) ``1 / |r|`` over the boxes.
         """
-        (slope, bend, third), most = vector_sizes(near), self.most
+        (slope, bend, third), most = vector_sizes(near), self.sizes
         mixed = bend * most[1] * 3.0 + slope * most[2] * 3.0 + near * most[3]
-        # the basis' columns are longer than one by rounding alone
-        whole = (third * (most[0] + 1.0) + mixed) * ROUNDING
+        # no eigenvalue of basis^T basis is above the largest sum of magnitudes in a row
+        stretch = Interval(Interval(self.gram.magnitude()[PLACE]).total().high.max(axis=0)).sqrt()
         turned = (self.columns.at_centres() * vector[:, None]).total() if np.any(self.on) else vector
-        return turned, whole.most()
+        return turned, ((third * (most[0] + 1.0) + mixed) * stretch).most()
 
     def identity(self) -> Taylor:
         """Return ``basis^T (I + E + E^T) basis``, (6, b)."""
@@ -133,6 +133,7 @@ def shear_of(ratios: Ratios, leaves: Leaves, boxes: Boxes) -> AxisShear:
     sizes = [where(is_dipole, size, of_offset) for size, of_offset in of_vectors]
     most = [where(on, size, 0.0) for size in quotient_sizes(w.over.value, y.over.value, sizes)]
     w = w.narrowed(most[3])
+    # (I + E) basis is basis + d0 (w^T basis), or basis + w e3^T, as basis^T d0 = e3
     one_row, one_column = (w[:, None] * basis).total() * d0[:, None], w[:, None] * UNIT[2]
     columns = chosen(is_dipole, one_row, one_column) + basis if np.any(on) else a.alike(basis)
     # a dipole's form is constant; that of another point has no third row

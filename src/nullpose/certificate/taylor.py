@@ -183,15 +183,17 @@ class Taylor:
         return total
 
     def narrowed(self, third: Interval) -> Taylor:
-        """Narrow the ranges by bounds, (b,), on third derivatives along any unit direction."""
+        """Narrow the ranges by bounds, (b,), on third derivatives along any unit direction.
+
+        They bound mixed ones too, and so how fast second derivatives change: see docs/proofs.md.
+        """
         reach = (third * Interval(self.half).squared().total().sqrt()).most().high
-        bends = common(self.over.bends, self.at.bends + Interval(-reach, reach))
-        return replace(self, bends=joined(self.at.bends, bends)).tightened()
+        near = common(self.over.bends, self.at.bends + Interval(-reach, reach))
+        return replace(self, bends=joined(self.at.bends, near)).tightened()
 
     def within(self, low: float, high: Interval) -> Taylor:
         """Narrow the ranges to between a number and others, (b,)."""
-        value = common(self.over.value, Interval(low, high.high))
-        return replace(self, value=joined(self.at.value, value))
+        return replace(self, value=joined(self.at.value, common(self.over.value, Interval(low, high.high))))
 
     def alike(self, number: Interval | FloatArray | float) -> Taylor:
         """Take constants over the same boxes."""
@@ -251,13 +253,13 @@ def exponential(x: Interval) -> Rule:
 
 
 def _each(number: Interval | FloatArray | float) -> Interval:
-    """Take numbers, (..., b), in each place."""
+    """Take numbers, (..., b), in each place: (..., 1, b)."""
     x = as_interval(number)
     return x[..., None, :] if x.low.ndim else x
 
 
 def _along(x: Interval) -> Interval:
-    """Take numbers, (..., places, b), for each derivative."""
+    """Take numbers, (..., places, b), for each derivative: (..., 1, places, b)."""
     return x[..., None, :, :] if x.low.ndim else x
 
 

@@ -39,7 +39,6 @@ _CHUNK = 4096
 _CUT_AT_ONCE = 128
 _CUTS = 2  # boxes whose test fails by a hair are cut into eight, so many times
 _MORE_CUTS = 6  # or as often as that, while few of the pieces fail
-_FARTHEST_M = 1e150  # with roots beyond it squares of distances overflow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,7 +123,7 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
     in_motion = certificate.instants and not reason  # what some instants exclude, all do
     family, done = join_instants(families, certificate.instants) if in_motion else families[0], 0
 
-    def checked(leaves: int) -> None:
+    def report(leaves: int) -> None:
         if on_progress is not None:
             on_progress(done + leaves, total)
 
@@ -133,7 +132,7 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
             break
         assert fields is not None
         with np.errstate(all="ignore"):  # infinities and undefined numbers fail their comparisons
-            reason = _tree_fault(family, fields[tree.axis], tree, certificate.upper_bound, checked)
+            reason = _tree_fault(family, fields[tree.axis], tree, certificate.upper_bound, report)
         done += len(tree.leaves)
     return Verdict(
         proved=not reason,
@@ -143,18 +142,18 @@ def verify(certificate: Certificate, on_progress: Callable[[int, int], None] | N
 
 
 def _tree_fault(
-    family: Family, field: AxisField, tree: Tree, upper_bound: float, checked: Callable[[int], None]
+    family: Family, field: AxisField, tree: Tree, upper_bound: float, report: Callable[[int], None]
 ) -> str:
     fault = (
         _range_fault(family, field, tree, upper_bound)
         or root_holds(loudest(family, field), tree.root_m, upper_bound)
         or uncovered(tree.leaves)
-        or _leaf_fault(family, field, tree, checked)
+        or _leaf_fault(family, field, tree, report)
     )
     return f"tree {tree.axis!r}: {fault}" if fault else ""
 
 
-def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[[int], None]) -> str:
+def _leaf_fault(family: Family, field: AxisField, tree: Tree, report: Callable[[int], None]) -> str:
     """Find the first leaf that its test does not exclude, or an empty string."""
     leaves, boxes = tree.leaves, boxes_of(tree.root_m, tree.leaves)
     for start in range(0, len(leaves), _CHUNK):
@@ -167,7 +166,7 @@ def _leaf_fault(family: Family, field: AxisField, tree: Tree, checked: Callable[
                 f"leaf {leaf} (x, y, z: {where} m) is not excluded at {leaves.level[leaf]:.12g} "
                 f"by its test ({_TESTS[int(leaves.test[leaf])].name})"
             )
-        checked(min(start + _CHUNK, len(leaves)))
+        report(min(start + _CHUNK, len(leaves)))
     return ""
 
 
@@ -179,9 +178,8 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
     )
     points = {kind: test.points(family) for kind, test in _TESTS.items() if test.points}
     has_mix = np.isin(leaves.test, [kind for kind, test in _TESTS.items() if test.has_mix])
-    depth, index = leaves.depths, leaves.indices
     faults = {
-        "its level is above the bound": leaves.level > upper_bound,
+        "its level is above the bound": ~(leaves.level <= upper_bound),
         "its level is not positive": ~(leaves.level > 0.0),
         "its test is unknown": ~np.isin(leaves.test, list(_TESTS)),
         "its test is for a given axis, and the tree's is free": (leaves.test == AFFINE) & field.is_free,
@@ -199,11 +197,13 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         ),
         "its multipliers do not exist": has_mix & _outside(leaves.mix, len(leaves.mixes)),
         "its keep-out ball or zone does not exist": leaves.ball >= borders(family),
-        "a multiplier is negative": (leaves.ball_multiplier < 0.0) | np.any(leaves.sides < 0.0, axis=1),
+        "a multiplier is negative": ~((leaves.ball_multiplier >= 0.0) & np.all(leaves.sides >= 0.0, axis=1)),
         "the band's multiplier is not a number": ~np.isfinite(leaves.band),
         "its cell does not exist": _outside(leaves.face + 1, 4),
-        "its depth is out of range": np.any(_outside(depth, DEEPEST + 1), axis=1),
-        "its index is out of range": np.any(_outside(index, 1 << np.clip(depth, 0, DEEPEST)), axis=1),
+        "its depth is out of range": np.any(_outside(leaves.depths, DEEPEST + 1), axis=1),
+        "its index is out of range": np.any(
+            _outside(leaves.indices, 1 << np.clip(leaves.depths, 0, DEEPEST)), axis=1
+        ),
     }
     for words, mask in faults.items():
         if np.any(mask):
@@ -212,9 +212,8 @@ def _range_fault(family: Family, field: AxisField, tree: Tree, upper_bound: floa
         if not mix or any(not (0 <= k < numbers and w >= 0.0) for k, w in mix.items()):
             return f"multipliers {number}: a ratio that does not exist, or a negative weight"
     of_root = {
-        f"the root box is too large: its numbers must be below {_FARTHEST_M:g} m": ~(
-            np.abs(tree.root_m) < _FARTHEST_M
-        ),
+        # squares of distances would overflow
+        "the root box is too large: its numbers must be below 1e150 m": ~(np.abs(tree.root_m) < 1e150),
         "the root box is empty": ~(tree.root_m[0] <= tree.root_m[1]),
     }
     return next((words for words, mask in of_root.items() if np.any(mask)), "")

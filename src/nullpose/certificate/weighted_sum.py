@@ -50,10 +50,9 @@ def mix_slots(leaves: Leaves) -> tuple[IntArray, FloatArray]:
 def mean_level(ratios: Ratios, ratio: IntArray, weight: FloatArray, level: FloatArray) -> Interval:
     """Bound the denominator's factor in the sum of a mean: lemma 6.
 
-    With ``X_k = a + N_k / D`` that is ``prod_k X_k^p_k``. Where it is at least t,
-    ``sum_k q_k X_k >= t prod_k (q_k / p_k)^p_k`` for any positive q, as the arithmetic mean of the
-    ``q_k X_k / p_k`` is no less than the geometric one. What is returned is the right side less
-    ``a sum_k q_k``, or not a number where that may be below zero; zero where there is no q.
+    Where the mean of ``X_k = a + N_k / D`` is at least t, ``sum_k q_k X_k >= t prod_k (q_k / p_k)^p_k`` for
+    any positive q. What is returned is the right side less ``a sum_k q_k``, or not a number where that may be
+    below zero; zero where there is no q.
 
     Args:
         ratios: over the points.
@@ -68,26 +67,42 @@ def mean_level(ratios: Ratios, ratio: IntArray, weight: FloatArray, level: Float
         power = power + (log(Interval(q)) - log(p)) * p
         total = total + q
     result = exp(power) - total * ratios.offset
-    stands = np.any((ratio < len(ratios.shares)) & (weight > 0.0), axis=0)
+    stands = np.any((ratio < len(ratios.shares)) & (weight != 0.0), axis=0)
     return where(stands, where(result.low >= 0.0, result, np.nan), 0.0)
 
 
-def pair_factors(ratios: Ratios, leaves: Leaves) -> tuple[Interval, list[Interval]]:
+def pairs_fit(ratios: Ratios) -> bool:
+    """Check what lemma 7 asks of pairs: ``N = D + S I`` with S of 0 or more, and two kinds of denominators.
+
+    Args:
+        ratios: with their pairs.
+    """
+    of = ratios.denominator_of
+    return bool(
+        np.array_equal(ratios.denominator_start, np.arange(len(ratios.denominator_isotropic) + 1))
+        and np.array_equal(ratios.denominator_point[of], ratios.numerator_point)
+        and np.array_equal(ratios.denominator_weight[of], ratios.numerator_weight)
+        and np.all(ratios.numerator_isotropic >= ratios.denominator_isotropic[of])
+        and not np.any(np.isin(*of[ratios.pairs.T]))
+    )
+
+
+def pair_factors(
+    ratios: Ratios, leaves: Leaves, number: IntArray, weight: FloatArray
+) -> tuple[Interval, list[Interval]]:
     """Bound the identity's multiple in a sum of pairs, and each denominator's factor: lemma 7.
 
-    That of an eavesdropper is added, that of a node is subtracted.
-
-    With the denominators b of a pair's node and e of its eavesdropper, and ``S_B``, ``S_E`` what their
-    numerators have beyond them, the pair's quotient is t or more where
-    ``b <= phi(e) = S_B e / ((t - 1) e + t S_E)``. For t of 1 or more phi is concave, so that it is no more
-    than its tangent at any ``e0 >= 0``: ``S_B (t - 1) e0^2 / c^2 + (S_B t S_E / c^2) e`` with
-    ``c = (t - 1) e0 + t S_E``. Below 1 what is returned is not a number.
+    The pair's quotient is t or more where ``b <= phi(e) = S_B e / ((t - 1) e + t S_E)``, and phi is no more
+    than its tangent at any ``e0 >= 0``, for t of 1 or more and :func:`pairs_fit`. ``lambda (tangent(e) - b)``
+    is added: that of an eavesdropper's denominator is added, that of a node's is subtracted. Both are whole
+    denominators, so that their isotropic parts go to the identity. Below 1 what is returned is not a number.
 
     Args:
         ratios: with its pairs.
-        leaves: with multipliers and level.
+        leaves: with level.
+        number: (slots, l) which pair, or from their number on which one's e0.
+        weight: (slots, l) lambda, or e0.
     """
-    number, weight = mix_slots(leaves)
     pairs, of, isotropic = ratios.pairs, ratios.denominator_of, ratios.denominator_isotropic
     beyond = Interval(ratios.numerator_isotropic) - isotropic[of]
     level = Interval(np.where(leaves.level >= 1.0, leaves.level, np.nan))
@@ -95,12 +110,16 @@ def pair_factors(ratios: Ratios, leaves: Leaves) -> tuple[Interval, list[Interva
     factors = [identity] * len(isotropic)
     for q, (node, eavesdropper) in enumerate(pairs):
         multiplier, e0 = (np.sum(np.where(number == n, weight, 0.0), axis=0) for n in (q, q + len(pairs)))
-        counts = multiplier > 0.0
-        heard, above = level * beyond[eavesdropper], (level - 1.0) * e0
-        share = beyond[node] / (above + heard).squared() * multiplier
-        identity = where(counts, identity + share * above * e0, identity)
-        for g, part, sign in ((of[node], Interval(multiplier), -1.0), (of[eavesdropper], share * heard, 1.0)):
-            identity = where(counts, identity + part * (sign * isotropic[g]), identity)
+        counts, rise, s_e = multiplier != 0.0, (level - 1.0) * e0, level * beyond[eavesdropper]
+        scale = beyond[node] / (rise + s_e).squared() * multiplier
+        steep = scale * s_e  # lambda phi'(e0); lambda (phi(e0) - e0 phi'(e0)) is scale rise e0
+        own = (
+            scale * rise * e0
+            + steep * isotropic[of[eavesdropper]]
+            - Interval(multiplier) * isotropic[of[node]]
+        )
+        identity = where(counts, identity + own, identity)
+        for g, part in ((of[node], Interval(multiplier)), (of[eavesdropper], steep)):
             factors[g] = where(counts, factors[g] + part, factors[g])
     return identity, factors
 
@@ -108,15 +127,17 @@ def pair_factors(ratios: Ratios, leaves: Leaves) -> tuple[Interval, list[Interva
 def level_factor(
     ratios: Ratios, leaves: Leaves, number: IntArray, weight: FloatArray, denominator: int
 ) -> Interval:
-    """Bound a denominator's factor, ``sum_k lambda_k t``, or that of a mean; 0 where it is not used."""
+    """Bound a denominator's factor, ``sum_k lambda_k t``, or that of a mean: lemma 6. 0 where it is not used.
+
+    Numbers from that of the ratios on are requirements; -1 finds the zero that is put at their end.
+    """
     count = len(ratios.numerator_point)
-    ratio = number % count
-    mine = np.where(ratios.denominator_of[ratio] == denominator, weight, 0.0)
+    mine = np.where(ratios.denominator_of[number % count] == denominator, weight, 0.0)
     level = Interval(mine).total() * leaves.level
     if len(ratios.shares):
-        least = np.append(ratios.requirements, 0.0)[np.where(number >= count, ratio, -1)]
+        least = np.append(ratios.requirements, 0.0)[np.where(number >= count, number % count, -1)]
         level = mean_level(ratios, number, weight, leaves.level) + (Interval(weight) * least).total()
-    return where(np.any(mine > 0.0, axis=0), level, 0.0)
+    return where(np.any(mine != 0.0, axis=0), level, 0.0)
 
 
 def weighted_sum(ratios: Ratios, leaves: Leaves) -> tuple[Interval, list[Term]]:
@@ -127,19 +148,18 @@ def weighted_sum(ratios: Ratios, leaves: Leaves) -> tuple[Interval, list[Term]]:
         leaves: with multipliers and level.
     """
     number, weight = mix_slots(leaves)
-    ratio, identity = number % len(ratios.numerator_point), Interval(np.zeros(len(leaves)))
-    terms: list[Term] = []
+    identity, terms = Interval(np.zeros(len(leaves))), list[Term]()
     if len(ratios.pairs):
-        identity, factors = pair_factors(ratios, leaves)
+        identity, factors = pair_factors(ratios, leaves, number, weight)
     else:
-        for k, w in zip(ratio, weight, strict=True):
+        for k, w in zip(number % len(ratios.numerator_point), weight, strict=True):
             identity = identity + Interval(w) * ratios.numerator_isotropic[k]
-            scale = where(w > 0.0, Interval(w) * ratios.numerator_weight[k], 0.0)
+            scale = where(w != 0.0, Interval(w) * ratios.numerator_weight[k], 0.0)
             terms.append(Term(ratios.numerator_point[k], scale, 1.0))
-        groups = range(len(ratios.denominator_isotropic))
-        factors = [level_factor(ratios, leaves, number, weight, g) for g in groups]
-        for factor, below in zip(factors, ratios.denominator_isotropic, strict=True):
-            identity = where(factor.high != 0.0, identity - factor * below, identity)
+        below = ratios.denominator_isotropic
+        factors = [level_factor(ratios, leaves, number, weight, g) for g in range(len(below))]
+        for factor, isotropic in zip(factors, below, strict=True):
+            identity = where(factor.high != 0.0, identity - factor * isotropic, identity)
     for g, factor in enumerate(factors):
         sign = 1.0 if len(ratios.pairs) and g in ratios.denominator_of[ratios.pairs[:, 1]] else -1.0
         counts = factor.high != 0.0  # exactly zero where it does not count

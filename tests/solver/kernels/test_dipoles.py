@@ -181,4 +181,4 @@ def test_coordinates_turn_in_small_boxes(seed: int) -> None:
     boxes = boxes_at(centre[None], 0.01)
     shear = shear_of(family.ratios, make_leaves(1, test=TOWARDS_POINT, point=anchor), boxes)
     assert shear.on[0]
-    assert np.linalg.norm(way - np.eye(3), 2) <= shear.most[0].high[0] * (1.0 + 1e-9)
+    assert np.linalg.norm(way - np.eye(3), 2) <= shear.sizes[0].high[0] * (1.0 + 1e-9)
