@@ -191,6 +191,6 @@ def test_the_bound_is_false(kind: str) -> None:
     for scenery in sceneries:
         for over in OVER_ALL.values():
             scenario = Scenario.from_dict(BASE | scenery | {"airspace": SQUARE | over})
-            here, there = ([13.9, -7.9, 30.0], [4.0, -4.0, 30.0])
+            here, there = ([13.9, -7.9, 30.0], [13.9, -7.9, 21.0])
             claimed, more = (level_value(scheme, scenario, np.array(at)) for at in (here, there))
             assert more > claimed * 1.001

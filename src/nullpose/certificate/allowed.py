@@ -52,20 +52,22 @@ def negative_where_allowed(
     if not len(left := rows[(leaves.ball >= balls) & ~holds]):
         return holds
     steep = gradient()
+    # an allowed position meets some alternative that names its box: the test must exclude each of these
     holds[left] = True
     for rows, constraints in zone_alternatives(domain, leaves.ball[left] - balls, boxes.chosen(left)):
         named = left[rows]
         guesses = _guesses(constraints, steep[:, named])
         tests = (test(named, list(zip(guess, constraints, strict=True))) for guess in guesses)
         excluded = reduce(np.logical_or, tests, np.zeros(len(named), dtype=bool))
-        holds[named[~excluded]] = False  # a box may be named twice
+        holds[named[~excluded]] = False
     return holds
 
 
 def _guesses(constraints: tuple[Taylor, ...], gradient: FloatArray) -> Iterator[FloatArray]:
     """Yield multipliers, (c, b), with which the constraints' gradients cancel one, as far as they can.
 
-    By least squares, each constraint alone and then all together.
+    By least squares, each constraint alone and then all together; none where there are no constraints, which
+    the test has been tried without.
     """
     subsets = np.unique([*np.eye(len(constraints)), np.ones(len(constraints))], axis=0)
     for used in subsets if constraints else ():

@@ -107,6 +107,10 @@ def uncovered(leaves: Leaves) -> str:
     direction in which every leaf in it is finer, and both halves are covered. The regions of as many cuts
     are looked at together.
 
+    Rows are leaves, sorted by region. In every direction a leaf is at least as deep as its region, for a
+    region is halved only where all its leaves are deeper. So each leaf lies in one half, and a leaf that
+    holds its region equals it.
+
     Args:
         leaves: to be checked; depths and indices in range. Those for an antenna that is the same all round
             hold all axes by any one anchor and chart; those of a dipole on three faces.
@@ -115,44 +119,56 @@ def uncovered(leaves: Leaves) -> str:
     depths[faces < 0, 3:] = 0  # without a cell it is whole
     if is_profile := bool(np.all(leaves.test == PROFILE)):
         faces = leaves.face + 3 * (leaves.point + 1)
-    # of each leaf that is left: its number, its region, and that one's depths and face, -1 for all of them
+    # of each row: its leaf and its region, and that one's depths and face, -1 for all of them
     leaf, region, depth = np.arange(len(leaves)), np.zeros(len(leaves), dtype=np.int64), np.zeros_like(depths)
     on_face = np.full(len(leaves), -1)
     if not len(leaves):
         return "the leaves do not cover the root: there are none"
     while len(leaf):
-        begins = np.diff(region, prepend=-1) > 0
-        start, group = np.flatnonzero(begins), np.cumsum(begins) - 1
-        least = np.minimum.reduceat(depths[leaf], start)
-        first, last = (end.reduceat(faces[leaf], start) for end in (np.minimum, np.maximum))
-        by_face = (on_face[start] < 0) & (first >= 0) & ((first == last) | (not is_profile))
-        finer = (least > depth[start]) & ((np.arange(5) < 3) | (on_face[start] >= 0)[:, None])
-        parted = by_face | np.any(finer, axis=1)
-        holds = np.all(depths[leaf] <= depth, axis=1) & ((faces[leaf] < 0) | (on_face >= 0))
-        rows, side = np.arange(len(leaf)), np.argmax(finer, axis=1)[group]
-        half = indices[leaf, side] >> np.maximum(depths[leaf, side] - depth[rows, side] - 1, 0) & 1
-        key = 3 * group + np.where(by_face[group], faces[leaf] % 3, half)
-        found = np.bincount(np.unique(key) // 3, minlength=len(start))
-        enough = found >= np.where(by_face, 1 if is_profile else 3, 2)
-        covered = np.where(parted, enough, np.logical_or.reduceat(holds, start))
+        is_first = np.diff(region, prepend=-1) > 0
+        first_row, region_of = np.flatnonzero(is_first), np.cumsum(is_first) - 1
+        shallowest = np.minimum.reduceat(depths[leaf], first_row)
+        lowest, highest = (end.reduceat(faces[leaf], first_row) for end in (np.minimum, np.maximum))
+        splits_by_face = (on_face[first_row] < 0) & (lowest >= 0) & ((lowest == highest) | (not is_profile))
+        # only a region on a face has the sides of cells
+        can_halve = (shallowest > depth[first_row]) & (
+            (np.arange(5) < 3) | (on_face[first_row] >= 0)[:, None]
+        )
+        is_split = splits_by_face | np.any(can_halve, axis=1)
+        equals_region = np.all(depths[leaf] == depth, axis=1) & ((faces[leaf] < 0) | (on_face >= 0))
+        by_face, side = splits_by_face[region_of], np.argmax(can_halve, axis=1)[region_of]
+        at_side = np.arange(len(leaf)), side
+        # the leaf's next bit: which half of its region it is in
+        half = indices[leaf, side] >> np.maximum(depths[leaf, side] - depth[at_side] - 1, 0) & 1
+        child = 3 * region_of + np.where(by_face, faces[leaf] % 3, half)
+        parts_found = np.bincount(np.unique(child) // 3, minlength=len(first_row))
+        # a profile's leaves have one anchor and chart: any will do
+        all_there = parts_found >= np.where(splits_by_face, 1 if is_profile else 3, 2)
+        # a region that is not split is covered by a leaf that equals it; of one that is, no part may be empty
+        covered = np.where(is_split, all_there, np.logical_or.reduceat(equals_region, first_row))
         if not np.all(covered):
-            gap = int(np.argmin(covered))
-            row = start[gap]
-            missing = (
-                min({0, 1, 2} - set((key[group == gap] - 3 * gap).tolist())) if by_face[gap] else on_face[row]
-            )
-            index = indices[leaf[row]] >> depths[leaf[row]] - depth[row]
-            return f"the leaves do not cover the root: {_gap_words(index, 1 << depth[row], missing)}"
-        depth[rows, side] += ~by_face[group]
-        on_face = np.where(by_face[group], faces[leaf], on_face)
-        order = np.argsort(np.where(parted[group], key, -1), kind="stable")[np.sum(~parted[group]) :]
-        leaf, region, depth, on_face = leaf[order], key[order], depth[order], on_face[order]
+            row = first_row[np.argmin(covered)]
+            found = set((child[region_of == region_of[row]] % 3).tolist())
+            missing = min({0, 1, 2} - found) if by_face[row] else on_face[row]
+            ahead = depths[leaf[row]] - depth[row]
+            return _gap_words(indices[leaf[row]] >> ahead, 1 << depth[row], missing, is_profile)
+        depth[at_side] += ~by_face
+        on_face = np.where(by_face, faces[leaf], on_face)
+        kept = (order := np.argsort(child, kind="stable"))[is_split[region_of[order]]]
+        leaf, region, depth, on_face = leaf[kept], child[kept], depth[kept], on_face[kept]
     return ""
 
 
-def _gap_words(index: IntArray, count: IntArray, face: int) -> str:
-    """Name a region that leaves leave out: its index among equal parts of each side, and its face, or -1."""
-    sides = zip("xyzab", index, count, strict=True)
-    names = [f"{name} {i + 1} of {parts}" for name, i, parts in sides if parts > 1]
-    names += [f"face{face}"] if face >= 0 else []
-    return f"they leave out, at least in part, {', '.join(names) or 'all of it'}"
+def _gap_words(index: IntArray, count: IntArray, face: int, is_profile: bool) -> str:
+    """Name a region that leaves leave out.
+
+    Args:
+        index: (5,) its index among equal parts of each side.
+        count: (5,) how many these are.
+        face: its face, or -1; of a profile anchor and chart in one number.
+        is_profile: whether it is one.
+    """
+    names = [f"{x} {i + 1} of {n}" for x, i, n in zip("xyzab", index, count, strict=True) if n > 1]
+    on_face = f"point {face // 3 - 1}, chart {face % 3}" if is_profile else f"face{face}"
+    gap = ", ".join([*names, *[on_face] * int(face >= 0)]) or "all of it"
+    return f"the leaves do not cover the root: they leave out, at least in part, {gap}"

@@ -96,9 +96,10 @@ def expansion(
     a = (Interval(points_m) - boxes.centre).T
     s = a.squared().total()
     h, gradient, (h0, h1, h2) = amplitude(ratios, boxes, point, is_above)
-    # a changes by -e with the step e, and the frame, which turns d towards the anchor, adds the rest of steps
+    # steps[:, i] is b' of "The test of a box" for e_i: K a - e_i with K = (e d^T - d e^T) / rho
     swing = (dot(frames.direction, a) * UNIT - frames.direction[:, None] * a) / frames.rho
     steps, share = where(frames.turning, swing, 0.0) - UNIT, h / s
+    # those of h a / s, where s changes by -2 a_i
     slopes = steps * share + a[:, None] * ((gradient + a * share * 2.0) / s)
     seen = dot(frames.basis[:, :, None], linear(a * share, slopes)[:, None])
     # (1 - leak) w w^T of the link vector w = h a / s
@@ -108,19 +109,19 @@ def expansion(
     square = h * share
     length2 = linear(square[None], ((gradient * h + a * square) * 2.0 / s)[None])
     link = where(anchored, frames.shape, frames.gram)[:, None] * length2 - where(anchored, 0.0, along)
-    near = boxes.nearest(points_m)
+    least_m = boxes.nearest(points_m)
     rate = where(frames.turning & ~anchored, 1.0 / frames.rho_least, 0.0)
     # the rules invert, scale and turn: bounds on the link vector and on its first two derivatives
-    length = h0 / near
-    slope = (length + h1) / near
-    bend = (slope * 2.0 + h2) / near
+    length = h0 / least_m
+    slope = (length + h1) / least_m
+    bend = (slope * 2.0 + h2) / least_m
     seen_slope = slope + length * rate
     seen_bend = bend + (slope * 2.0 + length * rate * DIRECTION_BEND) * rate
     # the rule square; the anchor's is the square of h / rho
     if is_above:
         second = slope.squared() + length * bend + seen_slope.squared() + length * seen_bend
     else:
-        falling = (slope + h1 / near + h2) / near * length
+        falling = (slope + h1 / least_m + h2) / least_m * length
         second = where(anchored, falling, length * seen_bend) * 2.0
     return link, second.most(), seen_bend.most()
 

@@ -85,8 +85,9 @@ class Outline:
         if len(met) > 2:
             return [()]
         region = corners(exact(low), exact(high))
-        if len(met) == 2 and self._keep_apart(met[0], met[1], region):
+        if len(met) == 2 and self._keep_apart(met[0], met[1], region):  # a corner of the allowed set: both
             return [tuple(met)] if all(self._forbids_beyond([edge], region) for edge in met) else [()]
+        # a corner of the forbidden set: either; one edge; or none: all or nothing
         return [(edge,) for edge in met] if self._forbids_beyond(met, region) else [()]
 
     def _keep_apart(self, first: int, second: int, region: list[Point]) -> bool:

@@ -184,8 +184,8 @@ def value_of(ratios: Ratios, values: Exact) -> Fraction:
         return Fraction(min(values[node] / values[eavesdropper] for node, eavesdropper in ratios.pairs))
     if not len(ratios.shares):
         return Fraction(min(values))
-    near = Interval(1.0 - 1e-15, 1.0 + 1e-15)  # a double is off by less than its last two places
-    logs = (log(near * float(value + Fraction(ratios.offset))) for value in values)
+    rounded = Interval(1.0 - 1e-15, 1.0 + 1e-15)  # a double is off by less than its last two places
+    logs = (log(rounded * float(value + Fraction(ratios.offset))) for value in values)
     power = sum((each * share for each, share in zip(logs, ratios.shares, strict=True)), Interval(0.0))
     return Fraction(float(exp(power).low))
 

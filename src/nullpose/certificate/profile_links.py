@@ -55,8 +55,8 @@ def links_of(
     found = []
     for j, d in enumerate(apart[j] for j in range(len(apart.low))):
         w = r + d[:, None]
-        near = w.squared().total().of(root).of(inverse)
-        found.append((cu if j == anchor else along(w, d) * near, near.squared()))
+        inverse1 = w.squared().total().of(root).of(inverse)
+        found.append((cu if j == anchor else along(w, d) * inverse1, inverse1.squared()))
     return found, [along(e[:, None], e[:, None]) for e in np.eye(3)]
 
 
