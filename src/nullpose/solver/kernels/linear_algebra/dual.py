@@ -139,11 +139,11 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
     for k in range(total):
         fill_slopes(forms[k], rates[k])
         rates[k, 5] = 0.0 if k < sides or is_mean else -1.0
-        values[k], multipliers[k] = form_product(forms[k], matrix), -rates[k, 5]
+        values[k] = form_product(forms[k], matrix)
     smallest = primal_value(values[sides:], shares, offset)
     mu, end = _FIRST * max(abs(level), abs(smallest)), gap * abs(level) / (total + 3)
     s, step = 0.0 if is_mean else smallest - mu * (total - sides), 0.0
-    below = stop if stop < math.inf else -math.inf
+    below, has_centre = stop if stop < math.inf else -math.inf, False
     for _ in range(_MOST_STEPS):
         system[:, :], gradient[:] = 0.0, 0.0
         gradient[5], system[5, 5] = (0.0, 1.0) if is_mean else (1.0, 0.0)
@@ -174,8 +174,8 @@ def dual_multipliers(forms, sides, total, level, stop, gap, start, multipliers, 
             break
         if is_centred:
             fill_duals(mu, slacks, changes, multipliers)
-            mu = max(_SHRINK * mu, 0.999 * end)
-    if step > 0.0:  # else those of the last centre: past it, rounding takes over
+            mu, has_centre = max(_SHRINK * mu, 0.999 * end), True
+    if step > 0.0 or not has_centre:  # else those of the last centre: past it, rounding takes over
         fill_duals(mu, slacks, changes, multipliers)
     weight = 1.0 if is_mean else 0.0
     for k in range(sides, 0 if is_mean else total):
