@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import product
-from typing import Annotated, ClassVar, TypeAlias, TypeVar
+from typing import Annotated, TypeAlias, TypeVar
 
 from pydantic import BeforeValidator, Field
 
@@ -17,7 +17,7 @@ from nullpose.scenario.motion import FLIGHT_KEYS
 from nullpose.scenario.rules import ByName, Choice, Count, Limits
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label
-from nullpose.scenario.ways import Ways, at_most_one
+from nullpose.scenario.ways import at_most_one
 from nullpose.study.evaluation import FixedPose
 
 OMNIDIRECTIONAL = "omnidirectional"  # the case that other vehicles are compared with
@@ -56,7 +56,16 @@ _FLIGHTS = {"hover": "the hover", "trajectory": "the best flight"}
 _Bool = Annotated[bool, BeforeValidator(_truth)]
 
 
-class Case(Section):
+class Case(
+    Section,
+    header="a case, in a table of its own headed [[cases]]",
+    letter="C",
+    ways=(
+        at_most_one("airframe", "array"),
+        at_most_one("scheme", "robust", "array", "pose", "reach", "flight"),
+        at_most_one("mount_scenes", "reach"),
+    ),
+):
     """One way of solving a scene.
 
     Args:
@@ -74,14 +83,6 @@ class Case(Section):
         gap: relative gap in place of the study's.
         time_limit_s: seconds of one solve in place of the study's.
     """
-
-    header: ClassVar[str] = "a case, in a table of its own headed [[cases]]"
-    letter: ClassVar[str] = "C"
-    ways: ClassVar[tuple[Ways, ...]] = (
-        at_most_one("airframe", "array"),
-        at_most_one("scheme", "robust", "array", "pose", "reach", "flight"),
-        at_most_one("mount_scenes", "reach"),
-    )
 
     name: Label = Field(
         default="",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,7 +195,15 @@ _Place = Annotated[
 ]
 
 
-class FixedPose(Section):
+class FixedPose(
+    Section,
+    header="a table such as { position_m = [0, 0, 20], roll_deg = 90 }",
+    unstated=(
+        "roll_deg",
+        "pitch_deg",
+        "yaw_deg",
+    ),
+):
     """A pose that is evaluated in every scene, with nothing searched and nothing proved.
 
     Args:
@@ -203,9 +211,6 @@ class FixedPose(Section):
             the centroid of the nodes.
         roll_deg, pitch_deg, yaw_deg: how it is turned.
     """
-
-    header: ClassVar[str] = "a table such as { position_m = [0, 0, 20], roll_deg = 90 }"
-    unstated: ClassVar[frozenset[str]] = frozenset({"roll_deg", "pitch_deg", "yaw_deg"})
 
     position_m: _Place = Field(
         description="Where the drone hovers: [east, north, up], or centroid for the lowest allowed position "

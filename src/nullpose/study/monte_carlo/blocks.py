@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Annotated, ClassVar, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -59,7 +59,11 @@ class Town(NamedTuple):
         ]
 
 
-class Blocks(Section):
+class Blocks(
+    Section,
+    header="a table headed [buildings]",
+    ways=(Ways((("environment",), ("alpha", "beta_per_km2", "gamma_m"))),),
+):
     """How the buildings of each scene are drawn: squares on a grid of random offset and direction.
 
     Args:
@@ -69,9 +73,6 @@ class Blocks(Section):
         gamma_m: scale of the Rayleigh distribution of their heights [m].
         x_m, y_m: where their centres are [m]; None for around the areas in which points are drawn.
     """
-
-    header: ClassVar[str] = "a table headed [buildings]"
-    ways: ClassVar[tuple[Ways, ...]] = (Ways((("environment",), ("alpha", "beta_per_km2", "gamma_m"))),)
 
     environment: EnvironmentName | None = optional(
         "The published alpha, beta_per_km2 and gamma_m of suburban (0.1, 750, 8), urban (0.3, 500, 15), "

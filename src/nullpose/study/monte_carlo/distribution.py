@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Self, get_args
+from typing import Annotated, Any, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +20,18 @@ from nullpose.scenario.channel import EnvironmentName
 from nullpose.scenario.faults import Place, collected, plain
 from nullpose.scenario.rules import MOST_MEMBERS, ByName, Limits, ListOf, Rule
 from nullpose.scenario.section import Section, optional
-from nullpose.scenario.ways import Ways, exactly_one
+from nullpose.scenario.ways import exactly_one
 
 _Number = Annotated[float, Limits("a number", -1e30, 1e30, "in the unit that the key ends in")]
 _Two = tuple[_Number, _Number]
 _Ends = Annotated[_Two, ListOf("a list of two numbers, the lower first", 2, 2)]
 
 
-class Distribution(Section):
+class Distribution(
+    Section,
+    header="a number, or a table such as { uniform = [0.5, 2.0] }",
+    ways=(exactly_one("fixed", "uniform", "log_uniform", "normal", "choice"),),
+):
     """How a number is drawn for each point of each scene.
 
     Args:
@@ -37,9 +41,6 @@ class Distribution(Section):
         normal: mean and standard deviation; or else
         choice: one of several numbers, each as likely.
     """
-
-    header: ClassVar[str] = "a number, or a table such as { uniform = [0.5, 2.0] }"
-    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("fixed", "uniform", "log_uniform", "normal", "choice"),)
 
     fixed: _Number | None = optional("The same for all; a number in place of the table means this.", 1)
     uniform: _Ends | None = optional("Evenly between two numbers.", [0.5, 2.0])
@@ -130,14 +131,12 @@ class Drawn(Rule):
         return "the standard deviation is below 0; it must be 0 or more" if deviation < 0.0 else ""
 
 
-class Environments(Section):
+class Environments(Section, header='an environment, or a table such as { choice = ["suburban", "urban"] }'):
     """Built-up areas of which each scene has one.
 
     Args:
         choice: their names, each as likely.
     """
-
-    header: ClassVar[str] = 'an environment, or a table such as { choice = ["suburban", "urban"] }'
 
     choice: Annotated[
         tuple[EnvironmentName, ...], ListOf("a list of at least one environment", 1, MOST_MEMBERS)
@@ -156,13 +155,11 @@ class Environments(Section):
 _OR_NAME = ByName("an environment", {name: {"choice": [name]} for name in ENVIRONMENTS})
 
 
-class DrawnChannel(Section):
+class DrawnChannel(Section, ways=Channel.ways):
     """The table ``[scene.channel]`` with a distribution where a number stands, or several environments.
 
     It has the keys of :class:`nullpose.scenario.Channel`; those of numbers are added below.
     """
-
-    ways: ClassVar[tuple[Ways, ...]] = Channel.ways
 
     model: str = Channel.model_fields["model"].default
     average: str | None = None

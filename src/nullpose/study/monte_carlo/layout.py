@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import AfterValidator, Field
@@ -92,8 +92,6 @@ class Points(Section):
         pause_s: at each waypoint [s].
         name: the name of one alone; the beginning of the names of several.
     """
-
-    letter: ClassVar[str] = ""
 
     layout: Annotated[str, Choice("a layout", tuple(_NEEDED))] = Field(
         description="How they are placed: disc or rectangle (evenly in it), poisson (a Poisson process in "
@@ -246,7 +244,14 @@ class Points(Section):
         return [f"{self.name or self.letter}{number}" for number in range(1, count + 1)]
 
 
-class Nodes(Points):
+class Nodes(
+    Points,
+    letter="S",
+    ways=(
+        at_most_one("power_w", "power_dbm"),
+        at_most_one("weight", "min_sinr_db"),
+    ),
+):
     """Where the nodes are drawn, and how strong they are.
 
     Args:
@@ -255,12 +260,6 @@ class Nodes(Points):
         weight: what each node's SINR is divided by; or else
         min_sinr_db: what it requires [dB].
     """
-
-    letter: ClassVar[str] = "S"
-    ways: ClassVar[tuple[Ways, ...]] = (
-        at_most_one("power_w", "power_dbm"),
-        at_most_one("weight", "min_sinr_db"),
-    )
 
     power_w: Annotated[Distribution, Drawn.of(Watts)] | None = optional(
         "Transmit power in watts: a number or a distribution.", 1.0
@@ -276,7 +275,7 @@ class Nodes(Points):
     )
 
 
-class Jammers(Points):
+class Jammers(Points, letter="M", ways=(exactly_one("power_w", "power_dbm"),)):
     """Where the jammers are drawn, and how strong they are.
 
     Args:
@@ -284,9 +283,6 @@ class Jammers(Points):
         power_dbm: the same in dBm.
         uncertainty_m: radius of the ball that each is known to be in [m].
     """
-
-    letter: ClassVar[str] = "M"
-    ways: ClassVar[tuple[Ways, ...]] = (exactly_one("power_w", "power_dbm"),)
 
     power_w: Annotated[Distribution, Drawn.of(Watts)] | None = optional(
         "Transmit power in watts: a number or a distribution.", {"log_uniform": [0.1, 100.0]}
@@ -299,14 +295,12 @@ class Jammers(Points):
     )
 
 
-class Eavesdroppers(Points):
+class Eavesdroppers(Points, letter="E"):
     """Where the eavesdroppers are drawn.
 
     Args:
         uncertainty_m: radius of the ball that each is known to be in [m].
     """
-
-    letter: ClassVar[str] = "E"
 
     uncertainty_m: Annotated[Distribution, Drawn.of(ErrorMetres)] | None = optional(
         "Radius of the ball that one is known to be in: a number or a distribution.", 2.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, SerializeAsAny
@@ -35,11 +35,24 @@ from nullpose.scenario.origin import POINT_LISTS, located
 from nullpose.scenario.rules import MOST_MEMBERS, Choice, ListOf, list_of_tables
 from nullpose.scenario.section import Section, optional
 from nullpose.scenario.units import Label, Seconds
-from nullpose.scenario.ways import Ways, at_most_one
+from nullpose.scenario.ways import at_most_one
 from nullpose.study.monte_carlo.distribution import DrawnChannel, FixedOrDrawn
 
 
-class SceneBase(Section):
+class SceneBase(
+    Section,
+    header="a table headed [scene]",
+    ways=(at_most_one("file", "files"),),
+    unstated=(
+        "objective",
+        "scenarios",
+        "nodes",
+        "jammers",
+        "eavesdroppers",
+        "sources",
+        "buildings",
+    ),
+):
     """The part of every scene that is not drawn, except for values of the channel that are.
 
     Args:
@@ -52,12 +65,6 @@ class SceneBase(Section):
             in a scenario file, like buildings.
         nodes, jammers, eavesdroppers, sources: points that are not drawn, as in a scenario file.
     """
-
-    header: ClassVar[str] = "a table headed [scene]"
-    ways: ClassVar[tuple[Ways, ...]] = (at_most_one("file", "files"),)
-    unstated: ClassVar[frozenset[str]] = frozenset(
-        {"objective", "scenarios", "nodes", "jammers", "eavesdroppers", "sources", "buildings"}
-    )
 
     file: Label | None = optional(
         "A scenario file, relative to this file's folder; what is drawn replaces its own.", "paper.toml"

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import product
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import Field
 from pydantic_core import PydanticCustomError
@@ -113,7 +113,7 @@ def _values(raw: object) -> tuple[float, ...]:
 MOST_SCENES = 999_999_999  # their numbers have nine digits in the names of parts
 
 
-class StudySpec(Section):
+class StudySpec(Section, header="a table with the keys of a study's spec"):
     """Everything that decides the rows of a study.
 
     Args:
@@ -131,8 +131,6 @@ class StudySpec(Section):
     Raises:
         ScenarioError: with every fault of the values together.
     """
-
-    header: ClassVar[str] = "a table with the keys of a study's spec"
 
     name: Title = Field(default="", description="Title of the study.", examples=["Do we need to tilt?"])
     seed: Annotated[int, Count("a seed", 0, 1e15, "any whole number; another one gives other scenes")] = (
