@@ -102,7 +102,7 @@ def linear_above(form: Taylor, sizes: FloatArray, top: FloatArray) -> Interval:
     first, second = where(larger, share, rest), where(larger, rest, share)
     # x bears its part of xy and xz, y of xy and yz, z of xz and yz
     pairs = (first[0], first[1]), (second[0], first[2]), (second[1], second[2])
-    diagonal = [bent[k].most() + one + other for k, (one, other) in enumerate(pairs)]
+    diagonal = [bent[k].most() + left + right for k, (left, right) in enumerate(pairs)]
     value = form.at.value + stack(diagonal + [Interval(entry) for entry in middle[3:]])
     return linear(value, form.at.slopes)
 

@@ -113,12 +113,12 @@ def pair_factors(
         counts, rise, s_e = multiplier != 0.0, (level - 1.0) * e0, level * beyond[eavesdropper]
         scale = beyond[node] / (rise + s_e).squared() * multiplier
         steep = scale * s_e  # lambda phi'(e0); lambda (phi(e0) - e0 phi'(e0)) is scale rise e0
-        own = (
+        of_identity = (
             scale * rise * e0
             + steep * isotropic[of[eavesdropper]]
             - Interval(multiplier) * isotropic[of[node]]
         )
-        identity = where(counts, identity + own, identity)
+        identity = where(counts, identity + of_identity, identity)
         for g, part in ((of[node], Interval(multiplier)), (of[eavesdropper], steep)):
             factors[g] = where(counts, factors[g] + part, factors[g])
     return identity, factors

@@ -136,8 +136,8 @@ def _node_of_row(where: str, header: Sequence[str], cells: Sequence[str]) -> Lis
     }
     position = {"position_m": [row[key] for key in LOCAL]} if "x_m" in row else {}
     # A place is never left out, so its empty cells stay, to be refused.
-    stated = {key: cell for key, cell in row.items() if cell != "" or key in GEODETIC_KEYS}
-    return ListedNode({key: stated[key] for key in stated if key not in LOCAL} | position, places)
+    filled = {key: cell for key, cell in row.items() if cell != "" or key in GEODETIC_KEYS}
+    return ListedNode({key: filled[key] for key in filled if key not in LOCAL} | position, places)
 
 
 def number_of(cell: str) -> object:

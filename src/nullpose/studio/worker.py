@@ -153,13 +153,13 @@ def flights(state: State, go_on: Callable[..., None] = lambda *_: None) -> Itera
         state: with the scene in motion.
         go_on: called now and then; what it raises ends the search.
     """
-    if (asked := state.flight) is not None and asked.found is None:
+    if (flight := state.flight) is not None and flight.found is None:
         try:
-            found = solve_trajectory(asked.motion, time_limit_s=FLIGHT_LIMIT_S, on_progress=go_on)
+            found = solve_trajectory(flight.motion, time_limit_s=FLIGHT_LIMIT_S, on_progress=go_on)
             words = (each.replace(" -", f" {MINUS}") for each in flight_words(found, sample_between(found)))
-            yield replace(asked, words=tuple(words), found=found)
+            yield replace(flight, words=tuple(words), found=found)
         except NullposeError as error:
-            yield replace(asked, words=(f"no flight: {error}",))
+            yield replace(flight, words=(f"no flight: {error}",))
 
 
 REST_S = 0.35

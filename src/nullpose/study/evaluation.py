@@ -198,11 +198,7 @@ _Place = Annotated[
 class FixedPose(
     Section,
     header="a table such as { position_m = [0, 0, 20], roll_deg = 90 }",
-    unstated=(
-        "roll_deg",
-        "pitch_deg",
-        "yaw_deg",
-    ),
+    unstated=("roll_deg", "pitch_deg", "yaw_deg"),
 ):
     """A pose that is evaluated in every scene, with nothing searched and nothing proved.
 

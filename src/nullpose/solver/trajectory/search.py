@@ -105,9 +105,10 @@ def hovering(course: Course, lattice: Lattice, deadline: float) -> Flight | None
     is_worst, count, best = course.aim.is_worst, len(course.times_s), None
     places_m = fixed_m[:1] or lattice.best_places(is_worst, deadline)
     places_m = [np.tile(place_m, (count, 1)) for place_m in places_m]
-    if not fixed_m and is_clear(course, places_m[0]):
+    clear_m = [each for each in places_m if is_clear(course, each)]
+    if clear_m and not fixed_m:
         held = replace(course, speed_max_m_s=_AT_REST_M_S)
-        climb = Climb(held, inside(held, places_m[0]))
+        climb = Climb(held, inside(held, clear_m[0]))
         end_m = np.mean(climb.run(_BARRIERS[is_worst][1], _END[is_worst], deadline)[:, :3], axis=0)
         places_m.append(np.tile(end_m, (count, 1)))
     for each in places_m:

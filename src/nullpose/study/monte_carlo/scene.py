@@ -43,15 +43,7 @@ class SceneBase(
     Section,
     header="a table headed [scene]",
     ways=(at_most_one("file", "files"),),
-    unstated=(
-        "objective",
-        "scenarios",
-        "nodes",
-        "jammers",
-        "eavesdroppers",
-        "sources",
-        "buildings",
-    ),
+    unstated=("objective", "scenarios", "nodes", "jammers", "eavesdroppers", "sources", "buildings"),
 ):
     """The part of every scene that is not drawn, except for values of the channel that are.
 
