@@ -193,6 +193,7 @@ def _write_figures(summary: Summary, folder: Path) -> dict[str, tuple[Path, ...]
     from nullpose.report.study.figures import figures_of
 
     kinds, drawn = (".png", ".svg", ".pdf"), figures_of(summary)
+    # the last five are of earlier versions, whose folders may be written again
     for name, kind in product((*_CAPTIONS, "sweep", "best", "outage", "robustness", "effort"), kinds):
         (folder / f"{name}{kind}").unlink(missing_ok=True)
     return {name: write_figure(drawn[name], *(folder / f"{name}{kind}" for kind in kinds)) for name in drawn}
